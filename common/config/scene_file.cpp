@@ -5,7 +5,9 @@
 
 #include <fstream>
 #include <system_error>
+#include <utility>
 
+#include "common/config/detached_data.h"
 #include "common/config/scene_check.h"
 #include "common/config/scene_text.h"
 #include "common/text_encoding.h"
@@ -72,10 +74,16 @@ std::vector<NamedFile> filesOf(const LoadedScene& loaded) {
     const auto add = [&](const std::string& field, const std::string& path) {
         if (!path.empty()) files.push_back({"the scene's " + field, resolvePath(loaded, path)});
     };
-    add("volume.path", loaded.scene.volume().path());
-    add("volume.label_path", loaded.scene.volume().label_path());
+    const auto addVolume = [&](const std::string& field, const std::string& path) {
+        add(field, path);
+        if (path.empty()) return;
+        for (fs::path& data : detachedDataOf(resolvePath(loaded, path)))
+            files.push_back({"the scene's " + field + ", its data", std::move(data)});
+    };
+    addVolume("volume.path", loaded.scene.volume().path());
+    addVolume("volume.label_path", loaded.scene.volume().label_path());
     for (const scene::Tool& tool : loaded.scene.tool()) add("tool.mesh_path", tool.mesh_path());
-    add("assessment.reference.volume_path", loaded.scene.assessment().reference().volume_path());
+    addVolume("assessment.reference.volume_path", loaded.scene.assessment().reference().volume_path());
     return files;
 }
 

@@ -30,7 +30,8 @@ uint64_t sceneHashOf(const scene::Scene& scene);
 // scene file's folder.
 std::filesystem::path resolvePath(const LoadedScene& loaded, const std::string& path_in_scene);
 
-// They are the scene itself and all that it names: whoever writes must spare them (requireApart()).
+// They are the scene itself and all that it names, with the data of detached volumes: whoever writes must
+// spare them (requireApart()).
 std::vector<NamedFile> filesOf(const LoadedScene& loaded);
 
 }  // namespace bonemill

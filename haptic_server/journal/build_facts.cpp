@@ -1,61 +1,17 @@
 #include "haptic_server/journal/build_facts.h"
 
 #include <gnu/libc-version.h>
-#include <openssl/evp.h>
 #include <openssl/rand.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <memory>
-#include <span>
 
-#include "common/require_file.h"
+#include "common/digest/sha256.h"
 #include "common/user_error.h"
 #include "haptic_server/kernels/kernels.h"
 
 namespace bonemill {
 namespace {
-
-std::string hexOf(std::span<const unsigned char> bytes) {
-    std::string text;
-    for (const unsigned char byte : bytes) {
-        text += "0123456789abcdef"[byte / 16];
-        text += "0123456789abcdef"[byte % 16];
-    }
-    return text;
-}
-
-class Sha256 {
-  public:
-    Sha256() { EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr); }
-    void add(const void* data, size_t size) { EVP_DigestUpdate(context_.get(), data, size); }
-    std::string hex() {
-        std::array<unsigned char, 32> digest{};
-        EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr);
-        return hexOf(digest);
-    }
-
-  private:
-    std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_{EVP_MD_CTX_new(), EVP_MD_CTX_free};
-};
-
-// A pipe or a device would never end.
-std::string fileSha256(const std::filesystem::path& path) {
-    requireFile(path);
-    const std::unique_ptr<std::FILE, decltype(&std::fclose)> file(std::fopen(path.c_str(), "rbe"),
-                                                                  std::fclose);
-    if (!file) throw UserError(path.string() + ": cannot be read (" + std::strerror(errno) + ")");
-    Sha256 hash;
-    std::vector<unsigned char> bytes(size_t(1) << 20);
-    while (const size_t count = std::fread(bytes.data(), 1, bytes.size(), file.get()))
-        hash.add(bytes.data(), count);
-    if (std::ferror(file.get())) throw UserError(path.string() + ": cannot be read to its end");
-    return hash.hex();
-}
 
 std::vector<std::filesystem::path> filesIn(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> files;
@@ -97,14 +53,14 @@ journal::Build buildFacts(const std::string& version) {
 
 std::string sha256Of(const std::filesystem::path& path) {
     std::error_code error;
-    if (!std::filesystem::is_directory(path, error)) return fileSha256(path);
+    if (!std::filesystem::is_directory(path, error)) return sha256OfFile(path);
     Sha256 hash;
     for (const auto& file : filesIn(path)) {
         const std::string line = file.lexically_relative(path).string() + '\n' +
-                                 std::to_string(bytesIn(file)) + '\n' + fileSha256(file) + '\n';
-        hash.add(line.data(), line.size());
+                                 std::to_string(bytesIn(file)) + '\n' + sha256OfFile(file) + '\n';
+        hash.add(line);
     }
-    return hash.hex();
+    return hexOf(hash.take());
 }
 
 std::vector<journal::File> hashedFiles(const std::vector<NamedFile>& files) {
@@ -120,8 +76,8 @@ std::vector<journal::File> hashedFiles(const std::vector<NamedFile>& files) {
 }
 
 std::string newJournalId() {
-    std::array<unsigned char, 16> bytes{};
-    if (RAND_bytes(bytes.data(), int(bytes.size())) != 1)
+    std::string bytes(16, '\0');
+    if (RAND_bytes(reinterpret_cast<unsigned char*>(bytes.data()), int(bytes.size())) != 1)
         throw UserError("the system gives no random numbers");
     return hexOf(bytes);
 }

@@ -116,7 +116,18 @@ std::string Journal::problem() const {
 void Journal::write(JournalTopic topic, int64_t mono_ns, const google::protobuf::MessageLite& message) {
     buffer_.clear();
     message.AppendToString(&buffer_);
-    writer_.addMessage(uint16_t(topic), stampOf(mono_ns), buffer_);
+    write(topic, mono_ns, buffer_);
+}
+
+void Journal::write(JournalTopic topic, int64_t mono_ns, std::string_view message) {
+    chain_.add(topic, stampOf(mono_ns), message);
+    writer_.addMessage(uint16_t(topic), stampOf(mono_ns), message);
+}
+
+void Journal::writeLink(int64_t mono_ns) {
+    journal::Link link;
+    link.set_sha256(chain_.close());
+    writer_.addMessage(uint16_t(JournalTopic::kChain), stampOf(mono_ns), link.SerializeAsString());
 }
 
 void Journal::add(const TickRecord& record) {
@@ -135,6 +146,7 @@ void Journal::add(const TickRecord& record) {
     hash.set_ticks(record.tick + 1);
     for (const uint64_t part : hash_.parts()) hash.add_parts(part);
     write(JournalTopic::kStateHash, record.start_ns, hash);
+    writeLink(record.start_ns);
 }
 
 void Journal::writePoses(const TickRecord& record) {
@@ -227,7 +239,7 @@ void Journal::round() {
             if (!std::exchange(is_bone, true)) flushTicks();
             writeBone(post);
         } else {
-            writer_.addMessage(uint16_t(post.topic), stampOf(post.mono_ns), post.message);
+            write(post.topic, post.mono_ns, post.message);
         }
     }
     if (!is_bone && monotonicNowNs() - chunk_began_ns_ < kChunkNs) return;
@@ -248,6 +260,7 @@ void Journal::finish() {
     event.set_tick(ticks_);
     event.mutable_end()->set_ticks(ticks_);
     write(JournalTopic::kEvent, monotonicNowNs(), event);
+    writeLink(monotonicNowNs());
     writer_.finish();
     file_.append(writer_.take());
     file_.finish();

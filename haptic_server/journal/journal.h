@@ -16,6 +16,7 @@
 #include "haptic_server/bone/bone_snapshot.h"
 #include "haptic_server/journal/bone_states.h"
 #include "haptic_server/journal/input_columns.h"
+#include "haptic_server/journal/journal_chain.h"
 #include "haptic_server/journal/journal_file.h"
 #include "haptic_server/journal/journal_topics.h"
 #include "haptic_server/journal/result_columns.h"
@@ -56,6 +57,8 @@ class Journal {
     void add(const TickRecord& record);
     void round();
     void finish();
+    // After that: what the chain ends with, as hexadecimal digits (journal_chain.h).
+    std::string lastLink() const { return hexOf(chain_.link()); }
     // Before the recorder thread runs: writes what was put, and waits until it is in the file.
     void flush();
 
@@ -71,6 +74,8 @@ class Journal {
     };
     void post(Post post);
     void write(JournalTopic topic, int64_t mono_ns, const google::protobuf::MessageLite& message);
+    void write(JournalTopic topic, int64_t mono_ns, std::string_view message);
+    void writeLink(int64_t mono_ns);
     void writeBone(const Post& post);
     bool isKeyDue(int64_t mono_ns) const noexcept;
     void writePoses(const TickRecord& record);
@@ -85,6 +90,7 @@ class Journal {
     JournalFile file_;
     mcap::Writer writer_;
     std::string buffer_;
+    JournalChain chain_;
     TickHash hash_;
     BoneStateWriter bones_;
     ResultColumns results_;

@@ -21,6 +21,7 @@ enum class JournalTopic : uint16_t {
     kTool,    // where the simulated tool is; for viewers of recordings, some 25 times per second
     kHand,    // where the hand is, likewise
     kWrench,  // on the hand, likewise
+    kChain,   // per second and at the end: what was written until then
 };
 
 struct JournalTopicName {
@@ -42,6 +43,7 @@ inline constexpr std::array kJournalTopics = {
     JournalTopicName{JournalTopic::kTool, "/tool", "foxglove.PoseInFrame"},
     JournalTopicName{JournalTopic::kHand, "/hand", "foxglove.PoseInFrame"},
     JournalTopicName{JournalTopic::kWrench, "/wrench", "bonemill.journal.WrenchInFrame"},
+    JournalTopicName{JournalTopic::kChain, "/chain", "bonemill.journal.Link"},
 };
 
 // Of journal::Manifest.format.

@@ -14,15 +14,19 @@
 #include "haptic_server/bone/leaf_rows.h"
 #include "haptic_server/journal/bone_states.h"
 #include "haptic_server/journal/build_facts.h"
+#include "haptic_server/journal/journal_chain.h"
 #include "haptic_server/journal/journal_reader.h"
 #include "haptic_server/record/tick_hash.h"
-#include "haptic_server/rerun/recorded_scene.h"
 #include "haptic_server/rerun/rerun.h"
 #include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/setup/scene_setup.h"
 
 namespace bonemill {
 namespace {
+
+// Hostile files could unpack to far more than they are: so many leaves are compared, and so many poses wait
+// for their tick.
+constexpr size_t kMostLeafHashes = size_t(1) << 27, kMostWaitingPoses = 100'000;
 
 template <class Message>
 Message parsed(const mcap::Message& bytes) {
@@ -70,6 +74,8 @@ class BonePass {
         for (const uint32_t step : bone.leaf_steps()) changed_.push_back(LeafId(leaf += step));
         leaf = 0;
         for (const uint32_t step : bone.as_scanned_steps()) changed_.push_back(LeafId(leaf += step));
+        if ((leaf_count_ += size_t(bone.leaf_steps_size() + bone.as_scanned_steps_size())) > kMostLeafHashes)
+            throw UserError("the journal has more leaves of bone than can be compared; it is damaged");
         if (bone.goes_on()) return;
         if (bone.kind() != journal::Bone::OTHER) leaves_.emplace(bone.tick(), hashesOfChanged());
         changed_.clear();
@@ -88,6 +94,7 @@ class BonePass {
     ScannedBone scanned_;
     BoneStateReader states_;
     std::vector<LeafId> changed_;
+    size_t leaf_count_ = 0;
     std::multimap<uint64_t, LeafHashes> leaves_;
 };
 
@@ -106,6 +113,8 @@ class BitComparison {
             poses_.emplace_back(message.time_ns, parsed<foxglove::PoseInFrame>(message));
         if (topic == JournalTopic::kWrench)
             wrenches_.emplace_back(message.time_ns, parsed<journal::WrenchInFrame>(message));
+        if (poses_.size() > kMostWaitingPoses) poses_.pop_front();
+        if (wrenches_.size() > kMostWaitingPoses) wrenches_.pop_front();
     }
 
   private:
@@ -201,7 +210,7 @@ std::string notWhole(const JournalContent& content) {
 
 }  // namespace
 
-std::vector<std::string> reasonsAgainstSameBits(const journal::Manifest& manifest, const LoadedScene& scene,
+std::vector<std::string> reasonsAgainstSameBits(const journal::Manifest& manifest,
                                                 const std::string& version) {
     std::vector<std::string> reasons;
     const journal::Build now = buildFacts(version);
@@ -210,7 +219,6 @@ std::vector<std::string> reasonsAgainstSameBits(const journal::Manifest& manifes
     };
     compare("the program", manifest.build().version(), now.version());
     compare("its compiler", manifest.build().compiler(), now.compiler());
-    for (std::string& changed : changedFiles(manifest, scene)) reasons.push_back(std::move(changed));
     return reasons;
 }
 
@@ -218,11 +226,17 @@ JournalVerdict verifyJournal(const std::filesystem::path& path, const std::strin
     JournalVerdict verdict;
     const Recording recording(path);
     verdict.not_whole = notWhole(recording.content());
-    const LoadedScene scene = recordedScene(recording.manifest(), path.string());
-    verdict.reasons = reasonsAgainstSameBits(recording.manifest(), scene, version);
+    const LoadedScene scene = recording.scene();
+    verdict.reasons = reasonsAgainstSameBits(recording.manifest(), version);
     Simulation simulation = makeSimulation(scene);
     BonePass states(*simulation.bone);
-    readJournal(path, [&](JournalTopic topic, const mcap::Message& message) { states.take(topic, message); });
+    ChainCheck chain;
+    readJournal(path, [&](JournalTopic topic, const mcap::Message& message) {
+        states.take(topic, message);
+        chain.take(topic, message);
+    });
+    verdict.is_chain_broken = chain.isBroken();
+    verdict.chain = chain.text();
     const Recording::Bones bones = recording.readBones(*simulation.bone);
     Rerun rerun(recording, simulation, bones.checkpoints, *simulation.bone, bones.keyframes.front());
     BitComparison comparison(rerun, *simulation.bone, recordedEffectsOf(scene.scene.effects()), states,
@@ -247,6 +261,7 @@ std::string JournalVerdict::text() const {
     text += fmt::format("\nlargest deviation: {:.3g} um of the tool, {:.3g} N on the hand",
                         position / kMicrometre, force);
     for (const std::string& reason : reasons) text += "\n" + reason;
+    text += "\nthe chain: " + chain;
     if (!not_whole.empty()) text += "\nthe journal: " + not_whole;
     return text + "\n";
 }

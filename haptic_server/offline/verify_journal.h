@@ -6,14 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "common/config/scene_file.h"
 #include "proto/journal.pb.h"
 
 namespace bonemill {
 
-// What keeps this program from promising the same bits: another build, another file. For people; empty:
-// nothing.
-std::vector<std::string> reasonsAgainstSameBits(const journal::Manifest& manifest, const LoadedScene& scene,
+// What keeps this program from promising the same bits: it is another build. For people; empty: nothing.
+std::vector<std::string> reasonsAgainstSameBits(const journal::Manifest& manifest,
                                                 const std::string& version);
 
 struct JournalVerdict {
@@ -27,13 +25,15 @@ struct JournalVerdict {
     double force = 0;                  // N
     std::vector<std::string> reasons;  // as above: then this is a comparison, no proof
     std::string not_whole;             // what the journal lacks, for people; empty: nothing
+    bool is_chain_broken = false;
+    std::string chain;  // of the journal's messages, for people
 
-    bool isProven() const noexcept { return ticks > 0 && is_same && reasons.empty(); }
+    bool isProven() const noexcept { return ticks > 0 && is_same && reasons.empty() && !is_chain_broken; }
     std::string text() const;  // for people: some lines
 };
 
 // `version` is what this program's --version prints. Throws UserError if it is no journal, or its scene
-// cannot be loaded.
+// cannot be loaded, or reads a file that is another one now.
 JournalVerdict verifyJournal(const std::filesystem::path& path, const std::string& version);
 
 }  // namespace bonemill

@@ -94,7 +94,7 @@ class ReplayServer {
             spdlog::warn("the recording is incomplete from tick {} on: {}", content.incomplete_from,
                          content.incomplete);
         if (!bones_.problem.empty()) spdlog::warn("{}", bones_.problem);
-        for (const std::string& reason : reasonsAgainstSameBits(recording_.manifest(), scene_, version))
+        for (const std::string& reason : reasonsAgainstSameBits(recording_.manifest(), version))
             spdlog::warn("the replay may differ in the last bits: {}", reason);
         for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
     }

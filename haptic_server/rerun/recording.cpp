@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <unordered_set>
+#include <utility>
 
 #include "common/rt/clock.h"
 #include "common/user_error.h"
@@ -14,6 +16,34 @@ namespace {
 
 // Of the states of the bone a replay needs one in so long.
 constexpr double kKeyframesApartS = 1;
+
+// Counts what states of the bone take in memory: leaves that a state shares with the one before count once.
+class KeptBones {
+  public:
+    KeptBones(const std::filesystem::path& journal, size_t most_bytes)
+        : journal_(journal), most_bytes_(most_bytes) {}
+
+    void keep(const BoneSnapshot& state) {
+        std::unordered_set<const LeafCopy*> leaves;
+        for (const auto& leaf : state.leaves) {
+            leaves.insert(leaf.get());
+            bytes_ += sizeof leaf;
+            if (!before_.contains(leaf.get()))
+                bytes_ += sizeof *leaf + leaf->densities.size() * sizeof(Density);
+        }
+        before_ = std::move(leaves);
+        if (bytes_ > most_bytes_)
+            throw UserError(
+                journal_.string() +
+                ": has more states of the bone than can be kept in memory; it is damaged or forged");
+    }
+
+  private:
+    const std::filesystem::path& journal_;
+    const size_t most_bytes_;
+    size_t bytes_ = 0;
+    std::unordered_set<const LeafCopy*> before_;
+};
 
 bool isSame(const DeviceReport& a, const DeviceReport& b) {
     return a.state == b.state && a.stop_cause == b.stop_cause;
@@ -93,7 +123,7 @@ LoadedScene Recording::scene() const {
     const std::vector<std::string> changed = changedFiles(manifest(), scene);
     if (!changed.empty())
         throw UserError(path_.string() + ": " + changed.front() +
-                        "; put the one that was milled there again, as `session verify` would want it, too");
+                        "; put the one that was milled there again");
     return scene;
 }
 
@@ -111,8 +141,9 @@ void Recording::requireTargets(const Bones& bones) const {
     }
 }
 
-Recording::Bones Recording::readBones(const BoneModel& bone) const {
+Recording::Bones Recording::readBones(const BoneModel& bone, size_t most_bytes) const {
     Bones bones;
+    KeptBones kept(path_, most_bytes);
     BoneStateReader reader({bone.volume, bone.lattice});
     const bool is_resumed = manifest().has_resumed_from();
     if (!is_resumed) bones.keyframes.push_back({0, nullptr});
@@ -126,11 +157,15 @@ Recording::Bones Recording::readBones(const BoneModel& bone) const {
             return;
         }
         if (!reader.isComplete()) return;
-        if (state.checkpoint() != 0) bones.checkpoints[state.checkpoint()] = reader.state();
+        if (state.checkpoint() != 0) {
+            kept.keep(*reader.state());
+            bones.checkpoints[state.checkpoint()] = reader.state();
+        }
         if (state.kind() == journal::Bone::OTHER || state.tick() >= ticks()) return;
         const Keyframe keyframe{is_resumed && bones.keyframes.empty() ? 0 : state.tick(), reader.state()};
-        if (bones.keyframes.empty() || keyframe.tick >= bones.keyframes.back().tick + apart)
-            bones.keyframes.push_back(keyframe);
+        if (!bones.keyframes.empty() && keyframe.tick < bones.keyframes.back().tick + apart) return;
+        kept.keep(*reader.state());
+        bones.keyframes.push_back(keyframe);
     });
     if (bones.keyframes.empty())
         throw UserError(

@@ -70,6 +70,7 @@ void Rerun::makeTick() {
     bone_order_ = next_ == 0 ? 0 : ticks_.at(next_ - 1).input.decisions.bone_order;
     if (next_ == 0 && !recording_.content().put_backs.contains(first.bone_order))
         bone_order_ = first.bone_order;
+    done_order_ = bone_order_;
     is_device_told_ = false;
     tick_ = std::make_unique<HapticTick>(config_, TickBone{bone_, &history_}, TickChoices{tools_, accuracy_});
 }
@@ -105,6 +106,8 @@ const TickRecord& Rerun::step() {
     const bool was_restoring = history_.isRestoring();
     Io io(tick, device, record_);
     tick_->tick(io);
+    if (!history_.isRestoring()) done_order_ = bone_order_;
+    record_.bone_order = done_order_;
     is_put_back_ = was_restoring;
     ++next_;
     return record_;

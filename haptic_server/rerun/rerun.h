@@ -30,7 +30,8 @@ class Rerun {
     uint64_t next() const noexcept { return next_; }
     uint64_t end() const noexcept { return recording_.ticks(); }
     bool isAtEnd() const noexcept { return next_ == end(); }
-    // Runs the next tick, which there is. The record is good until the next call; its start_ns is now.
+    // Runs the next tick, which there is. The record is good until the next call; its start_ns is now, and
+    // its bone_order is the recording's.
     const TickRecord& step();
     // An order of the recording has put the bone back, or has begun to, in the last step.
     bool isBonePutBack() const noexcept { return is_put_back_; }
@@ -59,6 +60,7 @@ class Rerun {
     TickRecord record_{};
     uint64_t next_ = 0;
     uint64_t bone_order_ = 0;  // of the recording, given last
+    uint64_t done_order_ = 0;  // of the recording, whose bone is there
     bool is_put_back_ = false;
     bool is_device_told_ = false;  // to tick_
 };

@@ -314,6 +314,7 @@ bool SceneRun::writeFiles() {
     if (!recorder_.finish()) files.note(traceProblem());
     if (journal_ && !journal_->problem().empty())
         files.note(journal_->path().string() + ": the recording is incomplete: " + journal_->problem());
+    if (journal_) spdlog::info("the recording's chain ends with {}", journal_->lastLink());
     tellOfDevice();
     const RunStatistics& statistics = recorder_.statistics();
     logClosing(statistics);

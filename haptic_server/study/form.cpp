@@ -7,9 +7,9 @@
 #include <iterator>
 #include <set>
 
+#include "common/digest/sha256.h"
 #include "common/require_file.h"
 #include "common/user_error.h"
-#include "haptic_server/study/digest.h"
 
 namespace bonemill::study {
 namespace {
@@ -142,7 +142,7 @@ Form parseForm(const std::string& text, const std::string& file) {
     form.source = json.textOr("source", "");
     form.instructions = json.textOr("instructions", "");
     form.scoring = scoringOf(json);
-    form.digest = sha256Of(text);
+    form.digest = sha256OfText(text);
     std::set<std::string> ids;
     for (const JsonObject& entry : json.objects("blocks", 1, kMostBlocks)) {
         entry.allowOnly({"id", "title", "items"});

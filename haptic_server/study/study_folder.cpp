@@ -11,10 +11,10 @@
 #include <fstream>
 #include <iterator>
 
+#include "common/digest/sha256.h"
 #include "common/private_file.h"
 #include "common/require_file.h"
 #include "common/user_error.h"
-#include "haptic_server/study/digest.h"
 #include "haptic_server/study/shipped_files.h"
 
 namespace bonemill::study {
@@ -70,7 +70,7 @@ StudyFolder::StudyFolder(const fs::path& folder) : path_(folder) {
                         folder.string());
     const std::string text = textOf(folder / "protocol.json");
     protocol_ = parseProtocol(text, (folder / "protocol.json").string());
-    protocol_digest_ = sha256Of(text);
+    protocol_digest_ = sha256OfText(text);
     for (const std::string& id : protocol_.formIds()) {
         const fs::path file = folder / "forms" / (id + ".json");
         Form form = readForm(file);

@@ -1,14 +1,15 @@
 #include "haptic_server/study/app/commands.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
 
 #include "common/cli/version.h"
+#include "common/digest/sha256.h"
 #include "common/private_file.h"
 #include "common/user_error.h"
-#include "haptic_server/study/digest.h"
 #include "haptic_server/study/form_page.h"
 #include "haptic_server/study/report/agreement.h"
 #include "haptic_server/study/report/report.h"
@@ -153,10 +154,10 @@ int attach(const Options& options) {
     RunRecord run;
     run.session = options.session;
     run.scene = options.scene.empty() && task ? task->scene : options.scene;
-    run.scene_sha256 = sha256OfFile(run.scene);
-    if (run.scene_sha256.empty())
+    if (!std::filesystem::is_regular_file(run.scene))
         throw UserError("the scene file \"" + run.scene +
                         "\" cannot be read from here; name it with --scene");
+    run.scene_sha256 = sha256OfFile(run.scene);
     run.programs = programVersion();
     run.recording = std::filesystem::path(options.recording).filename().string();
     if (!options.report.empty()) run.figures = figuresOfReport(options.report);

@@ -261,18 +261,20 @@ TEST_F(Recording, VerifyFindsTheTickThatDiffers) {
     test::writeFile(bad, writer.take());
     const Finished verdict = verify(bad);
     EXPECT_EQ(verdict.exit_code, 1);
+    EXPECT_NE(verdict.out.find("the chain: broken between 1."), std::string::npos) << verdict.out;
     EXPECT_NE(verdict.out.find("differs from tick 1234 "), std::string::npos) << verdict.out;
     EXPECT_NE(verdict.out.find("the hand's pose"), std::string::npos) << verdict.out;
 
-    // The volume is another file, with the same name: no promise is made.
+    EXPECT_NE(verify(good).out.find("the chain: unbroken"), std::string::npos);
+
+    // The volume is another file, with the same name: it is not read.
     const std::string volume = folder_ / "block.nrrd";
     std::string bytes = test::readFile(volume);
     bytes.back() = char(bytes.back() ^ 1);
     test::writeFile(volume, bytes);
     const Finished other = verify(good);
-    EXPECT_EQ(other.exit_code, 1);
-    EXPECT_NE(other.out.find("approximate"), std::string::npos) << other.out;
-    EXPECT_NE(other.out.find("block.nrrd"), std::string::npos) << other.out;
+    EXPECT_EQ(other.exit_code, 2);
+    EXPECT_NE(other.err.find("block.nrrd is another file now"), std::string::npos) << other.err;
 }
 
 TEST_F(Recording, AKilledSessionGoesOnWithItsBone) {

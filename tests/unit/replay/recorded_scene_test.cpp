@@ -66,6 +66,13 @@ TEST_F(RecordedScene, ABoneThatIsNotThereIsNotTheScans) {
     EXPECT_NE(refusal().find("what the journal does not say"), std::string::npos) << refusal();
 }
 
+TEST_F(RecordedScene, ItsBonesTakeNoMoreMemoryThanTheyMay) {
+    const Recording recording(session_.journal);
+    const Simulation simulation = makeSimulation(recording.scene());
+    EXPECT_NO_THROW(recording.readBones(*simulation.bone, 1'000'000));
+    EXPECT_THROW(recording.readBones(*simulation.bone, 1'000), UserError);
+}
+
 TEST_F(RecordedScene, NobodyGoesOnWithAnotherVolume) {
     const Recording recording(session_.journal);
     const LoadedScene scene = recording.scene();
