@@ -71,7 +71,7 @@ void PanelContent::sendNote() {
             for (const double value : *remark_draft_.place) remark.add_points_m(float(value));
         send(command);
     }
-    remark_draft_ = {.leaves_keyboard = true};
+    remark_draft_ = {.place = {}, .leaves_keyboard = true};
 }
 
 void PanelContent::buildRemark(const topics::Remark& remark) {

@@ -141,7 +141,9 @@ class Recording : public testing::Test {
         EXPECT_TRUE(hasTicked(0.3));
         EXPECT_EQ(order([](C& c) { c.set_save_checkpoint(true); }), "done");
         order([](C& c) { c.set_set_accuracy("scene"); });
-        if (tool == "done") EXPECT_EQ(order([](C& c) { c.set_select_tool(0); }), "done");
+        if (tool == "done") {
+            EXPECT_EQ(order([](C& c) { c.set_select_tool(0); }), "done");
+        }
         EXPECT_EQ(order([](C& c) { c.set_start_attempt("Ann"); }), "done");
         EXPECT_TRUE(hasTicked(1));
         EXPECT_EQ(order([](C& c) { c.set_stop_attempt(true); }), "done");

@@ -33,7 +33,7 @@ inline std::vector<TickRecord> recordedTicks(size_t count, unsigned seed = 1) {
         for (int part = 0; part < 4; ++part) input.q_WT[part] = q[part] / norm;
         input.stale_factor = n % 97 == 0 ? 0.25 : 1;
         input.placements = uint32_t(n / 300);
-        input.faults = n % 101 == 0 ? kFaultEarlySamples : 0;
+        input.faults = n % 101 == 0 ? uint32_t(kFaultEarlySamples) : 0;
         input.periods = n % 89 == 0 ? 3 : 1;
         input.is_repeated = n % 89 == 0;
         input.is_stale = n % 97 == 0;
