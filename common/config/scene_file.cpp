@@ -84,6 +84,7 @@ std::vector<NamedFile> filesOf(const LoadedScene& loaded) {
     addVolume("volume.label_path", loaded.scene.volume().label_path());
     for (const scene::Tool& tool : loaded.scene.tool()) add("tool.mesh_path", tool.mesh_path());
     addVolume("assessment.reference.volume_path", loaded.scene.assessment().reference().volume_path());
+    add("assessment.expert_path", loaded.scene.assessment().expert_path());
     return files;
 }
 

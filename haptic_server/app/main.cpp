@@ -129,6 +129,10 @@ void addExportOptions(CLI::App& app, ExportOptions& files) {
     app.add_option("--h5", files.h5, "write everything as HDF5, with units (docs/replay.md)");
     app.add_option("--csv", files.csv, "write one CSV line per tick, as --trace does");
     app.add_option("--traj", files.traj, "write what went in, for simulate --trajectory");
+    app.add_option("--tool-path", files.tool_path,
+                   "write the tool's way in an attempt, for a scene's assessment.expert_path");
+    app.add_option("--attempt", files.attempt, "of --tool-path: its number, from 1; 0: the last one")
+        ->check(within(0, 100000));
 }
 
 void addReportOptions(CLI::App& app, AccuracyReportOptions& report) {

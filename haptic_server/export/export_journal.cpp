@@ -13,6 +13,7 @@
 #include "haptic_server/export/eye_table.h"
 #include "haptic_server/export/h5_file.h"
 #include "haptic_server/export/tick_table.h"
+#include "haptic_server/export/tool_path.h"
 #include "haptic_server/export/trajectory_writer.h"
 #include "haptic_server/record/trace_writer.h"
 #include "haptic_server/replay/replay_events.h"
@@ -97,8 +98,8 @@ class CsvExport {
 };
 
 void requireSomething(const ExportOptions& options) {
-    if (options.h5.empty() && options.csv.empty() && options.traj.empty())
-        throw UserError("nothing to export: name a file with --h5, --csv or --traj");
+    if (options.h5.empty() && options.csv.empty() && options.traj.empty() && options.tool_path.empty())
+        throw UserError("nothing to export: name a file with --h5, --csv, --traj or --tool-path");
 }
 
 }  // namespace
@@ -109,29 +110,39 @@ void exportJournal(const ExportOptions& options) {
     const LoadedScene scene = recording.scene();
     std::vector<NamedFile> read = filesOf(scene);
     read.push_back({"the journal", options.journal});
-    requireApart({{"--h5", options.h5}, {"--csv", options.csv}, {"--traj", options.traj}}, read);
+    requireApart({{"--h5", options.h5},
+                  {"--csv", options.csv},
+                  {"--traj", options.traj},
+                  {"--tool-path", options.tool_path}},
+                 read);
     if (!recording.content().incomplete.empty())
         spdlog::warn("the recording is incomplete from tick {} on: {}", recording.content().incomplete_from,
                      recording.content().incomplete);
     if (!options.traj.empty()) writeTrajectory(options.traj, recording);
-    if (options.h5.empty() && options.csv.empty()) return;
+    if (options.h5.empty() && options.csv.empty() && options.tool_path.empty()) return;
 
     Simulation simulation = makeSimulation(scene);
     const Recording::Bones bones = recording.readBones(*simulation.bone);
     const RecordedEffects recorded = recordedEffectsOf(scene.scene.effects());
     std::optional<H5Export> h5;
     std::optional<CsvExport> csv;
+    std::optional<ToolPathExport> tool_path;
     if (!options.h5.empty()) h5.emplace(options.h5, recording, recorded);
     if (!options.csv.empty()) csv.emplace(options.csv, recorded);
+    if (!options.tool_path.empty()) tool_path.emplace(options.tool_path, recording, options.attempt);
+    RecordedTicks ticks(recording);
     ReplayEvents events(recording);
     Rerun rerun(recording, simulation, bones.checkpoints, *simulation.bone, bones.keyframes.front());
     while (!rerun.isAtEnd()) {
+        const bool is_paused = tool_path && ticks.at(rerun.next()).input.decisions.is_milling_paused;
         const TickRecord& record = rerun.step();
+        if (tool_path) tool_path->add(record, is_paused);
         if (h5) h5->add(record, events);
         if (csv) csv->add(record);
     }
     if (h5) h5->finish(events);
     if (csv) csv->finish();
+    if (tool_path) tool_path->finish();
 }
 
 }  // namespace bonemill

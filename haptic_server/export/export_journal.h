@@ -10,8 +10,10 @@ struct ExportOptions {
     std::string journal;
     // Files to write; empty: none.
     std::string h5;
-    std::string csv;   // as --trace of a session
-    std::string traj;  // what went in, for `simulate`
+    std::string csv;          // as --trace of a session
+    std::string traj;         // what went in, for `simulate`
+    std::string tool_path{};  // the tool's way in an attempt, for a scene's expert_path
+    int attempt = 0;          // of that one, from 1; 0: the last
 };
 
 // Each file is whole or not there. Throws UserError: no journal, nothing to write, a file that cannot be

@@ -11,11 +11,11 @@ namespace bonemill {
 struct SimulateOptions {
     std::string scene;
     std::string trajectory;
-    std::string tool;       // name or number from 1; empty: the first
-    std::string trace;      // empty: none
-    std::string deviation;  // picture of what was cut too far and not far enough (.png); empty: none
+    std::string tool;         // name or number from 1; empty: the first
+    std::string trace;        // empty: none
+    std::string deviation{};  // picture of what was cut too far and not far enough (.png); empty: none
     SavePaths save;
-    std::string assess;  // folder for results and report, as beside a class table; empty: none
+    std::string assess{};  // folder for results and report, as beside a class table; empty: none
     std::string pseudonym = "simulated";  // whose they are
 };
 

@@ -181,9 +181,16 @@ bool Publisher::publishStructure(const NodeMesh& mesh, double warning_distance_m
     return writeMessage(structure_writer_, sample, structure);
 }
 
-bool Publisher::publishToolState(const TickRecord& record, std::optional<topics::EffectState> effects) {
+bool Publisher::publishToolState(const TickRecord& record, std::optional<topics::EffectState> effects,
+                                 const std::optional<Pose>& X_WT_expert) {
     topics::ToolState state = toolState(record, epoch_);
     if (effects) *state.mutable_effects() = std::move(*effects);
+    if (X_WT_expert) {
+        const Eigen::Vector3d& p = X_WT_expert->position;
+        const Eigen::Quaterniond& q = X_WT_expert->rotation;
+        state.mutable_p_wt_expert_m()->Assign(p.data(), p.data() + 3);
+        for (const double part : {q.w(), q.x(), q.y(), q.z()}) state.add_q_wt_expert(part);
+    }
     return writeMessage(tool_state_writer_, session_, state);
 }
 

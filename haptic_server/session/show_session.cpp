@@ -242,8 +242,15 @@ void ShowSession::publishToolState(int64_t now_ns) {
     if (!since) return;
     std::optional<topics::EffectState> effects;
     if (effects_.areShown()) effects = effects_.at(since->latest.effects, since->events, since->removed);
-    publisher_.publishToolState(since->latest, std::move(effects));
+    publisher_.publishToolState(since->latest, std::move(effects), expertNow());
     last_tool_state_ns_ = now_ns;
+}
+
+// During an attempt, where the expert was at that time of it.
+std::optional<Pose> ShowSession::expertNow() const {
+    const JudgedTask* const task = task_.task();
+    if (!task || !task->expert || !commands_.attempts().isRunning()) return std::nullopt;
+    return task->expert->at(commands_.attempts().timeS());
 }
 
 // Nodes nearest to the burr go first, as many as the budget allows.

@@ -53,6 +53,7 @@ class ShowSession {
     void publishStructures();
     void publishDensities();
     void publishToolState(int64_t now_ns);
+    std::optional<Pose> expertNow() const;
     void publishStatus();
     void publishSceneInfo();
     void publishLesson();

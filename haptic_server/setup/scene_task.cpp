@@ -6,6 +6,7 @@
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/record/hex_text.h"
+#include "haptic_server/record/trajectory_reader.h"
 #include "haptic_server/setup/zone_shapes.h"
 #include "haptic_server/volume/import/import_volume.h"
 
@@ -31,6 +32,7 @@ class TaskReader {
         readReference();
         readStructures();
         readRules();
+        readExpert();
         const Pose X_VW = scanned_.geometry().X_WV.inverse();
         if (message_.has_approach())
             task_->approach_V = (X_VW.rotation * vectorOf(message_.approach())).normalized();
@@ -183,6 +185,19 @@ class TaskReader {
         task_->most_attempts = int(message_.most_attempts());
         task_->is_exam = message_.exam();
         task_->feedback = message_.exam() ? TaskFeedback::kNever : TaskFeedback(message_.feedback());
+    }
+
+    void readExpert() {
+        if (message_.expert_path().empty()) return;
+        std::vector<ExpertPath::Point> points;
+        try {
+            for (const TrajectoryRow& row :
+                 readTrajectory(resolvePath(loaded_, message_.expert_path()).string()))
+                points.push_back({row.t_s, {row.X_WT.position, row.X_WT.rotation.normalized()}});
+        } catch (const UserError& error) {
+            refuseTask("assessment.expert_path", std::string(": ") + error.what());
+        }
+        if (!message_.exam()) task_->expert = std::make_shared<const ExpertPath>(std::move(points));
     }
 
     uint64_t rulesHash() const {

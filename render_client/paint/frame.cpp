@@ -93,8 +93,15 @@ namespace {
 bool showsTool(const FrameView& view, const Eigen::AlignedBox3f& tool_T) {
     return view.X_WT && !tool_T.isEmpty();
 }
-bool showsGhost(const FrameView& view, const Eigen::AlignedBox3f& tool_T) {
-    return showsTool(view, tool_T) && view.X_WT_device && isGhostVisible(*view.X_WT, *view.X_WT_device);
+// The hand's is blue, an expert's is amber.
+std::vector<std::pair<Pose, Eigen::Vector3f>> ghostsOf(const FrameView& view,
+                                                       const Eigen::AlignedBox3f& tool_T) {
+    std::vector<std::pair<Pose, Eigen::Vector3f>> ghosts;
+    if (!showsTool(view, tool_T)) return ghosts;
+    if (view.X_WT_device && isGhostVisible(*view.X_WT, *view.X_WT_device))
+        ghosts.emplace_back(*view.X_WT_device, Eigen::Vector3f(0.35f, 0.80f, 1.0f));
+    if (view.X_WT_expert) ghosts.emplace_back(*view.X_WT_expert, Eigen::Vector3f(1.0f, 0.55f, 0.08f));
+    return ghosts;
 }
 // The shaft is as thick as the tool's box is aside, at most as the burr.
 ToolShadow shadowOf(const FrameView& view, const Eigen::Matrix4f& X_CT, const Eigen::AlignedBox3f& tool_T) {
@@ -130,7 +137,7 @@ DepthRange Frame::neededRange(const FrameView& view, const Eigen::AlignedBox3f& 
     Eigen::AlignedBox3d everything_W = boneIn(view);
     extendBy(everything_W, view.X_WV, view.structures_V);
     if (showsTool(view, tool_T)) extendBy(everything_W, *view.X_WT, tool_T);
-    if (showsGhost(view, tool_T)) extendBy(everything_W, *view.X_WT_device, tool_T);
+    for (const auto& [X_WT, colour] : ghostsOf(view, tool_T)) extendBy(everything_W, X_WT, tool_T);
     const Sphere all = around(everything_W);
     return view.camera.depthRange(all.center, std::max(all.radius, kSmallestScene) * 1.01);
 }
@@ -146,7 +153,8 @@ Frame Frame::make(const FrameView& view, const Eigen::AlignedBox3f& tool_T, doub
     frame.cull_from_V = frame.clip_from_camera * frame.X_CV;
     frame.has_shadow = view.quality == Quality::kFull;
     if (showsTool(view, tool_T)) frame.X_CT = X_CW * matrixOf(*view.X_WT);
-    if (showsGhost(view, tool_T)) frame.X_CT_device = X_CW * matrixOf(*view.X_WT_device);
+    for (const auto& [X_WT, colour] : ghostsOf(view, tool_T))
+        frame.ghosts.push_back({X_CW * matrixOf(X_WT), colour});
     frame.near_far = Eigen::Vector2d(range.near, range.far).cast<float>();
     const double tangent = camera.halfTangent();
     frame.tangents = Eigen::Vector2d(tangent * aspect, tangent).cast<float>();

@@ -65,6 +65,7 @@ struct FrameView {
     double burr_radius = 0;
     std::optional<Pose> X_WT;              // the simulated tool (SPO)
     std::optional<Pose> X_WT_device;       // where the hand is; drawn when it differs visibly
+    std::optional<Pose> X_WT_expert;       // where an expert's tool was
     std::optional<Eigen::Vector3d> f_T_W;  // the arrow's force, N
     std::optional<Pull> pull;              // of a mouse that holds the tool
     std::optional<BurrGap> gap;            // likewise
@@ -104,11 +105,17 @@ struct ToolShadow {
     Eigen::AlignedBox3f box(const Eigen::Vector3f& key_direction) const;
 };
 
+// The tool's outline where it is not.
+struct Ghost {
+    Eigen::Matrix4f X_CT;
+    Eigen::Vector3f colour;  // linear
+};
+
 struct Frame {
     Eigen::Matrix4f X_CV;
     Eigen::Matrix4f clip_from_camera;
     std::optional<Eigen::Matrix4f> X_CT;
-    std::optional<Eigen::Matrix4f> X_CT_device;
+    std::vector<Ghost> ghosts;
     KeyLight key;
     Eigen::Vector2f near_far;
     Eigen::Vector2f tangents;  // of half the field of view

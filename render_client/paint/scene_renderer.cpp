@@ -98,7 +98,7 @@ void SceneRenderer::drawFull(const Frame& frame, const FrameView& view, const No
 // Draws what comes over bone and tool; the depth stays as it is.
 void SceneRenderer::drawOver(const Frame& frame, const FrameView& view, const ToolMesh& tool) {
     drawParticles(frame, view);
-    tool_.drawGhost(frame, tool);
+    tool_.drawGhosts(frame, tool);
     drawn_.draw(frame, view);
     markers_.draw(frame, view);
 }
@@ -204,7 +204,7 @@ PixelBox SceneRenderer::movingPixels(const Frame& frame, const FrameView& view, 
                                  Eigen::Matrix4f::Identity()));
     if (frame.tool_shadow) moving = moving.joined(shadowPixels(frame));
     if (frame.X_CT) moving = moving.joined(pixels(tool.box(view.shows_handpiece), *frame.X_CT));
-    if (frame.X_CT_device) moving = moving.joined(pixels(tool.box(), *frame.X_CT_device));
+    for (const Ghost& ghost : frame.ghosts) moving = moving.joined(pixels(tool.box(), ghost.X_CT));
     return moving;
 }
 
@@ -218,10 +218,9 @@ std::vector<float> SceneRenderer::stillLike(const Frame& frame, const FrameView&
         const auto f = matrix.template cast<float>().eval();
         numbers.insert(numbers.end(), f.data(), f.data() + f.size());
     };
-    for (const auto& pose : {frame.X_CT, frame.X_CT_device}) {
-        numbers.push_back(float(pose.has_value()));
-        if (pose) append(*pose);
-    }
+    numbers.push_back(float(frame.X_CT.has_value()));
+    if (frame.X_CT) append(*frame.X_CT);
+    for (const Ghost& ghost : frame.ghosts) append(ghost.X_CT), append(ghost.colour);
     append(view.f_T_W.value_or(Eigen::Vector3d::Zero()));
     if (view.pull) append(view.pull->wish_W);
     if (view.pull) numbers.push_back(float(view.pull->newtons));

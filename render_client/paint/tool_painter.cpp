@@ -52,25 +52,28 @@ void ToolPainter::drawTool(const Frame& frame, const FrameView& view, const Tool
     tool.draw(view.shows_handpiece);
 }
 
-// The ghost is seen through the bone too, but fainter there: the hand usually is inside when the tool is
+// Ghosts are seen through the bone too, but fainter there: the hand usually is inside when the tool is
 // stopped at the surface.
-void ToolPainter::drawGhost(const Frame& frame, const ToolMesh& tool) const {
-    if (!frame.X_CT_device) return;
+void ToolPainter::drawGhosts(const Frame& frame, const ToolMesh& tool) const {
+    if (frame.ghosts.empty()) return;
     gl_.Enable(GL_BLEND);
     gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     gl_.Enable(GL_CULL_FACE);
     gl_.DepthMask(GL_FALSE);
     ghost_.use();
-    ghost_.set("camera_from_model", *frame.X_CT_device);
     ghost_.set("clip_from_camera", frame.clip_from_camera);
     constexpr struct {
         GLenum depth_test;
         float strength;
     } kPasses[] = {{GL_GREATER, 0.6f}, {GL_LEQUAL, 0.8f}};
-    for (const auto& pass : kPasses) {
-        gl_.DepthFunc(pass.depth_test);
-        ghost_.set("strength", pass.strength);
-        tool.draw();
+    for (const Ghost& ghost : frame.ghosts) {
+        ghost_.set("camera_from_model", ghost.X_CT);
+        ghost_.set("tint", ghost.colour);
+        for (const auto& pass : kPasses) {
+            gl_.DepthFunc(pass.depth_test);
+            ghost_.set("strength", pass.strength);
+            tool.draw();
+        }
     }
     gl_.DepthFunc(GL_LESS);
     gl_.DepthMask(GL_TRUE);

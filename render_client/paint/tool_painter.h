@@ -1,4 +1,4 @@
-// Draws the tool, and the ghost of where the hand holds it.
+// Draws the tool, and the ghosts of where the hand and an expert hold it.
 //
 // It belongs to the thread of the context.
 #pragma once
@@ -23,7 +23,7 @@ class ToolPainter {
     void drawTool(const Frame& frame, const FrameView& view, const ToolMesh& tool,
                   GLuint shadow_texture) const;
     // Draws over what is there and leaves the depth as it is.
-    void drawGhost(const Frame& frame, const ToolMesh& tool) const;
+    void drawGhosts(const Frame& frame, const ToolMesh& tool) const;
 
   private:
     const GlApi& gl_;

@@ -243,6 +243,7 @@ void RenderScene::showTool(FrameView& view) const {
     const topics::ToolState& tool = *hud_input_.tool;
     view.X_WT = readPose(tool.p_wt_m(), tool.q_wt());
     view.X_WT_device = readPose(tool.p_wt_device_m(), tool.q_wt_device());
+    view.X_WT_expert = readPose(tool.p_wt_expert_m(), tool.q_wt_expert());
     view.burr_work = burrWorkOf(tool);
     view.shows_handpiece = settings_.show_handpiece && settings_.quality == Quality::kFull;
     const auto force_W = readVector(tool.force_n());

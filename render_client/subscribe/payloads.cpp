@@ -110,9 +110,16 @@ bool isUsable(const topics::Replay& replay) {
            replay.speed() >= 0;
 }
 
+// Nothing, or a pose.
+bool isExpert(const topics::ToolState& state) {
+    return (state.p_wt_expert_m().empty() && state.q_wt_expert().empty()) ||
+           (isVector(state.p_wt_expert_m()) && isQuaternion(state.q_wt_expert()));
+}
+
 bool isUsable(const topics::ToolState& state) {
-    return isVector(state.p_wt_m()) && isQuaternion(state.q_wt()) && isVector(state.p_wt_device_m()) &&
-           isQuaternion(state.q_wt_device()) && isVector(state.force_n()) && isVector(state.torque_nm()) &&
+    return isExpert(state) && isVector(state.p_wt_m()) && isQuaternion(state.q_wt()) &&
+           isVector(state.p_wt_device_m()) && isQuaternion(state.q_wt_device()) &&
+           isVector(state.force_n()) && isVector(state.torque_nm()) &&
            std::isfinite(state.max_penetration_m()) && isTime(state.session_s()) && isUsable(state.effects());
 }
 

@@ -238,6 +238,29 @@ TEST_F(ScenePicture, TheGhostShowsOnlyADevicePoseThatDiffersVisibly) {
     EXPECT_GT(countDifferent(draw(), alone), 500u);
 }
 
+TEST_F(ScenePicture, AnExpertsGhostIsOfAnotherColourThanTheHands) {
+    topics::SceneInfo info = sphereInfo();
+    *info.mutable_tool() = makeToolMesh(1e-3, 5e-4, 0.02);
+    info.set_burr_radius_m(1e-3);
+    scene_->setSceneInfo(info);
+    Pose X_WT, other;
+    X_WT.position = other.position = kCenter;
+    other.position.x() += 3e-3;
+    scene_->setToolState(makeToolState(X_WT, other, 0));
+    const Picture with_hand = draw();
+    topics::ToolState with_expert = makeToolState(X_WT, X_WT, 0);
+    test::setVector(other.position, with_expert.mutable_p_wt_expert_m());
+    test::setQuaternion(other.rotation, with_expert.mutable_q_wt_expert());
+    scene_->setToolState(with_expert);
+    EXPECT_GT(countDifferent(draw(), with_hand), 500u);
+    scene_->setToolState(makeToolState(X_WT, X_WT, 0));
+    const Picture alone = draw();
+    EXPECT_GT(countDifferent(with_hand, alone), 500u);
+    with_expert.clear_p_wt_expert_m(), with_expert.clear_q_wt_expert();
+    scene_->setToolState(with_expert);
+    EXPECT_EQ(draw(), alone);
+}
+
 TEST_F(ScenePicture, HudTextChangesPixelsAndOnlyInItsPanel) {
     showSphere();
     const Picture bare = draw();

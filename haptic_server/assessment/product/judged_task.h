@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "haptic_server/assessment/expert_path.h"
 #include "haptic_server/assessment/product/zones.h"
 #include "haptic_server/volume/bone_properties.h"
 #include "haptic_server/volume/voxel_ids.h"
@@ -57,6 +58,7 @@ struct JudgedTask {
     int most_attempts = 0;    // 0: any number
     bool is_exam = false;
     TaskFeedback feedback = TaskFeedback::kAfterwards;
+    std::shared_ptr<const ExpertPath> expert;  // shown during attempts; null: none
 
     // Shall this voxel be gone?
     bool isIdeal(const Eigen::Vector3i& voxel) const noexcept {

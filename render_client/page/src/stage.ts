@@ -1,6 +1,6 @@
 // The picture: which view of the session is drawn, when, and what is under a place of it.
 import { angleBetween, cornersOf, norm, placed, sub, type Vec3 } from './math/linear';
-import type { FromLink, PlacedNode, StructureSurface } from './shared/messages';
+import type { FromLink, PlacedNode, StructureSurface, ToolView } from './shared/messages';
 import { Pace } from './pace';
 import type { Session } from './session';
 import type { Place, ToolHold } from './tool_hold';
@@ -8,14 +8,23 @@ import { Labels, type Label } from './ui/labels';
 import { workOf } from './ui/words';
 import { endoscopeCamera, Orbit, type Camera } from './view/camera';
 import { openCanvas } from './view/gl';
-import type { PictureView, Stroke } from './view/picture_view';
+import type { Ghost, PictureView, Stroke } from './view/picture_view';
 import { Renderer } from './view/renderer';
 import { linearColour, structureColour } from './view/structure_colours';
 import type { ViewSettings } from './view_settings';
 
 const kGhostDistance = 1.5e-4, kGhostAngle = 0.03;  // m, rad
+const kHandColour: Vec3 = [0.35, 0.8, 1], kExpertColour: Vec3 = [1, 0.55, 0.08];  // linear
 const kMostPixelRatio = 2;
 const kGlowSteps = 4;
+
+function ghostsOf({ X_WT, X_WT_device, X_WT_expert }: ToolView): Ghost[] {
+  const isHandSeen = norm(sub(X_WT.p, X_WT_device.p)) > kGhostDistance || angleBetween(X_WT.q, X_WT_device.q) > kGhostAngle;
+  return [
+    ...(isHandSeen ? [{ X_WT: X_WT_device, colour: kHandColour }] : []),
+    ...(X_WT_expert ? [{ X_WT: X_WT_expert, colour: kExpertColour }] : []),
+  ];
+}
 
 export class Stage {
   orbit = new Orbit();
@@ -155,8 +164,7 @@ export class Stage {
 
   private view(): PictureView {
     const { session, settings } = this, { scene, tool } = session;
-    const X_WT = tool?.X_WT, hand = tool?.X_WT_device;
-    const is_ghost_seen = X_WT && hand && (norm(sub(X_WT.p, hand.p)) > kGhostDistance || angleBetween(X_WT.q, hand.q) > kGhostAngle);
+    const X_WT = tool?.X_WT;
     const isEndoscope = settings.isEndoscope && tool !== undefined && scene !== undefined;
     return {
       camera: this.camera(),
@@ -165,7 +173,7 @@ export class Stage {
       bone_V: scene ? { low: scene.boneLow, high: scene.boneHigh } : { low: [-0.01, -0.01, -0.01], high: [0.01, 0.01, 0.01] },
       burrRadius: scene?.burrRadius ?? 0,
       X_WT: scene && X_WT,
-      X_WT_device: scene && is_ghost_seen ? hand : undefined,
+      ghosts: scene && tool ? ghostsOf(tool) : [],
       toolReach: this.renderer.toolPainter.reach,
       forceN: settings.showsForce ? tool?.forceN : undefined,
       wish: this.hold.isHolding ? this.hold.wish.p : undefined,

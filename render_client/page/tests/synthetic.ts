@@ -161,12 +161,13 @@ export function sceneInfo(): Sample {
 
 const kUpwards = [Math.SQRT1_2, Math.SQRT1_2, 0, 0];  // the shaft along +z
 
-export function toolState(tick: number): Sample {
+export function toolState(tick: number, expert?: { p: readonly number[]; q: readonly number[] }): Sample {
   const angle = tick / 700;
   return sample(Sample_Topic.TOOL_STATE, 0, toBinary(wire.ToolStateSchema, create(wire.ToolStateSchema, {
     epoch: kEpoch, tick: BigInt(tick), stampNs: 0n,
     pWTM: [0.004 * Math.sin(angle), -kRadius * 1.06, 0.004 * Math.cos(angle)], qWT: kUpwards,
     pWTDeviceM: [0.004 * Math.sin(angle), -kRadius * 1.03, 0.004 * Math.cos(angle)], qWTDevice: kUpwards,
+    pWTExpertM: [...(expert?.p ?? [])], qWTExpert: [...(expert?.q ?? [])],
     forceN: [0, -2.5, 0.4], torqueNm: [0, 0, 0], buttons: 1, deviceState: 4,
     effects: { spinSpeed: 2000, burrForceN: 2.5, cuttingPowerW: 3, protectedDistanceM: 0.0031, protectedId: 1, damagedMm3: 0 },
   })));

@@ -253,6 +253,12 @@ test('who holds the pedal while bone is put back is told to release it', () => {
   assert.deepEqual(conditions(session), []);
 });
 
+test('an expert is there or not', () => {
+  assert.equal(payloads.toolOf(synthetic.toolState(1).payload).X_WT_expert, undefined);
+  const X_WT = { p: [0.01, 0, 0] as const, q: [1, 0, 0, 0] as const };
+  assert.deepEqual(payloads.toolOf(synthetic.toolState(1, X_WT).payload).X_WT_expert, X_WT);
+});
+
 test('keys mean what they mean in the native viewer', () => {
   const press = (key: string, shiftKey = false) => actionOf({ key, shiftKey, ctrlKey: false, metaKey: false, altKey: false, repeat: false });
   assert.equal(press('x'), 'cutX');
@@ -278,7 +284,7 @@ function pictureView(): PictureView {
   const cut = () => ({ isOn: false, position: 0.5, isFlipped: false });
   return {
     camera: Orbit.of({ distance: 0, azimuth: 0.6, elevation: 0.4 }, linear.cornersOf(bone_V), 1.5).view(), isEndoscope: false,
-    X_WV: { p: [0.1, 0, 0], q: linear.unit([1, 0.2, 0, 0]) }, bone_V, burrRadius: 0.001, toolReach: 0, work: 'idle',
+    X_WV: { p: [0.1, 0, 0], q: linear.unit([1, 0.2, 0, 0]) }, bone_V, burrRadius: 0.001, toolReach: 0, work: 'idle', ghosts: [],
     cuts: [cut(), cut(), cut()], structures: [], structureMode: 'behind', pointers: [], strokes: [],
   };
 }

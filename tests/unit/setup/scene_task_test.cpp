@@ -49,6 +49,17 @@ class SceneTask : public testing::Test {
 // 10 x 10 x 4 voxels at the top, from x = 10 on, so that half of it is of the label.
 const std::string kBox = "shape { box { center_mm { x: 7.25 y: 4.75 z: 8.75 } size_mm { x: 5 y: 5 z: 2 } } }";
 
+TEST_F(SceneTask, AnExpertsPathIsShownButNotInAnExamination) {
+    std::ofstream(folder_ / "path.csv") << "t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons\n"
+                                           "0,0,0,0,1,0,0,0,0\n2,0.004,0,0,1,0,0,0,1\n";
+    const std::string scene = "zone { name: 'box' role: TARGET " + kBox + " } expert_path: 'path.csv' ";
+    ASSERT_TRUE(taskOf(scene)->expert);
+    EXPECT_NEAR(taskOf(scene)->expert->at(1)->position.x(), 0.002, 1e-15);
+    EXPECT_FALSE(taskOf(scene + "exam: true")->expert);
+    expectUserError([&] { taskOf("zone { name: 'box' role: TARGET " + kBox + " } expert_path: 'no.csv'"); },
+                    {"s.textproto:3", "assessment.expert_path", "no.csv"});
+}
+
 TEST_F(SceneTask, zonesComeFromShapesAndMaterialsAndLaterOnesWin) {
     const auto task = taskOf(
         "zone { name: 'all' role: CONTAINER_SIDES material: 'rest' }"

@@ -91,6 +91,12 @@ TEST(Payloads, ToolStateIsChecked) {
     not_unit.set_q_wt(0, 7);
     EXPECT_FALSE(isAccepted(&parseToolState, not_unit));
 
+    topics::ToolState expert = valid;
+    expert.mutable_p_wt_expert_m()->Resize(3, 0.5);
+    EXPECT_FALSE(isAccepted(&parseToolState, expert)) << "half a pose";
+    expert.mutable_q_wt_expert()->Resize(4, 0.5);
+    EXPECT_TRUE(isAccepted(&parseToolState, expert));
+
     topics::ToolState too_short = valid;
     too_short.mutable_q_wt_device()->RemoveLast();
     EXPECT_FALSE(isAccepted(&parseToolState, too_short));

@@ -103,6 +103,7 @@ export function toolOf(payload: Uint8Array): ToolView {
     tick: String(state.tick),
     X_WT: { p: vector(state.pWTM), q: quaternion(state.qWT) },
     X_WT_device: { p: vector(state.pWTDeviceM), q: quaternion(state.qWTDevice) },
+    X_WT_expert: state.pWTExpertM.length > 0 ? { p: vector(state.pWTExpertM), q: quaternion(state.qWTExpert) } : undefined,
     forceN: vector(state.forceN),
     buttons: state.buttons,
     waitsForRelease: state.waitsForRelease,

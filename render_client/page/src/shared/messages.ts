@@ -66,6 +66,7 @@ export interface ToolView {
   tick: string;
   X_WT: Pose;
   X_WT_device: Pose;
+  X_WT_expert?: Pose;  // where an expert's tool was
   forceN: Vec3;
   buttons: number;
   waitsForRelease: boolean;

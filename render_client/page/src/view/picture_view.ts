@@ -24,6 +24,12 @@ export interface Stroke {
   colour: Vec3;  // sRGB
 }
 
+// The tool's outline where it is not.
+export interface Ghost {
+  X_WT: Pose;
+  colour: Vec3;  // linear
+}
+
 export interface PictureView {
   camera: Camera;
   isEndoscope: boolean;
@@ -31,7 +37,7 @@ export interface PictureView {
   bone_V: Box;
   burrRadius: number;
   X_WT?: Pose;
-  X_WT_device?: Pose;  // where the hand is, if that differs visibly
+  ghosts: Ghost[];
   toolReach: number;  // m, of the tool's points from its origin
   forceN?: Vec3;  // W
   wish?: Vec3;  // W: the mouse that holds the tool wants it there
@@ -73,7 +79,7 @@ export function boneInWorld(view: PictureView): Box {
 export function neededRange(view: PictureView): DepthRange {
   const bone = boneInWorld(view), centre = centreOf(bone);
   let radius = Math.max(radiusOf(bone), 1e-3) * 1.01;
-  for (const X of [view.X_WT, view.X_WT_device])
+  for (const X of [view.X_WT, ...view.ghosts.map((ghost) => ghost.X_WT)])
     if (X) radius = Math.max(radius, norm(sub(X.p, centre)) + view.toolReach);
   return depthRange(view.camera, centre, 1.25 ** Math.ceil(Math.log(radius) / Math.log(1.25)));
 }

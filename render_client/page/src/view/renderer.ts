@@ -124,7 +124,7 @@ export class Renderer {
 
   private drawOver(frame: Frame, view: PictureView): void {
     if (view.opacity === undefined) this.toolPainter.drawTool(frame, view);
-    this.toolPainter.drawGhost(frame, view);
+    this.toolPainter.drawGhosts(frame, view);
     this.markers.draw(frame, view);
   }
 

@@ -1,4 +1,4 @@
-// The tool, and its outline where the hand is.
+// The tool, and its outline where the hand is and where an expert was.
 import ghost_fragment from '#shaders/ghost_fragment.glsl';
 import tool_fragment from '#shaders/tool_fragment.glsl';
 import tool_vertex from '#shaders/tool_vertex.glsl';
@@ -69,23 +69,23 @@ export class ToolPainter {
     this.draw();
   }
 
-  // It is seen through the bone too, but fainter there: the hand usually is inside when the tool is stopped at the
+  // They are seen through the bone too, but fainter there: the hand usually is inside when the tool is stopped at the
   // surface.
-  drawGhost(frame: Frame, view: PictureView): void {
-    if (!view.X_WT_device || this.isEmpty) return;
+  drawGhosts(frame: Frame, view: PictureView): void {
+    if (view.ghosts.length === 0 || this.isEmpty) return;
     const { gl } = this;
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     gl.enable(gl.CULL_FACE);
     gl.depthMask(false);
-    this.ghost.use().set({
-      camera_from_model: this.inCamera(view, view.X_WT_device),
-      clip_from_camera: frame.clipFromCamera,
-    });
-    for (const [test, strength] of [[gl.GREATER, 0.6], [gl.LEQUAL, 0.8]] as const) {
-      gl.depthFunc(test);
-      this.ghost.set({ strength });
-      this.draw();
+    this.ghost.use().set({ clip_from_camera: frame.clipFromCamera });
+    for (const { X_WT, colour } of view.ghosts) {
+      this.ghost.set({ camera_from_model: this.inCamera(view, X_WT), tint: colour });
+      for (const [test, strength] of [[gl.GREATER, 0.6], [gl.LEQUAL, 0.8]] as const) {
+        gl.depthFunc(test);
+        this.ghost.set({ strength });
+        this.draw();
+      }
     }
     gl.depthFunc(gl.LESS);
     gl.depthMask(true);
