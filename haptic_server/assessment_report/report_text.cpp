@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "haptic_server/assessment/written_unit.h"
+
 namespace bonemill {
 namespace {
 
@@ -79,12 +81,7 @@ std::string roundedText(double value) {
 }
 
 std::string valueText(double value, std::string_view unit) {
-    static constexpr std::pair<std::string_view, std::string_view> kWritten[] = {
-        {"mm3", "mm³"},     {"mm2", "mm²"},     {"percent", "%"},     {"degC", "°C"}, {"deg", "°"},
-        {"mm3/s", "mm³/s"}, {"J/mm3", "J/mm³"}, {"mm/mm3", "mm/mm³"}, {"N s", "N·s"}};
-    std::string_view written = unit;
-    for (const auto& [plain, with_signs] : kWritten)
-        if (unit == plain) written = with_signs;
+    const std::string_view written = writtenUnit(unit);
     const std::string number = roundedText(value);
     if (written.empty()) return number;
     return number + (written == "°" ? "" : " ") + std::string(written);

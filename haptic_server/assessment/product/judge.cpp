@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string>
 #include <utility>
+
+#include "haptic_server/assessment/written_unit.h"
 
 namespace bonemill {
 namespace {
@@ -14,8 +17,7 @@ std::string numberOf(double value) {
 }
 
 std::string amountOf(double value, const std::string& unit) {
-    if (unit == "percent") return numberOf(value) + " %";
-    return unit.empty() ? numberOf(value) : numberOf(value) + " " + unit;
+    return unit.empty() ? numberOf(value) : numberOf(value) + " " + std::string(writtenUnit(unit));
 }
 
 GateResult resultOf(const GateRule& rule, const Figures& figures) {

@@ -225,7 +225,7 @@ TEST(Judge, gatesScalesAndTheTotal) {
     const Assessment result = judge(task, figures);
     ASSERT_EQ(result.gates.size(), 3u);
     EXPECT_FALSE(result.gates[0].is_passed);
-    EXPECT_EQ(result.gates[0].text, "Alpha: 3 mm3; at most 2 mm3 were asked for");
+    EXPECT_EQ(result.gates[0].text, "Alpha: 3 mm³; at most 2 mm³ were asked for");
     EXPECT_FALSE(result.gates[1].is_passed);
     EXPECT_FALSE(result.gates[2].is_passed);
     EXPECT_EQ(result.gates[2].text, "What nobody measured was not measured");
