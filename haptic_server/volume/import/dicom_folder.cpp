@@ -47,7 +47,9 @@ DicomSlice headerOf(const ItkImageFile& image, const std::filesystem::path& path
     slice.path = path;
     slice.series_uid = image.dicomTag("0020|000e");
     slice.series_description = image.dicomTag("0008|103e");
-    slice.is_ct = image.dicomTag("0008|0060") == "CT";
+    slice.modality = image.dicomTag("0008|0060");
+    slice.kernel = image.dicomTag("0018|1210");
+    slice.contrast = image.dicomTag("0018|0010");
     if (header.dims.size() < 2 || header.dims[0] > kMaxEdge || header.dims[1] > kMaxEdge)
         throw UserError(path.string() + ": claims an image of absurd size; the header is damaged");
     slice.columns = int(header.dims[0]);
@@ -131,6 +133,28 @@ bool reachesAir(const RawValues& values) {
     return values.range().low <= -500;
 }
 
+bool isSamePicture(const DicomSlice& a, const DicomSlice& b) {
+    if (a.frame != 0 || b.frame != 0) return false;
+    RawValues of_a, of_b;
+    ItkImageFile(ItkFormat::kDicom, a.path).appendValues(of_a);
+    ItkImageFile(ItkFormat::kDicom, b.path).appendValues(of_b);
+    return of_a == of_b;
+}
+
+// What a reader of the scan asks first.
+std::string describe(const DicomStack& stack) {
+    const DicomSlice& first = stack.slices.front();
+    std::string text = "DICOM series " + first.series_uid;
+    if (!first.series_description.empty()) text += " (" + first.series_description + ")";
+    if (!first.modality.empty()) text += ", " + first.modality;
+    if (!first.kernel.empty()) text += ", kernel " + first.kernel;
+    if (!first.contrast.empty()) text += ", contrast " + first.contrast;
+    text += ", " + std::to_string(stack.slices.size()) + " slices";
+    if (!stack.remark.empty()) text += "; " + stack.remark;
+    if (!stack.left_out.empty()) text += "; other series left out: " + stack.left_out;
+    return text;
+}
+
 RawVolume readStack(const DicomStack& stack, const std::string& name) {
     const DicomSlice& first = stack.slices.front();
     const size_t depth = stack.slices.size();
@@ -144,12 +168,19 @@ RawVolume readStack(const DicomStack& stack, const std::string& name) {
     frame.spacing_mm = {first.pixel_spacing_mm.x(), first.pixel_spacing_mm.y(), stack.slice_spacing_mm};
     frame.directions << first.row_direction, first.column_direction, first.normal();
     frame.origin_mm = first.position_mm;
+    if (!stack.places.empty()) {
+        const Eigen::Vector2i size(first.columns, first.rows);
+        const SliceGrid grid = gridAround(stack.places, size, first.pixel_spacing_mm, stack.slice_spacing_mm);
+        checkVolumeSize({uint64_t(grid.dims.x()), uint64_t(grid.dims.y()), uint64_t(grid.dims.z())},
+                        kPixelBytes, name);
+        raw.values = resampleStack(raw.values, stack.places, size, grid);
+        frame.dims = grid.dims;
+        frame.origin_mm +=
+            first.row_direction * grid.aside_mm.x() + first.column_direction * grid.aside_mm.y();
+    }
     makeRightHanded(frame, name, raw.geometry, raw.values);
-    raw.is_hounsfield = first.is_ct && reachesAir(raw.values);
-    raw.description = "DICOM series " + first.series_uid +
-                      (first.series_description.empty() ? "" : " (" + first.series_description + ")") + ", " +
-                      std::to_string(depth) + " slices";
-    if (!stack.left_out.empty()) raw.description += "; other series left out: " + stack.left_out;
+    raw.is_hounsfield = first.isCt() && reachesAir(raw.values);
+    raw.description = describe(stack);
     return raw;
 }
 
@@ -175,7 +206,8 @@ RawVolume importDicomFolder(const std::filesystem::path& folder, const std::stri
         for (const DicomSlice& slice : inspect(file, left_out)) slices.push_back(slice);
     if (slices.empty())
         throw UserError(folder.string() + ": holds no DICOM slice that can be used: " + left_out.text());
-    RawVolume raw = readStack(chooseStack(slices, series_uid, folder.string()), folder.string());
+    RawVolume raw =
+        readStack(chooseStack(slices, series_uid, folder.string(), isSamePicture), folder.string());
     if (!left_out.text().empty()) raw.description += "; files left out: " + left_out.text();
     return raw;
 }
@@ -184,7 +216,7 @@ RawVolume importDicomFile(const std::filesystem::path& file) {
     LeftOut left_out;
     const auto slices = inspect(file, left_out);
     if (slices.empty()) throw UserError(file.string() + ": cannot be used: " + left_out.text());
-    return readStack(chooseStack(slices, {}, file.string()), file.string());
+    return readStack(chooseStack(slices, {}, file.string(), isSamePicture), file.string());
 }
 
 }  // namespace bonemill

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "common/math/pinned_math.h"
 #include "common/units.h"
@@ -17,9 +18,15 @@ namespace {
 constexpr double kDirectionStep = 1e-3;
 constexpr double kPixelSpacingStepMm = 1e-4;
 constexpr double kSamePlaceMm = 1e-3;
-constexpr double kSpacingTolerance = 0.02;  // of the median distance
-constexpr double kSpacingToleranceMm = 2e-3;
+constexpr double kSpacingTolerance = 0.02;  // of the median distance: nothing to speak of
 constexpr double kMaxTiltDegrees = 0.1;
+// Scanners write positions in steps of 0.1 mm at most; so far a slice is from its place then, or this share
+// of a distance.
+constexpr double kRoundingMm = 0.055;
+constexpr double kMostRounding = 0.2;
+constexpr double kWidestGap = 3.2;  // distances: two slices in a row may be missing
+constexpr double kMostFiner = 4;    // so much finer than most distances a grid may get by the least
+constexpr size_t kMostScouts = 3;   // a series of so few pictures is no scan
 
 using GroupKey = std::tuple<std::string, std::vector<long>, int, int>;
 
@@ -36,7 +43,8 @@ using Groups = std::map<GroupKey, std::vector<DicomSlice>>;
 std::string describe(const std::vector<DicomSlice>& group) {
     const DicomSlice& first = group.front();
     return std::to_string(group.size()) + " slices " + std::to_string(first.columns) + "x" +
-           std::to_string(first.rows) + " of series " + first.series_uid +
+           std::to_string(first.rows) + " of " + (first.modality.empty() ? "" : first.modality + " ") +
+           "series " + first.series_uid +
            (first.series_description.empty() ? "" : " (" + first.series_description + ")");
 }
 
@@ -66,87 +74,179 @@ double placeAlongNormal(const DicomSlice& slice, const Eigen::Vector3d& normal) 
     return normal.dot(slice.position_mm);
 }
 
-void checkDistances(const std::vector<DicomSlice>& slices, const std::vector<double>& places,
-                    const std::string& folder) {
-    std::vector<double> distances;
-    for (size_t s = 1; s < slices.size(); ++s) distances.push_back(places[s] - places[s - 1]);
-    std::vector<double> sorted = distances;
-    std::sort(sorted.begin(), sorted.end());
-    for (size_t s = 1; s < slices.size(); ++s)
-        if (distances[s - 1] < kSamePlaceMm)
-            throw UserError(
-                folder + ": two slices lie at the same place: " + nameAndPlace(slices[s - 1], places[s - 1]) +
-                " and " + nameAndPlace(slices[s], places[s]) +
-                "; remove the duplicates or name one series_uid");
-    const double median = sorted[sorted.size() / 2];
+// One of each place stays. Pictures that differ there are of two acquisitions.
+size_t dropCopies(std::vector<DicomSlice>& slices, const Eigen::Vector3d& normal, const std::string& folder,
+                  const IsSamePicture& is_same_picture) {
+    std::vector<DicomSlice> kept{slices.front()};
     for (size_t s = 1; s < slices.size(); ++s) {
-        const double excess = distances[s - 1] - median;
-        if (std::abs(excess) <= std::max(kSpacingTolerance * median, kSpacingToleranceMm)) continue;
-        const double missing = distances[s - 1] / median - 1;
-        const bool are_whole = missing > 0.5 && std::abs(missing - std::round(missing)) < 0.1;
-        char text[96];
-        std::snprintf(text, sizeof text, are_whole ? "%.0f slice(s) missing" : "uneven slice spacing",
-                      missing);
-        char rest[96];
-        std::snprintf(rest, sizeof rest, " (%.4g mm apart, the others %.4g mm)", distances[s - 1], median);
-        throw UserError(folder + ": " + text + " between " + nameAndPlace(slices[s - 1], places[s - 1]) +
-                        " and " + nameAndPlace(slices[s], places[s]) + rest + "; complete the series");
+        const double place = placeAlongNormal(slices[s], normal);
+        const double before = placeAlongNormal(kept.back(), normal);
+        if (place - before >= kSamePlaceMm) {
+            kept.push_back(slices[s]);
+            continue;
+        }
+        if (!is_same_picture(kept.back(), slices[s]))
+            throw UserError(folder + ": two slices lie at the same place and differ: " +
+                            nameAndPlace(kept.back(), before) + " and " + nameAndPlace(slices[s], place) +
+                            "; the series holds several acquisitions: keep the files of one of them");
     }
+    const size_t dropped = slices.size() - kept.size();
+    slices = std::move(kept);
+    return dropped;
 }
 
-void checkTilt(const std::vector<DicomSlice>& slices, const Eigen::Vector3d& normal,
-               const std::string& folder) {
-    const Eigen::Vector3d along = slices.back().position_mm - slices.front().position_mm;
-    const double tilt_degrees = pinned::atan2(along.cross(normal).norm(), along.dot(normal)) / kDegree;
-    const Eigen::Vector3d step = along / double(slices.size() - 1);
-    for (size_t s = 1; s < slices.size(); ++s) {
-        const Eigen::Vector3d off = slices[s].position_mm - slices[0].position_mm - step * double(s);
-        const double aside = (off - normal * normal.dot(off)).norm();
-        if (aside > 0.1 * slices[0].pixel_spacing_mm.minCoeff())
+std::vector<SlicePlace> placesOf(const std::vector<DicomSlice>& slices) {
+    std::vector<SlicePlace> places;
+    for (const DicomSlice& slice : slices) {
+        const DicomSlice& first = slices.front();
+        const Eigen::Vector3d from_first = slice.position_mm - first.position_mm;
+        places.push_back({first.normal().dot(from_first),
+                          {first.row_direction.dot(from_first), first.column_direction.dot(from_first)}});
+    }
+    return places;
+}
+
+// A tilted gantry moves each slice aside by its share; everything else is no one stack.
+void checkStraight(const std::vector<DicomSlice>& slices, const std::vector<SlicePlace>& places,
+                   const std::string& folder) {
+    const Eigen::Vector2d slope = places.back().aside_mm / places.back().along_mm;
+    for (size_t s = 1; s < slices.size(); ++s)
+        if ((places[s].aside_mm - slope * places[s].along_mm).norm() >
+            std::max(0.1 * slices[0].pixel_spacing_mm.minCoeff(), kRoundingMm))
             throw UserError(
                 folder + ": " + nameOf(slices[s]) +
                 " is shifted sideways against the other slices; the series is not one straight stack");
+}
+
+struct Distances {
+    double least, median, most;  // mm
+    size_t after_most;           // the slice before the largest one
+};
+
+Distances distancesOf(const std::vector<SlicePlace>& places) {
+    std::vector<double> all;
+    for (size_t s = 1; s < places.size(); ++s) all.push_back(places[s].along_mm - places[s - 1].along_mm);
+    const auto most = std::ranges::max_element(all);
+    const Distances found{*std::ranges::min_element(all), 0, *most, size_t(most - all.begin())};
+    std::ranges::sort(all);
+    return {found.least, all[all.size() / 2], found.most, found.after_most};
+}
+
+// The slices' distance if it were the same everywhere, by least squares.
+double evenStep(const std::vector<SlicePlace>& places) {
+    const double middle = double(places.size() - 1) / 2;
+    double products = 0, squares = 0;
+    for (size_t s = 0; s < places.size(); ++s) {
+        products += (double(s) - middle) * places[s].along_mm;
+        squares += (double(s) - middle) * (double(s) - middle);
     }
-    if (tilt_degrees <= kMaxTiltDegrees) return;
+    return products / squares;
+}
+
+// How far slices lie from even places, which may all be moved together.
+double unevennessOf(const std::vector<SlicePlace>& places) {
+    const double step = evenStep(places);
+    double low = 0, high = 0;
+    for (size_t s = 0; s < places.size(); ++s) {
+        low = std::min(low, places[s].along_mm - step * double(s));
+        high = std::max(high, places[s].along_mm - step * double(s));
+    }
+    return (high - low) / 2;
+}
+
+bool areEven(const std::vector<SlicePlace>& places, const Distances& distances) {
+    return unevennessOf(places) <= std::min(kRoundingMm, kMostRounding * distances.median);
+}
+
+std::string textOf(const char* format, auto... numbers) {
     char text[160];
-    std::snprintf(text, sizeof text,
-                  "the gantry was tilted: slices are stacked %.2f degrees off their normal (%s to %s)",
-                  tilt_degrees, slices.front().path.filename().c_str(),
-                  slices.back().path.filename().c_str());
-    throw UserError(folder + ": " + text + "; resample the series to a rectangular grid first");
+    std::snprintf(text, sizeof text, format, numbers...);
+    return text;
+}
+
+// Bone of so many slices cannot be guessed.
+void checkGaps(const std::vector<DicomSlice>& slices, const std::vector<SlicePlace>& places,
+               const Distances& distances, const std::string& folder) {
+    if (distances.most <= kWidestGap * distances.median) return;
+    const size_t s = distances.after_most;
+    const Eigen::Vector3d normal = slices.front().normal();
+    throw UserError(folder + ": " +
+                    textOf("%.0f slices are missing between ", distances.most / distances.median - 1) +
+                    nameAndPlace(slices[s], placeAlongNormal(slices[s], normal)) + " and " +
+                    nameAndPlace(slices[s + 1], placeAlongNormal(slices[s + 1], normal)) +
+                    textOf(" (%.4g mm apart, the others %.4g mm)",
+                           places[s + 1].along_mm - places[s].along_mm, distances.median) +
+                    "; complete the series");
+}
+
+double tiltDegrees(const std::vector<SlicePlace>& places) {
+    return pinned::atan2(places.back().aside_mm.norm(), places.back().along_mm) / kDegree;
+}
+
+void note(std::string& remark, const std::string& text) {
+    remark += (remark.empty() ? "" : "; ") + text;
+}
+
+// Says why and how the slices are to be resampled.
+void resample(DicomStack& stack, std::vector<SlicePlace> places, double tilt_deg,
+              const Distances& distances) {
+    const bool is_even = areEven(places, distances);
+    std::string why;
+    if (tilt_deg > kMaxTiltDegrees) note(why, textOf("gantry tilt of %.2f degrees", tilt_deg));
+    if (!is_even) note(why, textOf("slices %.4g to %.4g mm apart", distances.least, distances.most));
+    const double pixel_mm = stack.slices.front().pixel_spacing_mm.maxCoeff();
+    note(stack.remark, "resampled to a regular grid (" + why +
+                           "): between slices surfaces may be off by up to " +
+                           textOf("%.2g mm", std::max(distances.most, pixel_mm) / 2));
+    stack.slice_spacing_mm =
+        is_even ? stack.slice_spacing_mm
+                : std::min(distances.median, std::max(distances.least, distances.median / kMostFiner));
+    stack.places = std::move(places);
+}
+
+// Orders the slices and finds out how they lie.
+void arrange(DicomStack& stack, const std::string& folder, const IsSamePicture& is_same_picture) {
+    const Eigen::Vector3d normal = stack.slices.front().normal();
+    std::ranges::stable_sort(stack.slices, {},
+                             [&](const DicomSlice& slice) { return placeAlongNormal(slice, normal); });
+    if (const size_t copies = dropCopies(stack.slices, normal, folder, is_same_picture))
+        note(stack.remark, std::to_string(copies) + " copies of slices left out");
+    if (stack.slices.size() == 1)
+        throw UserError(folder + ": a volume needs 2 or more slices; the largest series has one (" +
+                        stack.slices.front().path.filename().string() + ")");
+    std::vector<SlicePlace> places = placesOf(stack.slices);
+    checkStraight(stack.slices, places, folder);
+    const Distances distances = distancesOf(places);
+    checkGaps(stack.slices, places, distances, folder);
+    stack.slice_spacing_mm = evenStep(places);
+    const double tilt_deg = tiltDegrees(places), uneven_mm = unevennessOf(places);
+    if (tilt_deg > kMaxTiltDegrees || !areEven(places, distances))
+        return resample(stack, std::move(places), tilt_deg, distances);
+    if (uneven_mm > kSpacingTolerance * distances.median)
+        note(stack.remark,
+             textOf("slices lie up to %.2g mm from where they are taken to be: rounded positions",
+                    2 * uneven_mm));
 }
 
 }  // namespace
 
 DicomStack chooseStack(const std::vector<DicomSlice>& slices, const std::string& series_uid,
-                       const std::string& folder) {
+                       const std::string& folder, const IsSamePicture& is_same_picture) {
     Groups groups, wanted;
     for (const DicomSlice& slice : slices) groups[groupKey(slice)].push_back(slice);
     for (const auto& [key, group] : groups)
         if (series_uid.empty() || group.front().series_uid == series_uid) wanted[key] = group;
     if (wanted.empty())
         throw UserError(folder + ": holds no series " + series_uid + "; it holds " + listOf(groups));
-    const auto largest = std::max_element(wanted.begin(), wanted.end(), [](const auto& a, const auto& b) {
-        return a.second.size() < b.second.size();
+    const auto best = std::ranges::max_element(wanted, {}, [](const auto& group) {
+        const size_t count = group.second.size();
+        return std::pair(count > kMostScouts && group.second.front().isCt(), count);
     });
     DicomStack stack;
-    stack.slices = largest->second;
-    groups.erase(largest->first);
+    stack.slices = best->second;
+    groups.erase(best->first);
     stack.left_out = listOf(groups);
-
-    const DicomSlice& first = stack.slices.front();
-    if (stack.slices.size() == 1)
-        throw UserError(folder + ": a volume needs 2 or more slices; the largest series has one (" +
-                        first.path.filename().string() + ")");
-    const Eigen::Vector3d normal = first.normal();
-    std::stable_sort(stack.slices.begin(), stack.slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {
-        return placeAlongNormal(a, normal) < placeAlongNormal(b, normal);
-    });
-    std::vector<double> places;
-    for (const DicomSlice& slice : stack.slices) places.push_back(placeAlongNormal(slice, normal));
-    checkDistances(stack.slices, places, folder);
-    checkTilt(stack.slices, normal, folder);
-    stack.slice_spacing_mm = (places.back() - places.front()) / double(places.size() - 1);
+    arrange(stack, folder, is_same_picture);
     return stack;
 }
 

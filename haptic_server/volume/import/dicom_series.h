@@ -7,8 +7,11 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
+
+#include "haptic_server/volume/import/uneven_stack.h"
 
 namespace bonemill {
 
@@ -16,6 +19,7 @@ struct DicomSlice {
     std::filesystem::path path;
     std::string series_uid;
     std::string series_description;
+    std::string modality, kernel, contrast;                    // as the header says; empty: nothing
     Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();     // centre of the first pixel
     Eigen::Vector3d row_direction = Eigen::Vector3d::UnitX();  // along increasing column index
     Eigen::Vector3d column_direction = Eigen::Vector3d::UnitY();
@@ -23,7 +27,7 @@ struct DicomSlice {
     int columns = 0;
     int rows = 0;
     int frame = 0;  // which image of the file
-    bool is_ct = false;
+    bool isCt() const { return modality == "CT"; }
 
     Eigen::Vector3d normal() const { return row_direction.cross(column_direction); }
 };
@@ -31,13 +35,20 @@ struct DicomSlice {
 struct DicomStack {
     std::vector<DicomSlice> slices;  // ascending along the normal
     double slice_spacing_mm = 0;
-    std::string left_out;  // for people: other series in the folder
+    std::vector<SlicePlace> places;  // of the slices, where they are to be resampled; else empty
+    std::string left_out;            // for people: other series in the folder
+    std::string remark;              // for people: what was mended, and how far that may be off; else empty
 };
 
-// Slices of one series with the same orientation, size and pixel spacing belong together; the group with the
-// most slices is taken (of `series_uid` only, when it is not empty). Checks that its slices are evenly spaced
-// and not tilted. Throws UserError, naming `folder` and the files and positions at fault.
+// Do two slices at the same place hold the same picture?
+using IsSamePicture = std::function<bool(const DicomSlice&, const DicomSlice&)>;
+
+// Slices of one series with the same orientation, size and pixel spacing belong together. Of the groups (of
+// `series_uid` only, when it is not empty) CT goes before all else, then the one with the most slices.
+// Copies of a slice are dropped. Slices that lie as evenly as a scanner rounds, and straight above each
+// other, are taken as they are; those of a tilted gantry, or at other distances, are to be resampled. Throws
+// UserError, naming `folder` and the files and positions at fault.
 DicomStack chooseStack(const std::vector<DicomSlice>& slices, const std::string& series_uid,
-                       const std::string& folder);
+                       const std::string& folder, const IsSamePicture& is_same_picture);
 
 }  // namespace bonemill

@@ -83,6 +83,7 @@ MetaImageHeader readMetaImageHeader(const std::filesystem::path& path) {
     checkCounts(fields, file_name);
     MetaImageHeader header;
     header.bytes = bytes;
+    header.has_spacing = fields.count("ElementSpacing") || fields.count("ElementSize");
     header.has_patient_space = namesPatientSides(fields["AnatomicalOrientation"]);
     header.is_compressed = isTrue(fields["CompressedData"]);
     if (header.is_compressed) header.packed_bytes = packedBytes(fields["CompressedDataSize"], file_name);

@@ -61,9 +61,18 @@ void checkDirections(std::string text, const std::filesystem::path& path) {
         if (c == '(' || c == ',' || c == ')') c = ' ';
     std::istringstream words(text);
     for (std::string word; words >> word;)
-        if (std::abs(std::strtod(word.c_str(), nullptr)) > kFarTooLong)
+        if (!(std::abs(std::strtod(word.c_str(), nullptr)) <= kFarTooLong))
             throw UserError(path.string() +
                             ": the voxel spacing is not a sensible length; the header is damaged");
+}
+
+// For "nan", which stands where nothing is known, the library takes 1 mm, too.
+void checkSpacings(const std::string& text, const std::filesystem::path& path) {
+    std::istringstream words(text);
+    for (std::string word; words >> word;)
+        if (!std::isfinite(std::strtod(word.c_str(), nullptr)))
+            throw UserError(path.string() + ": its spacings (" + text +
+                            ") are no lengths; write the voxels' size into the NRRD header");
 }
 
 }  // namespace
@@ -92,6 +101,8 @@ NrrdHeader readNrrdHeader(const std::filesystem::path& path) {
         if (name == "encoding") header.encoding = fieldName(value);
         if (name == "datafile") header.data_file = value;
         if (name == "spacedirections") checkDirections(value, path);
+        if (name == "spacings") checkSpacings(value, path);
+        header.has_spacing = header.has_spacing || name == "spacedirections" || name == "spacings";
         if (name == "spaceunits" || name == "units") header.mm_per_unit = mmPerUnit(value, path);
     }
     return header;

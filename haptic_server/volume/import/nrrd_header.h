@@ -15,6 +15,7 @@ struct NrrdHeader {
     std::string encoding;                          // "raw", "gzip", "ascii", ...
     std::string data_file;                         // empty: attached
     double mm_per_unit = 1;                        // from "space units"
+    bool has_spacing = false;                      // says something of the voxels' size
     bool has_patient_space = false;                // its "space" names the patient's sides
     std::optional<VolumeGeometry> exact_geometry;  // from nrrd_writer.h
 };

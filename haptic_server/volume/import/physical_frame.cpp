@@ -51,11 +51,15 @@ void reverseAxis(RawValues& values, const Eigen::Vector3i& dims, int axis) {
     values.reverseBlocks(stride, size_t(dims[axis]));
 }
 
+void checkFrame(const FileFrame& frame, const std::string& file) {
+    checkNumbers(frame, file);
+    checkPerpendicular(frame.directions.colwise().normalized(), file);
+}
+
 bool makeRightHanded(const FileFrame& frame, const std::string& file, VolumeGeometry& geometry,
                      RawValues& values) {
-    checkNumbers(frame, file);
+    checkFrame(frame, file);
     Eigen::Matrix3d axes = frame.directions.colwise().normalized();
-    checkPerpendicular(axes, file);
     Eigen::Vector3d origin_mm = frame.origin_mm;
     const bool left_handed = axes.determinant() < 0;
     if (left_handed) {

@@ -18,6 +18,9 @@ struct FileFrame {
 // Axes may be this far (cosine between two of them) from perpendicular; text headers round to 4-6 digits.
 inline constexpr double kMaxAxisCosine = 1e-3;
 
+// Throws UserError naming `file` for sheared, degenerate or non-finite axes.
+void checkFrame(const FileFrame& frame, const std::string& file);
+
 // Makes the right-handed geometry of the same voxels. A left-handed file gets its last axis
 // reversed, in `values` too (returns true then). Throws UserError naming `file` for sheared,
 // degenerate or non-finite axes.

@@ -20,6 +20,10 @@ struct FileFacts {
     std::optional<StoredData> data;  // nothing: spread over several files
     double mm_per_unit = 1;
     bool has_patient_space = true;
+    bool has_spacing = true;              // libraries take 1 mm where it is not said
+    uint64_t stored_bytes_per_voxel = 0;  // 0: as many as the library's
+    std::optional<FileFrame> frame;       // nothing: the library's
+    std::string remark;
 };
 
 // Axes of one voxel beyond the third do not make it less of a volume.
@@ -50,15 +54,22 @@ RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const
     const std::vector<uint64_t> dims = volumeDims(header.dims);
     const uint64_t copies = format == ItkFormat::kNifti ? 2 : 1;  // its library fills a buffer of its own
     checkVolumeSize(dims, copies * header.bytes_per_voxel, file);
+    if (!facts.has_spacing)
+        throw UserError(
+            file + ": says nothing of the voxels' size; write it into the header in mm (" +
+            (format == ItkFormat::kNrrd ? "spacings or space directions" : "ElementSpacing = X Y Z") + ")");
     const uint64_t voxels = dims[0] * dims[1] * dims[2];
-    const uint64_t needed = voxels * header.bytes_per_voxel;
+    const uint64_t stored = facts.stored_bytes_per_voxel;
+    const uint64_t needed = voxels * (stored > 0 ? stored : header.bytes_per_voxel);
     if (facts.data) checkStoredBytes(needed, countStoredBytes(*facts.data, needed), file);
     RawVolume raw;
     raw.values.reserve(size_t(voxels));
     image.appendValues(raw.values);
-    const bool flipped = makeRightHanded(frameOf(header, facts.mm_per_unit), file, raw.geometry, raw.values);
+    const bool flipped = makeRightHanded(facts.frame.value_or(frameOf(header, facts.mm_per_unit)), file,
+                                         raw.geometry, raw.values);
     raw.lacks_patient_axes = !facts.has_patient_space;
-    raw.description = facts.format + (flipped ? ", left-handed: third axis reversed" : "");
+    raw.description = facts.format + (flipped ? ", left-handed: third axis reversed" : "") +
+                      (facts.remark.empty() ? "" : ", " + facts.remark);
     return raw;
 }
 
@@ -73,7 +84,13 @@ bool isOneFile(const std::string& name) {
 
 RawVolume importNrrd(const std::filesystem::path& path) {
     const NrrdHeader header = readNrrdHeader(path);
-    FileFacts facts{"NRRD", StoredData{path, header.bytes}, header.mm_per_unit, header.has_patient_space};
+    FileFacts facts{.format = "NRRD",
+                    .data = StoredData{path, header.bytes},
+                    .mm_per_unit = header.mm_per_unit,
+                    .has_patient_space = header.has_patient_space,
+                    .has_spacing = header.has_spacing,
+                    .frame = {},
+                    .remark = {}};
     if (!header.data_file.empty()) facts.data = StoredData{path.parent_path() / header.data_file};
     // ITK's NRRD library finds short gzip data itself.
     if (header.encoding != "raw") facts.data->packing = Packing::kOther;
@@ -86,14 +103,25 @@ RawVolume importNrrd(const std::filesystem::path& path) {
 
 RawVolume importNifti(const std::filesystem::path& path) {
     const NiftiHeader header = readNiftiHeader(path);
-    FileFacts facts{"NIfTI", StoredData{path, header.data_offset}, 1, header.has_patient_space};
+    FileFacts facts{.format = "NIfTI",
+                    .data = StoredData{path, header.data_offset},
+                    .has_patient_space = header.has_patient_space,
+                    .stored_bytes_per_voxel = header.bytes_per_voxel,
+                    .frame = header.frame,
+                    .remark = header.remark};
     if (path.extension() == ".gz") facts.data = StoredData{path, 0, Packing::kDeflate, header.data_offset};
+    if (header.frame) checkFrame(*header.frame, path.string());
     return readThrough(ItkFormat::kNifti, path, facts);
 }
 
 RawVolume importMetaImage(const std::filesystem::path& path) {
     const MetaImageHeader header = readMetaImageHeader(path);
-    FileFacts facts{"MetaImage", StoredData{path, header.bytes}, 1, header.has_patient_space};
+    FileFacts facts{.format = "MetaImage",
+                    .data = StoredData{path, header.bytes},
+                    .has_patient_space = header.has_patient_space,
+                    .has_spacing = header.has_spacing,
+                    .frame = {},
+                    .remark = {}};
     if (!header.data_file.empty()) facts.data = StoredData{path.parent_path() / header.data_file};
     if (header.packed_bytes > 0)
         checkStoredBytes(header.packed_bytes, countStoredBytes(*facts.data, header.packed_bytes),

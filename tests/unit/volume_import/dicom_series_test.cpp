@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/unit/volume_import/expect_user_error.h"
 
 namespace bonemill {
@@ -21,10 +23,14 @@ std::vector<DicomSlice> stackOf(int count, double step_mm) {
     return slices;
 }
 
+DicomStack chosen(const std::vector<DicomSlice>& slices) {
+    return chooseStack(slices, "", "f", [](const auto&, const auto&) { return true; });
+}
+
 TEST(DicomSeries, spacingIsTheMeanDistance) {
     auto slices = stackOf(11, 0.7);
     slices[5].position_mm.z() += 0.001;  // decimal text
-    const DicomStack stack = chooseStack(slices, "", "f");
+    const DicomStack stack = chosen(slices);
     EXPECT_NEAR(stack.slice_spacing_mm, 0.7, 1e-12);
     EXPECT_EQ(stack.slices.front().path, "slice10");
     EXPECT_EQ(stack.slices.back().path, "slice0");
@@ -39,21 +45,54 @@ TEST(DicomSeries, scoutOfTheSameSeriesIsLeftOut) {
     scout = slices[1];
     scout.columns = 16;
     slices.push_back(scout);
-    const DicomStack stack = chooseStack(slices, "", "f");
+    const DicomStack stack = chosen(slices);
     EXPECT_EQ(stack.slices.size(), 5u);
     EXPECT_NE(stack.left_out.find("1 slices 16x8"), std::string::npos) << stack.left_out;
 }
 
-TEST(DicomSeries, unevenSpacingNamesThePlace) {
+TEST(DicomSeries, PositionsRoundedToATenthAreTakenAsEven) {
+    auto slices = stackOf(60, 0.625);
+    for (DicomSlice& slice : slices) slice.position_mm.z() = std::round(10 * slice.position_mm.z()) / 10;
+    const DicomStack stack = chosen(slices);
+    EXPECT_TRUE(stack.places.empty());
+    EXPECT_NEAR(stack.slice_spacing_mm, 0.625, 0.05 / 60);
+    EXPECT_NE(stack.remark.find("rounded positions"), std::string::npos) << stack.remark;
+}
+
+TEST(DicomSeries, OtherDistancesAreResampledByTheirLeast) {
     auto slices = stackOf(6, 1);
     slices[5].position_mm.z() -= 0.4;
-    expectUserError([&] { chooseStack(slices, "", "f"); }, {"uneven", "slice5", "slice4", "1.4 mm"});
+    const DicomStack last = chosen(slices);
+    EXPECT_EQ(last.places.size(), 6u);
+    EXPECT_NEAR(last.slice_spacing_mm, 1, 1e-12);
+    EXPECT_NE(last.remark.find("slices 1 to 1.4 mm apart"), std::string::npos) << last.remark;
+    EXPECT_NE(last.remark.find("off by up to 0.7 mm"), std::string::npos) << last.remark;
+    for (size_t s = 3; s < 6; ++s) slices[s].position_mm.z() = 98 - 2.5 * double(s - 2);
+    EXPECT_NEAR(chosen(slices).slice_spacing_mm, 1, 1e-12);
+}
+
+TEST(DicomSeries, AWideGapIsRefusedWithItsPlace) {
+    auto slices = stackOf(12, 1);
+    slices.erase(slices.begin() + 4, slices.begin() + 8);
+    expectUserError([&] { chosen(slices); }, {"4 slices are missing", "slice8", "slice3", "5 mm apart"});
+}
+
+TEST(DicomSeries, CtGoesBeforeALargerSeriesOfAnotherKind) {
+    auto slices = stackOf(6, 1);
+    for (DicomSlice& slice : slices) slice.modality = "CT";
+    for (DicomSlice slice : stackOf(30, 0.5)) {
+        slice.series_uid = "9.9", slice.modality = "MR";
+        slices.push_back(slice);
+    }
+    const DicomStack stack = chosen(slices);
+    EXPECT_EQ(stack.slices.size(), 6u);
+    EXPECT_NE(stack.left_out.find("30 slices 8x8 of MR series 9.9"), std::string::npos) << stack.left_out;
 }
 
 TEST(DicomSeries, sidewaysShiftIsRefused) {
     auto slices = stackOf(6, 1);
     slices[3].position_mm.x() += 0.5;
-    expectUserError([&] { chooseStack(slices, "", "f"); }, {"slice3", "sideways"});
+    expectUserError([&] { chosen(slices); }, {"slice3", "sideways"});
 }
 
 TEST(DicomSeries, framesOfOneFileAreNamed) {
@@ -63,7 +102,9 @@ TEST(DicomSeries, framesOfOneFileAreNamed) {
         slices[size_t(k)].frame = k;
     }
     slices[3].position_mm = slices[2].position_mm;
-    expectUserError([&] { chooseStack(slices, "", "f"); }, {"multi.dcm frame 3", "multi.dcm frame 4"});
+    expectUserError([&] { chooseStack(slices, "", "f", [](const auto&, const auto&) { return false; }); },
+                    {"multi.dcm frame 3", "multi.dcm frame 4", "several acquisitions"});
+    EXPECT_EQ(chosen(slices).slices.size(), 3u) << "a copy";
 }
 
 }  // namespace

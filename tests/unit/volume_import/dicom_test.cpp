@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "haptic_server/volume/import/dicom_scan.h"
@@ -155,29 +156,76 @@ TEST(DicomErrors, truncatedSliceIsNamed) {
     expectUserError([&] { importVolume(folder.path()); }, {"I40", "cut short"});
 }
 
-TEST(DicomErrors, missingSliceNamesItsNeighbours) {
+// The field of the sample is linear, so that every voxel between its slices is known.
+void expectSameField(const RawVolume& raw, const SampleVolume& sample) {
+    const Eigen::Matrix3d step = sample.directions * sample.spacing_mm.asDiagonal();
+    const Eigen::Vector3d last = sample.dims.cast<double>().array() - 1;
+    size_t at = 0, inside = 0;
+    for (int k = 0; k < raw.geometry.dims.z(); ++k)
+        for (int j = 0; j < raw.geometry.dims.y(); ++j)
+            for (int i = 0; i < raw.geometry.dims.x(); ++i, ++at) {
+                const Eigen::Vector3d p_mm =
+                    1000 * (raw.geometry.X_WV * raw.geometry.spacing.cwiseProduct(Eigen::Vector3d(i, j, k)));
+                const Eigen::Vector3d index = step.inverse() * (p_mm - sample.origin_mm);
+                if (!((index.array() > -1e-3).all() && (index.array() < last.array() + 1e-3).all())) continue;
+                ++inside;
+                EXPECT_NEAR(raw.values[at], index.dot(Eigen::Vector3d(1, 10, 100)), 0.51)
+                    << i << ' ' << j << ' ' << k;
+            }
+    EXPECT_GE(inside, size_t(last.prod()));
+}
+
+TEST(DicomMended, WhatAMissingSliceWouldHoldComesFromItsNeighbours) {
     const test::TemporaryFolder folder;
     const SampleVolume sample = nineSlices();
     for (int k = 0; k < 9; ++k)
         if (k != 4) writeDicomFile(folder / ("slice" + std::to_string(k)), sliceOf(sample, k));
-    expectUserError([&] { importVolume(folder.path()); },
-                    {"1 slice(s) missing", "slice3", "slice5", "33.750 mm"});
+    const RawVolume raw = importVolume(folder.path());
+    EXPECT_EQ(raw.geometry.dims, sample.dims);
+    EXPECT_NO_THROW(expectSamePlaces(raw, sample, 1e-8));
+    EXPECT_NE(raw.description.find("resampled to a regular grid (slices 1.25 to 2.5 mm apart)"),
+              std::string::npos)
+        << raw.description;
 }
 
-TEST(DicomErrors, duplicateSliceNamesBoth) {
+TEST(DicomMended, CopiesOfASliceAreDroppedAndCounted) {
     const test::TemporaryFolder folder;
     const SampleVolume sample = nineSlices();
     for (int k = 0; k < 9; ++k) writeDicomFile(folder / ("slice" + std::to_string(k)), sliceOf(sample, k));
     writeDicomFile(folder / "copy", sliceOf(sample, 2));
-    expectUserError([&] { importVolume(folder.path()); }, {"same place", "copy", "slice2"});
+    writeDicomFile(folder / "another", sliceOf(sample, 2));
+    const RawVolume raw = importVolume(folder.path());
+    EXPECT_NO_THROW(expectSamePlaces(raw, sample, 1e-8));
+    EXPECT_NE(raw.description.find("2 copies of slices left out"), std::string::npos) << raw.description;
+    DicomImage other = sliceOf(sample, 2);
+    other.pixels.back() += 1;
+    writeDicomFile(folder / "other", other);
+    expectUserError([&] { importVolume(folder.path()); }, {"same place and differ", "other", "acquisitions"});
 }
 
-TEST(DicomErrors, gantryTiltIsRefusedWithItsAngle) {
+TEST(DicomMended, ATiltedGantrysSlicesAreMovedBackAbove) {
     const test::TemporaryFolder folder;
     SampleVolume sample = nineSlices();
     sample.directions.col(2) = Eigen::Vector3d(0, std::sin(0.2), std::cos(0.2));  // 11.46 degrees
     writeSeries(folder.path(), sample);
-    expectUserError([&] { importVolume(folder.path()); }, {"tilted", "11.46 degrees"});
+    const RawVolume raw = importVolume(folder.path());
+    expectSameField(raw, sample);
+    EXPECT_EQ(raw.geometry.dims.z(), 9);
+    EXPECT_NEAR(raw.geometry.spacing.z(), 1.25e-3 * std::cos(0.2), 1e-9);
+    EXPECT_NE(raw.description.find("gantry tilt of 11.46 degrees"), std::string::npos) << raw.description;
+}
+
+TEST(DicomMended, ATiltBackwardsWithAGapIsBoth) {
+    const test::TemporaryFolder folder;
+    SampleVolume sample = nineSlices();
+    sample.directions.col(2) = Eigen::Vector3d(std::sin(0.1), -std::sin(0.15), 0);
+    sample.directions(2, 2) = std::sqrt(1 - sample.directions.col(2).squaredNorm());
+    for (int k = 0; k < 9; ++k)
+        if (k != 3) writeDicomFile(folder / ("slice" + std::to_string(k)), sliceOf(sample, k));
+    const RawVolume raw = importVolume(folder.path());
+    expectSameField(raw, sample);
+    EXPECT_NE(raw.description.find("gantry tilt of"), std::string::npos) << raw.description;
+    EXPECT_NE(raw.description.find("mm apart"), std::string::npos) << raw.description;
 }
 
 TEST(DicomErrors, colourIsRefused) {
