@@ -80,26 +80,20 @@ TEST(Payloads, SceneInfoIsChecked) {
 }
 
 TEST(Payloads, ToolStateIsChecked) {
-    const topics::ToolState valid = validToolState();
-    EXPECT_TRUE(isAccepted(&parseToolState, valid));
-
-    topics::ToolState not_finite = valid;
-    not_finite.set_p_wt_m(1, std::numeric_limits<double>::quiet_NaN());
-    EXPECT_FALSE(isAccepted(&parseToolState, not_finite));
-
-    topics::ToolState not_unit = valid;
-    not_unit.set_q_wt(0, 7);
-    EXPECT_FALSE(isAccepted(&parseToolState, not_unit));
-
-    topics::ToolState expert = valid;
-    expert.mutable_p_wt_expert_m()->Resize(3, 0.5);
-    EXPECT_FALSE(isAccepted(&parseToolState, expert)) << "half a pose";
-    expert.mutable_q_wt_expert()->Resize(4, 0.5);
-    EXPECT_TRUE(isAccepted(&parseToolState, expert));
-
-    topics::ToolState too_short = valid;
-    too_short.mutable_q_wt_device()->RemoveLast();
-    EXPECT_FALSE(isAccepted(&parseToolState, too_short));
+    const auto accepts = [](auto change) {
+        topics::ToolState state = validToolState();
+        change(state);
+        return isAccepted(&parseToolState, state);
+    };
+    EXPECT_TRUE(accepts([](auto&) {}));
+    EXPECT_FALSE(accepts([](auto& s) { s.set_p_wt_m(1, std::numeric_limits<double>::quiet_NaN()); }));
+    EXPECT_FALSE(accepts([](auto& s) { s.set_q_wt(0, 7); })) << "not of length 1";
+    EXPECT_FALSE(accepts([](auto& s) { s.mutable_q_wt_device()->RemoveLast(); }));
+    EXPECT_FALSE(accepts([](auto& s) { s.mutable_p_wt_expert_m()->Resize(3, 0.5); })) << "half a pose";
+    EXPECT_TRUE(accepts([](auto& s) {
+        s.mutable_p_wt_expert_m()->Resize(3, 0.5);
+        s.mutable_q_wt_expert()->Resize(4, 0.5);
+    }));
 }
 
 TEST(Payloads, OfAScenesPartsOnlyWhatAViewerUsesComesThrough) {
