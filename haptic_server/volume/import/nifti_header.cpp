@@ -91,15 +91,15 @@ Eigen::Vector3i dimsOf(const Header& header) {
     return dims;
 }
 
-// The columns of the matrix are a step along each index axis. NIfTI's first two axes point to the right and
-// to the front, those of LPS to the left and the back.
-FileFrame frameOf(const Header& header, Eigen::Matrix3d step_RAS, Eigen::Vector3d origin_RAS) {
+// The columns of the matrix are a step along each index axis. The first two axes of
+// NIfTI (N) point to the right and to the front, those of LPS to the left and the back.
+FileFrame frameOf(const Header& header, const Eigen::Matrix3d& step_N, const Eigen::Vector3d& origin_N) {
     const Eigen::Vector3d to_LPS = mmPerUnit(header) * Eigen::Vector3d(-1, -1, 1);
-    const Eigen::Matrix3d step = to_LPS.asDiagonal() * step_RAS;
+    const Eigen::Matrix3d step = to_LPS.asDiagonal() * step_N;
     FileFrame frame{.dims = dimsOf(header),
                     .spacing_mm = step.colwise().norm(),
                     .directions = step,
-                    .origin_mm = to_LPS.cwiseProduct(origin_RAS)};
+                    .origin_mm = to_LPS.cwiseProduct(origin_N)};
     for (int a = 0; a < 3; ++a)
         if (frame.spacing_mm[a] > 0) frame.directions.col(a) /= frame.spacing_mm[a];
     return frame;
