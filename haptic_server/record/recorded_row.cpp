@@ -23,7 +23,8 @@ std::string recordedHeader() {
 
 std::array<uint64_t, kRecordedNumbers.size()> numbersOf(const TickInput& input, const DeviceReport& device) {
     const TickDecisions& decisions = input.decisions;
-    const uint64_t flags = (input.is_repeated ? uint64_t(kRepeated) : 0) | (input.is_stale ? uint64_t(kStale) : 0) |
+    const uint64_t flags = (input.is_repeated ? uint64_t(kRepeated) : 0) |
+                           (input.is_stale ? uint64_t(kStale) : 0) |
                            (decisions.is_milling_paused ? uint64_t(kPaused) : 0) |
                            (decisions.is_write_refused ? uint64_t(kRefused) : 0);
     return {flags,

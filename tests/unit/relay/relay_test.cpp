@@ -258,14 +258,16 @@ TEST(Relay, AStalledGuestHoldsUpNobodyAndTakesABoundedMemory) {
     const Descriptor guest = relay.guest();
     // A dialled line of the gateway that floods its guest, who does not read.
     const Descriptor stalled = relay.guest();
+    // The kernel's buffers of four connections hold up to 10 MB each before the first of them is full.
+    constexpr size_t kMore = size_t(128) << 20;
     std::string flood(size_t(1) << 16, 'x');
     size_t said = 0;
-    while (said < (size_t(32) << 20) && isReady(stalled.get(), POLLOUT, 200ms)) {
+    while (said < kMore && isReady(stalled.get(), POLLOUT, 200ms)) {
         const ssize_t count = send(stalled.get(), flood.data(), flood.size(), MSG_NOSIGNAL);
         if (count <= 0) break;
         said += size_t(count);
     }
-    EXPECT_LT(said, size_t(32) << 20) << "nothing held the flood up";
+    EXPECT_LT(said, kMore) << "nothing held the flood up";
     tell(guest, "still here");
     EXPECT_EQ(hear(guest, 11), kTls + "still here");
 }
