@@ -13,6 +13,7 @@
 #include "haptic_server/offline/run_path.h"
 #include "haptic_server/record/tick_times.h"
 #include "haptic_server/setup/coupling_text.h"
+#include "haptic_server/setup/scene_pieces.h"
 #include "haptic_server/setup/scene_setup.h"
 
 namespace bonemill {
@@ -53,6 +54,39 @@ std::string describeLevels(const PointShell& shell) {
         text += (level > 0 ? "; " : "") + std::to_string(shell.pointCount(level)) +
                 " points, scaling factor " + std::to_string(shell.scalingFactor(level));
     return text;
+}
+
+std::string textOf(const Eigen::AlignedBox3d& box) {
+    const Eigen::IOFormat row(4, 0, " ", " ");
+    std::ostringstream text;
+    text << "(" << (box.min() * kPerMillimetre).transpose().format(row) << ") .. ("
+         << (box.max() * kPerMillimetre).transpose().format(row) << ") mm";
+    return text.str();
+}
+
+// Where the bone lies in W, and in what pieces: what a device, a region and a camera are placed by.
+void describePlace(const LoadedScene& loaded, const Simulation& simulation, std::ostream& out) {
+    const VoxelVolume& volume = simulation.bone->volume;
+    const VolumeGeometry& geometry = volume.geometry();
+    const auto inWorld = [&](const Eigen::AlignedBox3d& box_V) {
+        Eigen::AlignedBox3d box_W;
+        for (int corner = 0; corner < 8; ++corner)
+            box_W.extend(geometry.X_WV * box_V.corner(Eigen::AlignedBox3d::CornerType(corner)));
+        return box_W;
+    };
+    const Eigen::Vector3d last =
+        geometry.spacing.cwiseProduct((geometry.dims.array() - 1).matrix().cast<double>());
+    out << "volume in W: " << textOf(inWorld({Eigen::Vector3d::Zero(), last})) << '\n';
+    Eigen::AlignedBox3d bone;
+    forEachIndex({Eigen::Vector3i::Zero(), geometry.dims.array() - 1}, [&](const Eigen::Vector3i& v) {
+        if (volume.at(v.x(), v.y(), v.z()) >= volume.iso())
+            bone.extend(Eigen::Vector3d(geometry.spacing.cwiseProduct(v.cast<double>())));
+    });
+    if (bone.isEmpty()) return void(out << "bone in W: none\n");
+    const Eigen::Vector3d middle = geometry.X_WV * Eigen::Vector3d(bone.center()) * kPerMillimetre;
+    out << "bone in W: " << textOf(inWorld(bone)) << ", middle (" << middle.transpose() << ") mm\n";
+    if (!loaded.scene.volume().has_region() && !choosesPieces(loaded.scene))
+        out << "pieces of bone, for volume.drop_piece:\n  " << listPieces(volume) << '\n';
 }
 
 void describeTools(const Simulation& simulation, std::ostream& out) {
@@ -115,6 +149,7 @@ std::string describeScene(const std::string& scene_file) {
         << "octree: " << bone.lattice.leavesPerAxis().transpose() << " leaves of "
         << bone.lattice.leafCells().transpose() << " cells, " << bone.lattice.levelCount() << " levels\n"
         << "point-shell: " << describeLevels(bone.shell) << '\n';
+    describePlace(loaded, simulation, out);
     describeTools(simulation, out);
     describeTask(simulation, out);
     describeBudget(simulation, out);

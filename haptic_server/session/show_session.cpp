@@ -11,6 +11,7 @@
 #include "common/rt/clock.h"
 #include "common/units.h"
 #include "haptic_server/mesh/structure_mesher.h"
+#include "haptic_server/mesh/surroundings_mesher.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/session/order_text.h"
 #include "haptic_server/session/shown_device.h"
@@ -96,7 +97,8 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
     const Eigen::Quaterniond& q = X_WV.rotation;
     assign(info.mutable_p_wv_m(), X_WV.position);
     assign(info.mutable_q_wv(), Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()));
-    const Eigen::AlignedBox3d box = boneBox(*simulation.bone);
+    Eigen::AlignedBox3d box = boneBox(*simulation.bone);
+    if (simulation.surroundings) box.extend(simulation.surroundings->bone);
     assign(info.mutable_bone_min_m(), box.min());
     assign(info.mutable_bone_max_m(), box.max());
     info.set_lacks_patient_axes(simulation.lacks_patient_axes);
@@ -105,6 +107,9 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
     describeToViewers(scene, info);
     describeZones(scene, info);
     info.set_leaf_count(simulation.bone->lattice.leafCount());
+    if (simulation.surroundings)  // their nodes are numbered behind those of the bone
+        info.set_leaf_count(info.leaf_count() +
+                            surroundingsLeafCount(simulation.surroundings->volume.geometry()));
     return info;
 }
 
@@ -145,7 +150,8 @@ ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const 
       tools_(simulation.tools),
       density_source_(*simulation.bone, history, shownProperties(scene, simulation)),
       density_scale_(scaleOf(simulation.mapping)),
-      scene_info_(sceneInfo(scene, simulation)) {
+      scene_info_(sceneInfo(scene, simulation)),
+      surroundings_(simulation.surroundings, simulation.bone->lattice.leafCount(), outbox) {
     *scene_info_.mutable_densities() = densityGridOf(density_source_, density_scale_);
 }
 
@@ -259,6 +265,7 @@ bool ShowSession::publishNodes() {
     if (const auto latest = recorder_.latest())
         burr_V = X_VW_ * Eigen::Map<const Eigen::Vector3d>(latest->p_WT);
     const int64_t now_ns = monotonicNowNs();
+    const bool are_put = surroundings_.isDone();
     std::vector<NodeGroup> groups =
         outbox_.takeNearest(burr_V.cast<float>(), budget_.available(now_ns), now_ns);
     for (NodeGroup& group : groups) {
@@ -267,6 +274,7 @@ bool ShowSession::publishNodes() {
         if (!written.is_whole) outbox_.put(std::move(group), now_ns);  // next round; a newer revision wins
     }
     is_whole_ = is_whole_ || outbox_.hasGivenWhole();
+    are_surroundings_shown_ = are_surroundings_shown_ || (are_put && outbox_.isEmpty());
     return !groups.empty();
 }
 
@@ -343,7 +351,7 @@ void ShowSession::publishStatus() {
     const LoopHealth health = recorder_.health();
     topics::Status status;
     status.set_scene(scene_name_);
-    status.set_is_model_partial(!is_whole_ || structures_.valid());
+    status.set_is_model_partial(!is_whole_ || !are_surroundings_shown_ || structures_.valid());
     status.set_preset(settingsName(commands_.accuracy().chosen()));
     // accuracy-report measures with the first tool.
     const auto figure = commands_.tools().chosen() == 0 ? figures_.find(status.preset()) : figures_.end();

@@ -16,6 +16,7 @@
 #include "haptic_server/session/recorder.h"
 #include "haptic_server/session/session_commands.h"
 #include "haptic_server/session/shown_effects.h"
+#include "haptic_server/session/surroundings_feed.h"
 #include "haptic_server/setup/scene_setup.h"
 
 namespace bonemill {
@@ -91,6 +92,8 @@ class ShowSession {
     int64_t last_tool_state_ns_ = 0;
     int64_t last_status_ns_ = 0;
     bool has_changed_ = false;  // since the last status
+    bool are_surroundings_shown_ = false;
+    SurroundingsFeed surroundings_;
 };
 
 }  // namespace bonemill

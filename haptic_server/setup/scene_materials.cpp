@@ -6,9 +6,11 @@
 #include "common/config/scene_tools.h"
 #include "common/units.h"
 #include "common/user_error.h"
+#include "haptic_server/setup/refuse_field.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/material_ids.h"
 #include "haptic_server/volume/import/protected_distance.h"
+#include "haptic_server/volume/import/region.h"
 
 namespace bonemill {
 namespace {
@@ -22,10 +24,6 @@ MaterialRule ruleOf(const scene::Material& material) {
     if (material.has_below_value()) rule.below = material.below_value();
     rule.labels.assign(material.label().begin(), material.label().end());
     return rule;
-}
-
-[[noreturn]] void refuse(const LoadedScene& loaded, const std::string& path, const std::string& why) {
-    throw UserError(placeOf(loaded.file.string(), loaded.lines, path) + "field `" + path + "`" + why);
 }
 
 double protectedReachOf(const scene::Scene& scene) {
@@ -77,9 +75,11 @@ std::vector<MaterialId> materialIdsOf(const LoadedScene& loaded, const RawVolume
     try {
         std::optional<RawVolume> labels;
         if (!label_path.empty()) labels = importVolume(resolvePath(loaded, label_path));
+        if (labels && loaded.scene.volume().has_region())
+            labels = resampleLabels(*labels, raw.geometry, label_path);
         return materialIds(raw, rules, labels ? &*labels : nullptr, label_path);
     } catch (const UserError& error) {
-        refuse(loaded, "volume.label_path", std::string(": ") + error.what());
+        refuseField(loaded, "volume.label_path", std::string(": ") + error.what());
     }
 }
 
@@ -91,7 +91,7 @@ std::shared_ptr<const DistanceField> protectedFieldOf(const LoadedScene& loaded,
     std::shared_ptr<const DistanceField> field =
         protectedDistance(properties, materialTableOf(loaded.scene), spacing, protectedReachOf(loaded.scene));
     if (!field)
-        refuse(
+        refuseField(
             loaded,
             effects.has_protected_structures() ? "effects.protected_structures" : "effects.virtual_fixture",
             " finds nothing to protect: no voxel is of a material with is_protected; check its range or "

@@ -6,15 +6,13 @@
 #include "common/config/scene_tools.h"
 #include "common/units.h"
 #include "common/user_error.h"
+#include "haptic_server/setup/scanned_bone.h"
 #include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/setup/scene_materials.h"
 #include "haptic_server/setup/scene_shapes.h"
 #include "haptic_server/setup/scene_task.h"
 #include "haptic_server/tick/hand_side.h"
 #include "haptic_server/tick/tick_budget.h"
-#include "haptic_server/volume/import/far_air.h"
-#include "haptic_server/volume/import/import_volume.h"
-#include "haptic_server/volume/import/small_pieces.h"
 
 namespace bonemill {
 namespace {
@@ -23,15 +21,6 @@ constexpr int kDefaultLeafCells = 16;
 constexpr double kLongestDentalTool = 30e-3;  // m from the burr's centre to the shaft's end
 constexpr double kMostOverload =
     3;  // a shaft of half the burr's radius is common, and leans more than it pokes
-
-DensityWindow windowOf(const scene::Volume& volume) {
-    DensityWindow window;
-    if (volume.has_window_low()) window.low = volume.window_low();
-    if (volume.has_window_high()) window.high = volume.window_high();
-    if (volume.has_iso_value()) window.iso = volume.iso_value();
-    window.smallest_piece_voxels = volume.smallest_piece_voxels();
-    return window;
-}
 
 // Milling rescans the leaves it touches in the tick, so that leaves must stay small.
 constexpr int kMostLeafCells = 128;
@@ -270,22 +259,17 @@ Simulation makeSimulation(const LoadedScene& loaded) {
                           .X_WD = poseOf(scene.device()),
                           .remarks = {},
                           .warnings = {}};
-    RawVolume raw = importVolume(resolvePath(loaded, scene.volume().path()), {scene.volume().series_uid()});
-    simulation.remarks.push_back(raw.description);
-    simulation.lacks_patient_axes = raw.lacks_patient_axes;
-    simulation.mapping = chooseMapping(raw, windowOf(scene.volume()));
-    if (simulation.mapping.is_iso_proposed)
-        simulation.remarks.push_back("no volume.iso_value in the scene: " +
-                                     textOf(simulation.mapping.iso_value) + " proposed from the histogram");
-    const std::vector<MaterialId> material_ids = materialIdsOf(loaded, raw);
-    VoxelVolume volume = densify(std::move(raw), simulation.mapping);
-    removeSmallPieces(volume, scene.volume().smallest_piece_voxels());
-    clearFarFromBone(volume);
-    const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), volume.geometry());
+    ScannedBone scanned = readBone(loaded);
+    simulation.remarks = std::move(scanned.remarks);
+    simulation.lacks_patient_axes = scanned.lacks_patient_axes;
+    simulation.mapping = scanned.mapping;
+    simulation.surroundings = std::move(scanned.surroundings);
+    const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), scanned.volume.geometry());
     simulation.tick = tickConfigOf(scene);
     mapRawValues(simulation.tick.effects, loaded, simulation.mapping);
-    addProperties(simulation, loaded, volume, material_ids);
-    simulation.bone = std::make_unique<BoneModel>(std::move(volume), leaf_cells, shellConfigOf(scene));
+    addProperties(simulation, loaded, scanned.volume, scanned.material_ids);
+    simulation.bone =
+        std::make_unique<BoneModel>(std::move(scanned.volume), leaf_cells, shellConfigOf(scene));
     simulation.task = judgedTaskOf(loaded, simulation.bone->volume, simulation.tick.effects.properties);
     warnOfLargeLeaves(simulation);
     fitToolsToBone(simulation, scene);

@@ -14,6 +14,7 @@
 #include "haptic_server/tick/tick_config.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "haptic_server/volume/import/densify.h"
+#include "haptic_server/volume/surroundings.h"
 
 namespace bonemill {
 
@@ -30,6 +31,7 @@ struct Simulation {
     TickConfig tick;
     AccuracySettings accuracy;
     std::unique_ptr<BoneModel> bone;
+    std::shared_ptr<const Surroundings> surroundings = nullptr;  // null: the bone is all there is
     DensityMapping mapping;
     std::vector<SceneTool> tools;                      // at least one
     std::shared_ptr<const JudgedTask> task = nullptr;  // null: the scene has none

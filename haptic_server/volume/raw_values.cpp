@@ -115,6 +115,10 @@ void RawValues::reverseBlocks(size_t stride, size_t count) noexcept {
         samples_);
 }
 
+void RawValues::setToLowest(size_t n) noexcept {
+    std::visit([&]<class T>(std::vector<T>& samples) { samples[n] = T(range_.low); }, samples_);
+}
+
 void RawValues::forget(size_t begin, size_t end) noexcept {
     std::visit([&](auto& samples) { bonemill::forget(std::span(samples).subspan(begin, end - begin)); },
                samples_);

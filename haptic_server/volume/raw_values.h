@@ -43,6 +43,8 @@ class RawValues {
     void append(std::vector<T> samples);
     // Makes the last block the first in every group of `count` blocks of `stride` values.
     void reverseBlocks(size_t stride, size_t count) noexcept;
+    // The value becomes the lowest finite one of all.
+    void setToLowest(size_t n) noexcept;
     // Gives back the memory of the values begin .. end - 1, which nobody may read any more.
     void forget(size_t begin, size_t end) noexcept;
 

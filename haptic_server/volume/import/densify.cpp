@@ -4,8 +4,8 @@
 #include <cstdio>
 
 #include "common/user_error.h"
+#include "haptic_server/volume/import/bone_pieces.h"
 #include "haptic_server/volume/import/propose_iso.h"
-#include "haptic_server/volume/import/small_pieces.h"
 
 namespace bonemill {
 namespace {

@@ -1,4 +1,4 @@
-#include "haptic_server/volume/import/small_pieces.h"
+#include "haptic_server/volume/import/bone_pieces.h"
 
 #include <gtest/gtest.h>
 
@@ -33,6 +33,33 @@ TEST(SmallPieces, goBelowTheSurface) {
     EXPECT_EQ(volume.at(4, 2, 3), kPiecesIso - 1);
     EXPECT_EQ(volume.at(5, 0, 3), kPiecesIso);
     EXPECT_EQ(volume.at(1, 1, 1), 0);
+}
+
+TEST(BonePieces, AreListedTheLargestFirstWithTheirPlaces) {
+    VoxelVolume volume = airOf({8, 6, 5});
+    const auto set = [&](int i, int j, int k) { volume.set(i, j, k, kPiecesIso); };
+    set(0, 0, 0);
+    set(4, 2, 1), set(5, 2, 1), set(5, 3, 1), set(5, 3, 2);
+    set(7, 5, 4), set(6, 5, 4);
+    set(0, 5, 4);
+    const BonePieces pieces(volume);
+    ASSERT_EQ(pieces.list().size(), 4u);
+    EXPECT_EQ(pieces.list()[0].voxels, 4u);
+    EXPECT_EQ(pieces.list()[0].box.min, Eigen::Vector3i(4, 2, 1));
+    EXPECT_EQ(pieces.list()[0].box.max, Eigen::Vector3i(5, 3, 2));
+    EXPECT_TRUE(pieces.list()[0].middle.isApprox(Eigen::Vector3d(4.75, 2.5, 1.25)));
+    EXPECT_EQ(pieces.list()[1].voxels, 2u);
+    EXPECT_EQ(pieces.list()[2].box.min, Eigen::Vector3i(0, 0, 0)) << "of two alike the lower one";
+    EXPECT_EQ(pieces.list()[3].box.min, Eigen::Vector3i(0, 5, 4));
+    EXPECT_EQ(pieces.touching({{5, 0, 0}, {7, 3, 1}}), (std::vector<bool>{true, false, false, false}));
+    EXPECT_EQ(pieces.touching({{7, 5, 0}, {7, 5, 4}}), (std::vector<bool>{false, true, false, false}));
+    std::vector<Eigen::Vector3i> seen;
+    EXPECT_EQ(
+        pieces.drop(volume, {false, true, false, true}, [&](const Eigen::Vector3i& v) { seen.push_back(v); }),
+        3u);
+    EXPECT_EQ(seen, (std::vector<Eigen::Vector3i>{{0, 5, 4}, {6, 5, 4}, {7, 5, 4}}));
+    EXPECT_EQ(volume.at(6, 5, 4), kPiecesIso - 1);
+    EXPECT_EQ(volume.at(4, 2, 1), kPiecesIso);
 }
 
 TEST(SmallPieces, nothingIsTooSmallForSizesOfZeroAndOne) {

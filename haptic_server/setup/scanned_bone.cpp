@@ -1,0 +1,71 @@
+#include "haptic_server/setup/scanned_bone.h"
+
+#include <cstdio>
+#include <utility>
+
+#include "haptic_server/setup/scene_materials.h"
+#include "haptic_server/setup/scene_pieces.h"
+#include "haptic_server/setup/scene_region.h"
+#include "haptic_server/volume/import/far_air.h"
+#include "haptic_server/volume/import/import_volume.h"
+
+namespace bonemill {
+namespace {
+
+DensityWindow windowOf(const scene::Volume& volume) {
+    DensityWindow window;
+    if (volume.has_window_low()) window.low = volume.window_low();
+    if (volume.has_window_high()) window.high = volume.window_high();
+    if (volume.has_iso_value()) window.iso = volume.iso_value();
+    return window;
+}
+
+std::string isoText(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+struct Scan {
+    RawVolume raw;
+    DensityMapping mapping;
+    std::vector<std::string> remarks;
+};
+
+ScannedBone wholeBone(const LoadedScene& loaded, Scan scan) {
+    const bool lacks_axes = scan.raw.lacks_patient_axes;
+    std::vector<MaterialId> ids = materialIdsOf(loaded, scan.raw);
+    VoxelVolume volume = densify(std::move(scan.raw), scan.mapping);
+    dropPieces(loaded, volume, {}, scan.remarks);
+    clearFarFromBone(volume);
+    return {std::move(volume), scan.mapping, std::move(ids), nullptr, lacks_axes, std::move(scan.remarks)};
+}
+
+ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
+    const VolumeGeometry whole = scan.raw.geometry;
+    CutScan cut = cutRegion(loaded, std::move(scan.raw), scan.mapping, scan.remarks);
+    const bool lacks_axes = cut.region.lacks_patient_axes;
+    std::vector<MaterialId> ids = materialIdsOf(loaded, cut.region);
+    VoxelVolume volume = densify(std::move(cut.region), scan.mapping);
+    removeSpecks(volume, whole);
+    clearFarFromBone(volume);
+    return {std::move(volume), scan.mapping,
+            std::move(ids),    std::make_shared<const Surroundings>(std::move(cut.surroundings)),
+            lacks_axes,        std::move(scan.remarks)};
+}
+
+}  // namespace
+
+ScannedBone readBone(const LoadedScene& loaded) {
+    const scene::Volume& scene = loaded.scene.volume();
+    Scan scan{importVolume(resolvePath(loaded, scene.path()), {scene.series_uid()}), {}, {}};
+    scan.remarks.push_back(scan.raw.description);
+    scan.mapping = chooseMapping(scan.raw, windowOf(scene));
+    if (scan.mapping.is_iso_proposed)
+        scan.remarks.push_back("no volume.iso_value in the scene: " + isoText(scan.mapping.iso_value) +
+                               " proposed from the histogram");
+    remarkThinWalls(loaded, scan.raw, scan.mapping.iso_value, scan.remarks);
+    return scene.has_region() ? boneOfRegion(loaded, std::move(scan)) : wholeBone(loaded, std::move(scan));
+}
+
+}  // namespace bonemill

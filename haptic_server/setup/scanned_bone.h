@@ -1,0 +1,28 @@
+// From the scan's file to the bone's densities: import, iso-value, pieces, region, materials. It is for
+// start-up only.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/config/scene_file.h"
+#include "haptic_server/volume/import/densify.h"
+#include "haptic_server/volume/material_properties.h"
+#include "haptic_server/volume/surroundings.h"
+
+namespace bonemill {
+
+struct ScannedBone {
+    VoxelVolume volume;
+    DensityMapping mapping;
+    std::vector<MaterialId> material_ids;              // of each voxel, x fastest; empty: the scene has none
+    std::shared_ptr<const Surroundings> surroundings;  // null: all of the scan is in the volume
+    bool lacks_patient_axes;                           // RawVolume
+    std::vector<std::string> remarks;                  // for people: what was read, proposed, left out
+};
+
+// Throws UserError.
+ScannedBone readBone(const LoadedScene& loaded);
+
+}  // namespace bonemill

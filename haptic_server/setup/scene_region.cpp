@@ -1,0 +1,157 @@
+#include "haptic_server/setup/scene_region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include "common/config/scene_geometry.h"
+#include "common/config/scene_tools.h"
+#include "common/units.h"
+#include "common/user_error.h"
+#include "haptic_server/setup/refuse_field.h"
+#include "haptic_server/setup/scene_pieces.h"
+#include "haptic_server/volume/import/bone_pieces.h"
+#include "haptic_server/volume/import/far_air.h"
+#include "haptic_server/volume/import/region.h"
+#include "haptic_server/volume/import/thin_walls.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kBurrShare = 0.25;  // docs/volumes.md: voxels of a quarter of the burr's radius
+constexpr double kProposedVoxels = 1 << 26;
+constexpr double kMostVoxels = 1 << 28;
+constexpr int64_t kMostLookedAt = 1 << 28;  // for thin walls: a second
+constexpr char kNowhere[] = " does not lie in the volume, or only its rim does";
+
+Eigen::AlignedBox3d boxOf(const LoadedScene& loaded) {
+    const scene::Volume::Region& region = loaded.scene.volume().region();
+    const Eigen::AlignedBox3d box(metresOf(region.min_mm()), metresOf(region.max_mm()));
+    if (!((box.max() - box.min()).minCoeff() > 0))
+        refuseField(loaded, "volume.region", " is empty: each of max_mm must be greater than that of min_mm");
+    return box;
+}
+
+double smallestBurr(const scene::Scene& scene) {
+    double radius = std::numeric_limits<double>::infinity();
+    for (const scene::Tool* tool : toolsOf(scene))
+        radius = std::min(radius, tool->burr_radius_mm() * kMillimetre);
+    return radius;
+}
+
+double voxelsOf(const VolumeGeometry& geometry) {
+    return geometry.dims.cast<double>().prod();
+}
+
+std::string rounded(double value) {
+    std::ostringstream text;
+    text.precision(3);
+    text << value;
+    return text.str();
+}
+
+struct VoxelChoice {
+    double edge;  // m
+    std::string why;
+};
+
+VoxelChoice chooseVoxel(const LoadedScene& loaded, const VolumeGeometry& scan,
+                        const Eigen::AlignedBox3d& box) {
+    const scene::Volume::Region& region = loaded.scene.volume().region();
+    if (region.has_resample_mm()) return {region.resample_mm() * kMillimetre, "as the scene asks"};
+    const double radius = smallestBurr(loaded.scene);
+    const std::string burr = "the smallest burr's radius of " + rounded(radius * kPerMillimetre) + " mm";
+    const double fine = kBurrShare * radius;
+    const double volume = regionGeometry(scan, box, fine).dims.cast<double>().prod() * fine * fine * fine;
+    const double affordable = std::cbrt(volume / kProposedVoxels);
+    if (affordable <= fine) return {fine, "a quarter of " + burr};
+    return {affordable,
+            "more than a quarter of " + burr + ", for 64 million voxels: a smaller region can be finer"};
+}
+
+// The voxels of the scan that the scene's bone comes from.
+IndexBox usedVoxels(const LoadedScene& loaded, const VolumeGeometry& scan) {
+    const Eigen::Vector3i last = scan.dims.array() - 1;
+    if (!loaded.scene.volume().has_region()) return {Eigen::Vector3i::Zero(), last};
+    const VolumeGeometry region = regionGeometry(scan, boxOf(loaded), scan.spacing.minCoeff());
+    if (region.voxelCount() == 0) return {};
+    const Eigen::Array3d low = (scan.X_WV.inverse() * region.X_WV.position).array() / scan.spacing.array();
+    const Eigen::Array3d size =
+        region.spacing.array() * region.dims.cast<double>().array() / scan.spacing.array();
+    return {low.floor().cast<int>().max(0).matrix(),
+            (low + size).ceil().cast<int>().min(last.array()).matrix()};
+}
+
+// X_VS keeps the axes' directions.
+Eigen::AlignedBox3d boneIn(const VoxelVolume& whole, const Pose& X_VS) {
+    Eigen::AlignedBox3d box;
+    forEachIndex({Eigen::Vector3i::Zero(), whole.dims().array() - 1}, [&](const Eigen::Vector3i& v) {
+        if (whole.at(v.x(), v.y(), v.z()) >= whole.iso())
+            box.extend(X_VS * Eigen::Vector3d(whole.spacing().cwiseProduct(v.cast<double>())));
+    });
+    return box;
+}
+
+RawVolume resampled(const LoadedScene& loaded, const RawVolume& scan, std::vector<std::string>& remarks) {
+    const Eigen::AlignedBox3d box = boxOf(loaded);
+    const VoxelChoice voxel = chooseVoxel(loaded, scan.geometry, box);
+    const VolumeGeometry region = regionGeometry(scan.geometry, box, voxel.edge);
+    if (region.dims.minCoeff() < 2) refuseField(loaded, "volume.region", kNowhere);
+    if (voxelsOf(region) > kMostVoxels)
+        refuseField(loaded, "volume.region.resample_mm",
+                    ": " + rounded(voxelsOf(region) / 1e6) + " million voxels are more than the " +
+                        rounded(kMostVoxels / 1e6) +
+                        " million that are allowed; raise it or take a smaller region");
+    std::ostringstream text;
+    text << "region of " << region.dims.transpose() << " voxels of " << rounded(voxel.edge * kPerMillimetre)
+         << " mm (" << voxel.why << "), resampled from voxels of "
+         << (scan.geometry.spacing * kPerMillimetre).transpose()
+         << " mm by cubic B-spline; the rest is shown, but neither felt nor milled";
+    remarks.push_back(text.str());
+    return resampleRegion(scan, region);
+}
+
+}  // namespace
+
+void remarkThinWalls(const LoadedScene& loaded, const RawVolume& scan, double iso_value,
+                     std::vector<std::string>& remarks) {
+    const IndexBox used = usedVoxels(loaded, scan.geometry);
+    if (used.count() > kMostLookedAt) return;
+    const ThinWalls walls = findThinWalls(scan, used, iso_value);
+    if (walls.voxels == 0) return;
+    remarks.push_back(std::to_string(walls.voxels) + " voxels (" +
+                      rounded(double(walls.voxels) * scan.geometry.spacing.prod() * kPerCubicMillimetre) +
+                      " mm^3) below the iso-value look like walls of some " +
+                      rounded(walls.median_thickness * kPerMillimetre) +
+                      " mm (median), too thin for the scan's voxels: they are no bone here; a lower "
+                      "volume.iso_value keeps more");
+}
+
+CutScan cutRegion(const LoadedScene& loaded, RawVolume scan, const DensityMapping& mapping,
+                  std::vector<std::string>& remarks) {
+    const IndexBox used = usedVoxels(loaded, scan.geometry);
+    if (used.isEmpty() || (used.max - used.min).minCoeff() < 1)
+        refuseField(loaded, "volume.region", kNowhere);
+    VoxelVolume whole = densify(std::as_const(scan), mapping);
+    const Eigen::Vector3i& dims = scan.geometry.dims;
+    dropPieces(loaded, whole, used, remarks, [&](const Eigen::Vector3i& v) {
+        scan.values.setToLowest(size_t(v.x()) +
+                                size_t(dims.x()) * (size_t(v.y()) + size_t(dims.y()) * size_t(v.z())));
+    });
+    clearFarFromBone(whole);
+    RawVolume region = resampled(loaded, scan, remarks);
+    const VolumeGeometry& fine = region.geometry;
+    const Eigen::Vector3d end = fine.spacing.cwiseProduct((fine.dims.array() - 1).matrix().cast<double>());
+    const Pose X_VS = fine.X_WV.inverse() * scan.geometry.X_WV;
+    const Eigen::AlignedBox3d bone = boneIn(whole, X_VS);
+    return {std::move(region), {std::move(whole), X_VS, {Eigen::Vector3d::Zero(), end}, bone}};
+}
+
+void removeSpecks(VoxelVolume& region, const VolumeGeometry& scan) {
+    constexpr double kSpeck = 4;  // voxels of the scan
+    removeSmallPieces(region, uint32_t(kSpeck * scan.spacing.prod() / region.voxelVolume()));
+}
+
+}  // namespace bonemill

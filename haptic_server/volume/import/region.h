@@ -1,0 +1,33 @@
+// Cuts the part of a scan where the burr works out of it, and gives it voxels that are fine enough for the
+// burr.
+//
+// The scan is taken for a cubic B-spline through its voxels (Unser, Splines, IEEE Signal Processing Magazine
+// 16, 1999): smooth to the second derivative, and exact at the scan's own voxels. It makes nothing sharper
+// than it was scanned: what the scanner blurred stays blurred.
+//
+// Lengths are in m. For start-up only: not RT-safe, it allocates the result, the scan's voxels around the
+// region as float, and four slices.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "haptic_server/volume/raw_volume.h"
+
+namespace bonemill {
+
+// The grid has cubes of `voxel` along the scan's axes. It covers the box (W; the smallest one along those
+// axes that holds it) as far as the centres of the scan's outermost voxels. Its dims are 0 where box and scan
+// do not meet.
+VolumeGeometry regionGeometry(const VolumeGeometry& scan, const Eigen::AlignedBox3d& box_W, double voxel);
+
+// The value at each voxel of the region. Values stay within the scan's range, and whole numbers whole. What
+// is not finite counts as the nearer end of that range, NaN as the lower one.
+RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region);
+
+// The label that has the largest share of the eight voxels around, by trilinear weights; the larger label
+// where two share alike. The labels may lie on any grid. Throws UserError, beginning with `label_file`, if
+// they end more than half a voxel within the region or are no whole numbers.
+RawVolume resampleLabels(const RawVolume& labels, const VolumeGeometry& region,
+                         const std::string& label_file);
+
+}  // namespace bonemill

@@ -1,0 +1,62 @@
+#include "haptic_server/volume/import/thin_walls.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace bonemill {
+namespace {
+
+constexpr double kLeastRise = 0.5;  // of the way from the higher end to the iso-value: noise rises less
+
+template <class Samples>
+double meanAbove(Samples samples, double iso) {
+    double sum = 0, count = 0;
+    for (const auto sample : samples)
+        if (const auto value = double(sample); std::isfinite(value) && value >= iso) sum += value, ++count;
+    return count > 0 ? sum / count : iso;
+}
+
+// In voxels along the axis; 0: it is none.
+template <class Samples>
+double wallAt(Samples samples, size_t at, size_t stride, double iso, double bone) {
+    std::array<double, 5> v{};
+    for (size_t n = 0; n < 5; ++n) v[n] = double(samples[at + n * stride - 2 * stride]);
+    const double base = std::max(v[0], v[4]);
+    if (!(v[2] > v[1] && v[2] > v[3] && v[2] < iso && v[2] - base >= kLeastRise * (iso - base))) return 0;
+    double sum = 0;
+    for (const double value : v) sum += std::max(0.0, value - base);
+    return sum / (bone - base);
+}
+
+}  // namespace
+
+ThinWalls findThinWalls(const RawVolume& scan, const IndexBox& within, double iso_value) {
+    const Eigen::Vector3i& dims = scan.geometry.dims;
+    const std::array<size_t, 3> stride = {1, size_t(dims.x()), size_t(dims.x()) * size_t(dims.y())};
+    std::vector<float> found;
+    scan.values.visit([&](auto samples) {
+        const double bone = meanAbove(samples, iso_value);
+        forEachIndex(within, [&](const Eigen::Vector3i& v) {
+            const size_t at = size_t(v.x()) + stride[1] * size_t(v.y()) + stride[2] * size_t(v.z());
+            if (!(double(samples[at]) < iso_value)) return;
+            double thinnest = 0;
+            for (int axis = 0; axis < 3; ++axis) {
+                if (v[axis] < 2 || v[axis] + 2 >= dims[axis]) continue;
+                const double wall =
+                    scan.geometry.spacing[axis] * wallAt(samples, at, stride[size_t(axis)], iso_value, bone);
+                if (wall > 0 && (thinnest == 0 || wall < thinnest)) thinnest = wall;
+            }
+            if (thinnest > 0) found.push_back(float(thinnest));
+        });
+    });
+    ThinWalls walls{.voxels = found.size()};
+    if (found.empty()) return walls;
+    const auto middle = found.begin() + ptrdiff_t(found.size() / 2);
+    std::nth_element(found.begin(), middle, found.end());
+    walls.median_thickness = double(*middle);
+    return walls;
+}
+
+}  // namespace bonemill
