@@ -34,7 +34,7 @@ struct Scan {
 
 ScannedBone wholeBone(const LoadedScene& loaded, Scan scan) {
     const bool lacks_axes = scan.raw.lacks_patient_axes;
-    std::vector<MaterialId> ids = materialIdsOf(loaded, scan.raw);
+    std::vector<MaterialId> ids = materialIdsOf(loaded, scan.raw, scan.remarks);
     VoxelVolume volume = densify(std::move(scan.raw), scan.mapping);
     dropPieces(loaded, volume, {}, scan.remarks);
     clearFarFromBone(volume);
@@ -45,7 +45,7 @@ ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
     const VolumeGeometry whole = scan.raw.geometry;
     CutScan cut = cutRegion(loaded, std::move(scan.raw), scan.mapping, scan.remarks);
     const bool lacks_axes = cut.region.lacks_patient_axes;
-    std::vector<MaterialId> ids = materialIdsOf(loaded, cut.region);
+    std::vector<MaterialId> ids = materialIdsOf(loaded, cut.region, scan.remarks);
     VoxelVolume volume = densify(std::move(cut.region), scan.mapping);
     removeSpecks(volume, whole);
     clearFarFromBone(volume);

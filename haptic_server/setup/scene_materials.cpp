@@ -1,7 +1,7 @@
 #include "haptic_server/setup/scene_materials.h"
 
 #include <algorithm>
-#include <optional>
+#include <sstream>
 
 #include "common/config/scene_tools.h"
 #include "common/units.h"
@@ -10,7 +10,7 @@
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/material_ids.h"
 #include "haptic_server/volume/import/protected_distance.h"
-#include "haptic_server/volume/import/region.h"
+#include "haptic_server/volume/import/resample_labels.h"
 
 namespace bonemill {
 namespace {
@@ -36,6 +36,15 @@ double protectedReachOf(const scene::Scene& scene) {
     for (const scene::Tool* tool : toolsOf(scene))
         burr = std::max({burr, tool->burr_radius_mm(), tool->burr_tip_radius_mm()});
     return (reach + burr) * kMillimetre + kBeyondWarning;
+}
+
+std::string textOf(const ResampledLabels& labels, const VolumeGeometry& file, const std::string& label_path) {
+    std::ostringstream text;
+    text.precision(3);
+    text << label_path << ": labels of " << file.dims.transpose() << " voxels of "
+         << (file.spacing * kPerMillimetre).transpose() << " mm, resampled; they cover "
+         << 100 * labels.covered << " % of the volume";
+    return text.str();
 }
 
 }  // namespace
@@ -67,17 +76,18 @@ bool wantsProperties(const scene::Scene& scene) {
            (effects.has_energy_removal() && effects.energy_removal().density_exponent() > 0);
 }
 
-std::vector<MaterialId> materialIdsOf(const LoadedScene& loaded, const RawVolume& raw) {
+std::vector<MaterialId> materialIdsOf(const LoadedScene& loaded, const RawVolume& raw,
+                                      std::vector<std::string>& remarks) {
     if (loaded.scene.material_size() == 0) return {};
     std::vector<MaterialRule> rules;
     for (const scene::Material& material : loaded.scene.material()) rules.push_back(ruleOf(material));
     const std::string& label_path = loaded.scene.volume().label_path();
+    if (label_path.empty()) return materialIds(raw, rules, nullptr);
     try {
-        std::optional<RawVolume> labels;
-        if (!label_path.empty()) labels = importVolume(resolvePath(loaded, label_path));
-        if (labels && loaded.scene.volume().has_region())
-            labels = resampleLabels(*labels, raw.geometry, label_path);
-        return materialIds(raw, rules, labels ? &*labels : nullptr, label_path);
+        const RawVolume file = importVolume(resolvePath(loaded, label_path));
+        const ResampledLabels labels = resampleLabels(file, raw.geometry, label_path);
+        if (!labels.is_exact) remarks.push_back(textOf(labels, file.geometry, label_path));
+        return materialIds(raw, rules, &labels.labels);
     } catch (const UserError& error) {
         refuseField(loaded, "volume.label_path", std::string(": ") + error.what());
     }

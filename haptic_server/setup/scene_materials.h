@@ -23,9 +23,9 @@ bool wantsVertexMaterials(const scene::Scene& scene);
 bool wantsProperties(const scene::Scene& scene);
 
 // There is one of each raw voxel, x fastest, or none if the scene has no materials. Imports
-// volume.label_path, and resamples it onto the raw voxels where the scene has a volume.region. Throws
-// UserError.
-std::vector<MaterialId> materialIdsOf(const LoadedScene& loaded, const RawVolume& raw);
+// volume.label_path, and says it if its grid is another one. Throws UserError.
+std::vector<MaterialId> materialIdsOf(const LoadedScene& loaded, const RawVolume& raw,
+                                      std::vector<std::string>& remarks);
 
 // The field is null if no effect asks for it. Throws UserError if no voxel is of a protected material.
 std::shared_ptr<const DistanceField> protectedFieldOf(const LoadedScene& loaded,

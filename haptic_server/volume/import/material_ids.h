@@ -21,10 +21,8 @@ struct MaterialRule {
 inline constexpr uint32_t kMostLabel = 65535;
 
 // There is one of each voxel, x fastest; of several rules that fit the last one wins. Values that are not
-// finite fit no range. `labels` may be null; its file may store the axes in another order or direction as
-// long as the voxels are the same. Throws UserError, beginning with the labels' `label_file`, when they are
-// not, or are no whole numbers.
+// finite fit no range. `labels` may be null; they are whole numbers on the same voxels (resample_labels.h).
 std::vector<MaterialId> materialIds(const RawVolume& raw, std::span<const MaterialRule> rules,
-                                    const RawVolume* labels, const std::string& label_file);
+                                    const RawVolume* labels);
 
 }  // namespace bonemill

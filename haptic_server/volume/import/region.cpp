@@ -5,13 +5,11 @@
 #include <cmath>
 #include <vector>
 
-#include "common/user_error.h"
 #include "haptic_server/volume/import/cubic_spline.h"
+#include "haptic_server/volume/import/index_map.h"
 
 namespace bonemill {
 namespace {
-
-constexpr double kRounding = 1e-6;  // voxels
 
 // The scan's voxels around the region, as coefficients of the spline.
 class SplineCoefficients {
@@ -125,55 +123,6 @@ class SliceMaker {
     std::vector<float> row_;
 };
 
-// Takes the voxel indices of `to` to those of `from`.
-Eigen::Affine3d indexMap(const VolumeGeometry& to, const VolumeGeometry& from) {
-    const Pose X = from.X_WV.inverse() * to.X_WV;
-    Eigen::Affine3d map = Eigen::Affine3d::Identity();
-    map.linear() =
-        from.spacing.cwiseInverse().asDiagonal() * X.rotation.toRotationMatrix() * to.spacing.asDiagonal();
-    map.translation() = from.spacing.cwiseInverse().cwiseProduct(X.position);
-    return map;
-}
-
-template <class Samples>
-double labelAt(Samples samples, const Eigen::Vector3i& dims, const Eigen::Vector3d& at) {
-    const Eigen::Vector3i low = at.array().floor().cast<int>();
-    const Eigen::Vector3d t = at - low.cast<double>();
-    std::array<double, 8> label{}, share{};
-    for (int corner = 0; corner < 8; ++corner) {
-        const Eigen::Vector3i bit(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-        const Eigen::Vector3i v = (low + bit).cwiseMax(0).cwiseMin(dims - Eigen::Vector3i::Ones());
-        label[size_t(corner)] = double(
-            samples[size_t(v.x()) + size_t(dims.x()) * (size_t(v.y()) + size_t(dims.y()) * size_t(v.z()))]);
-        share[size_t(corner)] =
-            (bit.x() ? t.x() : 1 - t.x()) * (bit.y() ? t.y() : 1 - t.y()) * (bit.z() ? t.z() : 1 - t.z());
-    }
-    double best = label[0], best_share = -1;
-    for (size_t n = 0; n < 8; ++n) {
-        double all = 0;
-        for (size_t m = 0; m < 8; ++m) all += label[m] == label[n] ? share[m] : 0;
-        if (all < best_share || (all == best_share && label[n] < best)) continue;
-        best = label[n];
-        best_share = all;
-    }
-    return best;
-}
-
-void checkCovers(const RawVolume& labels, const VolumeGeometry& region, const Eigen::Affine3d& map,
-                 const std::string& label_file) {
-    for (int corner = 0; corner < 8; ++corner) {
-        const Eigen::Vector3i bit(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-        const Eigen::Vector3i last = region.dims.array() - 1;
-        const Eigen::Vector3d at = map * bit.cwiseProduct(last).cast<double>();
-        const Eigen::Array3d end = labels.geometry.dims.cast<double>().array() - 1;
-        if ((at.array() < -0.5 - kRounding).any() || (at.array() > end + 0.5 + kRounding).any())
-            throw UserError(label_file + " does not cover volume.region");
-    }
-    if (const ValueRange& range = labels.values.range(); !range.are_integers || range.non_finite > 0)
-        throw UserError(label_file +
-                        " holds values that are no whole numbers: labels are needed, not a scan");
-}
-
 }  // namespace
 
 VolumeGeometry regionGeometry(const VolumeGeometry& scan, const Eigen::AlignedBox3d& box_W, double voxel) {
@@ -212,27 +161,6 @@ RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region) {
         }
         out.values.append(std::span<const float>(slice));
     }
-    return out;
-}
-
-RawVolume resampleLabels(const RawVolume& labels, const VolumeGeometry& region,
-                         const std::string& label_file) {
-    const Eigen::Affine3d map = indexMap(region, labels.geometry);
-    checkCovers(labels, region, map, label_file);
-    RawVolume out;
-    out.geometry = region;
-    out.values.reserve(region.voxelCount());
-    labels.values.visit([&](auto samples) {
-        std::vector<float> slice;
-        for (int k = 0; k < region.dims.z(); ++k) {
-            slice.clear();
-            for (int j = 0; j < region.dims.y(); ++j)
-                for (int i = 0; i < region.dims.x(); ++i)
-                    slice.push_back(
-                        float(labelAt(samples, labels.geometry.dims, map * Eigen::Vector3d(i, j, k))));
-            out.values.append(std::span<const float>(slice));
-        }
-    });
     return out;
 }
 

@@ -24,10 +24,4 @@ VolumeGeometry regionGeometry(const VolumeGeometry& scan, const Eigen::AlignedBo
 // is not finite counts as the nearer end of that range, NaN as the lower one.
 RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region);
 
-// The label that has the largest share of the eight voxels around, by trilinear weights; the larger label
-// where two share alike. The labels may lie on any grid. Throws UserError, beginning with `label_file`, if
-// they end more than half a voxel within the region or are no whole numbers.
-RawVolume resampleLabels(const RawVolume& labels, const VolumeGeometry& region,
-                         const std::string& label_file);
-
 }  // namespace bonemill

@@ -97,11 +97,17 @@ TEST_F(SceneMaterials, ThatNoVoxelHasAreSaidSo) {
     }));
 }
 
-TEST_F(SceneMaterials, LabelsOfAnotherSizeAreRefusedWithTheirLine) {
-    expectUserError(
-        [&] { makeSimulation(sceneOf("short.nrrd", kMaterials)); },
-        {"s.textproto:2: field `volume.label_path`: short.nrrd has 20 x 18 x 15 voxels, the volume "
-         "20 x 18 x 16: both must lie on the same grid"});
+TEST_F(SceneMaterials, LabelsOfAnotherGridAreResampledAndThatIsSaid) {
+    const Simulation simulation = makeSimulation(sceneOf("short.nrrd", kMaterials));
+    EXPECT_TRUE(std::ranges::any_of(simulation.remarks, [](const std::string& remark) {
+        return remark.find("short.nrrd: labels of 20 18 15 voxels") != std::string::npos &&
+               remark.find("cover 93.8 %") != std::string::npos;
+    }));
+    const BoneProperties& properties = *simulation.tick.effects.properties;
+    EXPECT_EQ(properties.material({10, 8, 5}), 3);
+}
+
+TEST_F(SceneMaterials, LabelsThatAreNotThereAreNamedWithTheirLine) {
     expectUserError([&] { makeSimulation(sceneOf("none.nrrd", kMaterials)); },
                     {"s.textproto:2: field `volume.label_path`: ", "none.nrrd"});
 }

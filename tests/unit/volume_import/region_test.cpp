@@ -6,34 +6,12 @@
 #include <vector>
 
 #include "haptic_server/volume/index_box.h"
-#include "tests/unit/volume_import/expect_user_error.h"
+#include "tests/unit/volume_import/grid_scan.h"
 
 namespace bonemill {
 namespace {
 
 constexpr double kMm = 1e-3;
-
-RawVolume scanOf(const VolumeGeometry& geometry,
-                 const std::function<double(const Eigen::Vector3d& p_W)>& value) {
-    RawVolume scan;
-    scan.geometry = geometry;
-    std::vector<float> values;
-    forEachIndex({Eigen::Vector3i::Zero(), geometry.dims.array() - 1}, [&](const Eigen::Vector3i& v) {
-        values.push_back(
-            float(value(geometry.X_WV * Eigen::Vector3d(geometry.spacing.cwiseProduct(v.cast<double>())))));
-    });
-    scan.values.append(std::span<const float>(values));
-    return scan;
-}
-
-size_t indexOf(const VolumeGeometry& geometry, const Eigen::Vector3i& v) {
-    return size_t(v.x()) +
-           size_t(geometry.dims.x()) * (size_t(v.y()) + size_t(geometry.dims.y()) * size_t(v.z()));
-}
-
-Eigen::Vector3d placeOfVoxel(const VolumeGeometry& geometry, const Eigen::Vector3i& v) {
-    return geometry.X_WV * Eigen::Vector3d(geometry.spacing.cwiseProduct(v.cast<double>()));
-}
 
 // A mastoid's: 1 x 1 x 1.5 mm, turned and moved in W.
 VolumeGeometry coarseGrid() {
@@ -131,37 +109,6 @@ TEST(Region, TakesWhatIsNotFiniteForTheEndsOfTheRange) {
     const RawVolume fine = resampleRegion(scan, regionGeometry(grid, boxInMiddle(grid, 3 * kMm), 0.5 * kMm));
     EXPECT_EQ(fine.values.range().non_finite, 0u);
     EXPECT_LT(fine.values.range().low, -500) << "the hole";
-}
-
-TEST(RegionLabels, AreThoseOfTheNearestVoxelsOnAnyGrid) {
-    const VolumeGeometry region =
-        regionGeometry(coarseGrid(), boxInMiddle(coarseGrid(), 4 * kMm), 0.25 * kMm);
-    VolumeGeometry grid = coarseGrid();  // turned against the region's
-    grid.X_WV.rotation =
-        Eigen::Quaterniond(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ())) * grid.X_WV.rotation;
-    grid.dims = {80, 72, 90};
-    grid.spacing.setConstant(0.6 * kMm);
-    const Eigen::Vector3d normal = Eigen::Vector3d(1, -2, 0.5).normalized();
-    const double at = normal.dot(placeOfVoxel(region, region.dims / 2));
-    const RawVolume labels =
-        scanOf(grid, [&](const Eigen::Vector3d& p) { return normal.dot(p) > at ? 7.0 : 3.0; });
-    const RawVolume fine = resampleLabels(labels, region, "labels.nrrd");
-    forEachIndex({Eigen::Vector3i::Zero(), region.dims.array() - 1}, [&](const Eigen::Vector3i& v) {
-        const double beyond = normal.dot(placeOfVoxel(region, v)) - at;
-        if (std::abs(beyond) < 0.6 * kMm) return;  // a voxel of the labels: either may be right
-        ASSERT_EQ(fine.values[indexOf(region, v)], beyond > 0 ? 7 : 3) << v.transpose();
-    });
-}
-
-TEST(RegionLabels, MustCoverTheRegionAndBeWholeNumbers) {
-    const VolumeGeometry grid = coarseGrid();
-    const VolumeGeometry region = regionGeometry(grid, boxInMiddle(grid, 4 * kMm), 0.5 * kMm);
-    VolumeGeometry elsewhere = grid;
-    elsewhere.X_WV.position.x() += 20 * kMm;
-    const RawVolume aside = scanOf(elsewhere, [](const Eigen::Vector3d&) { return 1.0; });
-    expectUserError([&] { resampleLabels(aside, region, "labels.nrrd"); }, {"labels.nrrd", "does not cover"});
-    const RawVolume halves = scanOf(grid, [](const Eigen::Vector3d&) { return 1.5; });
-    expectUserError([&] { resampleLabels(halves, region, "labels.nrrd"); }, {"labels.nrrd", "whole numbers"});
 }
 
 }  // namespace
