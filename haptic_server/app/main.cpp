@@ -11,6 +11,7 @@
 #include "common/run_program.h"
 #include "common/user_error.h"
 #include "haptic_server/accuracy_report/accuracy_report.h"
+#include "haptic_server/casework/make_case.h"
 #include "haptic_server/export/export_journal.h"
 #include "haptic_server/offline/assess_journal.h"
 #include "haptic_server/offline/describe_scene.h"
@@ -145,6 +146,32 @@ void addReportOptions(CLI::App& app, AccuracyReportOptions& report) {
         ->check(within(1e-3, 1e6));
 }
 
+void addCaseOptions(CLI::App& app, CaseRequest& request) {
+    app.add_option("scan", request.scan, "folder of a DICOM series, or a file")->required();
+    app.add_option("--out", request.out, "new folder for the case")->required()->type_name("DIR");
+    app.add_option("--series", request.series, "UID of the series; default: the one with the most slices");
+    app.add_option("--title", request.title, "what people read in the list of scenes");
+    app.add_option("--iso", request.iso, "raw value (HU) of the bone's surface; default: proposed");
+    app.add_option("--at", request.at_mm,
+                   "middle of the part that is milled, in W (docs/frames.md), mm; default: all is")
+        ->expected(3);
+    app.add_option("--size-mm", request.size_mm, "edge of that part")
+        ->check(within(2, 500))
+        ->capture_default_str();
+    app.add_option("--voxel-mm", request.voxel_mm,
+                   "of that part; default: a quarter of the smallest burr's radius")
+        ->check(within(0.01, 10));
+    app.add_option("--from", request.from_mm, "where the hand comes from, in W, mm; default: from outside")
+        ->expected(3);
+    app.add_option("--drop-piece", request.drop_pieces, "leaves this piece of bone out, may be given again");
+    app.add_option("--labels", request.labels, "label map, on any grid");
+    app.add_option(
+        "--label", request.label_words,
+        "NUMBER=NAME of a structure in it, with :protected or :target behind it, may be given again");
+    app.add_option("--tools", request.tools, "scene text with the tools, as those in deploy/tools")
+        ->type_name("FILE");
+}
+
 struct Options {
     std::string log_level = "info";
     bool describe = false;
@@ -156,6 +183,7 @@ struct Options {
     AssessOptions assess;
     ReplayOptions replay;
     ExportOptions files;
+    CaseRequest request;
     std::string journal;
 };
 
@@ -214,6 +242,9 @@ int serve(int argc, char** argv) {
     CLI::App* const replay_command =
         app.add_subcommand("replay", "show a recorded session again, as a live one (docs/replay.md)");
     addReplayOptions(*replay_command, options.replay);
+    CLI::App* const case_command =
+        app.add_subcommand("make-case", "make a training case of a scan (docs/cases.md)");
+    addCaseOptions(*case_command, options.request);
     CLI::App* const session_command =
         app.add_subcommand("session", "what can be done with what sessions have left")->require_subcommand(1);
     CLI::App* const forget_command = session_command->add_subcommand(
@@ -236,6 +267,10 @@ int serve(int argc, char** argv) {
     if (forget_command->parsed()) return forgetPerson(options.forget, std::cout);
     if (export_command->parsed()) {
         exportJournal(options.files);
+        return 0;
+    }
+    if (case_command->parsed()) {
+        makeCase(options.request, versionText(), std::cout);
         return 0;
     }
     if (replay_command->parsed()) return runReplay(options.replay);

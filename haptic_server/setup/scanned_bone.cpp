@@ -1,6 +1,5 @@
 #include "haptic_server/setup/scanned_bone.h"
 
-#include <cstdio>
 #include <utility>
 
 #include "haptic_server/setup/scene_materials.h"
@@ -18,12 +17,6 @@ DensityWindow windowOf(const scene::Volume& volume) {
     if (volume.has_window_high()) window.high = volume.window_high();
     if (volume.has_iso_value()) window.iso = volume.iso_value();
     return window;
-}
-
-std::string isoText(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
 }
 
 struct Scan {
@@ -61,9 +54,8 @@ ScannedBone readBone(const LoadedScene& loaded) {
     Scan scan{importVolume(resolvePath(loaded, scene.path()), {scene.series_uid()}), {}, {}};
     scan.remarks.push_back(scan.raw.description);
     scan.mapping = chooseMapping(scan.raw, windowOf(scene));
-    if (scan.mapping.is_iso_proposed)
-        scan.remarks.push_back("no volume.iso_value in the scene: " + isoText(scan.mapping.iso_value) +
-                               " proposed from the histogram");
+    if (scan.mapping.proposed)
+        scan.remarks.push_back("no volume.iso_value in the scene: " + textOf(*scan.mapping.proposed));
     remarkThinWalls(loaded, scan.raw, scan.mapping.iso_value, scan.remarks);
     return scene.has_region() ? boneOfRegion(loaded, std::move(scan)) : wholeBone(loaded, std::move(scan));
 }

@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostListed = 6;
+constexpr size_t kMostListed = 4;
 
 std::vector<bool> droppedOf(const LoadedScene& loaded, const BonePieces& pieces, const IndexBox& region) {
     const scene::Volume& scene = loaded.scene.volume();

@@ -47,11 +47,11 @@ DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window) 
     if (!(mapping.low < mapping.high))
         throw UserError("the density window " + window_text +
                         " is empty; window_low must be below window_high");
-    mapping.is_iso_proposed = !window.iso;
-    mapping.iso_value = window.iso ? *window.iso : proposeIsoValue(raw);
+    if (!window.iso) mapping.proposed = proposeIso(raw);
+    mapping.iso_value = window.iso ? *window.iso : mapping.proposed->value;
     mapping.iso = mapping.density(mapping.iso_value);
     if (mapping.iso == 0 || mapping.iso == kMaxDensity)
-        throw UserError(std::string("the ") + (mapping.is_iso_proposed ? "proposed " : "") + "iso-value " +
+        throw UserError(std::string("the ") + (mapping.proposed ? "proposed " : "") + "iso-value " +
                         number(mapping.iso_value) + " is not well inside the density window " + window_text +
                         "; set iso_value, window_low and window_high in the scene");
     return mapping;

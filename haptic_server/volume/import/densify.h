@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "haptic_server/volume/import/propose_iso.h"
 #include "haptic_server/volume/voxel_volume.h"
 
 namespace bonemill {
@@ -14,7 +15,7 @@ namespace bonemill {
 struct DensityWindow {
     std::optional<double> low;           // becomes density 0; absent: lowest finite value of the data
     std::optional<double> high;          // becomes density 255; absent: highest finite value
-    std::optional<double> iso;           // bone surface; absent: proposeIsoValue()
+    std::optional<double> iso;           // bone surface; absent: proposeIso()
     uint32_t smallest_piece_voxels = 0;  // pieces with fewer voxels are removed; 0 and 1 keep everything
 };
 
@@ -23,8 +24,8 @@ struct DensityMapping {
     double low = 0;
     double high = 1;
     double iso_value = 0;
-    bool is_iso_proposed = false;
-    Density iso = 0;  // density of iso_value, 0 < iso < kMaxDensity
+    std::optional<IsoProposal> proposed = {};  // iso_value comes from there
+    Density iso = 0;                           // density of iso_value, 0 < iso < kMaxDensity
 
     // It is linear, clamped to 0 .. kMaxDensity and rounded to nearest; NaN becomes 0 (air).
     Density density(double raw) const noexcept;

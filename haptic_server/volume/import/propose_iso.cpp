@@ -2,162 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
-#include <optional>
 
-#include "common/math/pinned_math.h"
 #include "common/user_error.h"
+#include "haptic_server/volume/import/value_histogram.h"
 
 namespace bonemill {
 namespace {
-
-struct Histogram {
-    double low = 0;
-    double width = 1;
-    std::vector<double> count;
-    double total = 0;  // all finite values, also those outside the bins
-
-    double centre(size_t bin) const { return low + (double(bin) + 0.5) * width; }
-};
-
-Histogram countInto(const RawValues& values, double low, double width, size_t bins) {
-    Histogram h{low, width, std::vector<double>(bins, 0.0), 0.0};
-    h.total = double(values.size() - values.range().non_finite);
-    values.visit([&](auto samples) {
-        for (const double v : samples) {
-            const double bin = (v - low) / width;
-            if (bin >= 0 && bin < double(bins)) h.count[size_t(bin)] += 1;
-        }
-    });
-    return h;
-}
-
-// Bins of integer data hold a whole number of values, or some would be empty and look like valleys.
-Histogram binnedOver(const RawValues& values, double low, double high, bool are_integers, size_t bins) {
-    double width = (high - low) / double(bins);
-    if (are_integers) {
-        width = std::max(1.0, std::ceil((high - low + 1) / double(bins)));
-        low -= 0.5;
-        bins = size_t((high - low) / width) + 1;
-    } else {
-        bins += 1;  // the highest value lies on the edge of the last bin
-    }
-    return countInto(values, low, width, bins);
-}
-
-constexpr size_t kBins = 256;
-constexpr double kTail = 2e-4;  // share of values at each end that may be artefacts (metal, padding)
-
-// Zooms in until the tails that are cut off hold no more than kTail of the values each.
-Histogram histogramOf(const RawValues& values, ValueRange range) {
-    for (int zoom = 0; zoom < 16; ++zoom) {
-        const Histogram h = binnedOver(values, range.low, range.high, range.are_integers, kBins);
-        size_t first = 0, last = h.count.size() - 1;
-        for (double tail = 0; first < last && (tail += h.count[first]) <= kTail * h.total;) ++first;
-        for (double tail = 0; last > first && (tail += h.count[last]) <= kTail * h.total;) --last;
-        if (last + 1 - first > h.count.size() / 2) return h;
-        const double low = h.low + double(first) * h.width, high = h.low + double(last + 1) * h.width;
-        if (first == last && range.are_integers && h.width <= 1) return h;
-        if (!(high - low < 0.9 * (range.high - range.low))) return h;
-        range.low = range.are_integers ? std::ceil(low) : low;
-        range.high = range.are_integers ? std::floor(high) : high;
-    }
-    return binnedOver(values, range.low, range.high, range.are_integers, kBins);
-}
-
-std::vector<double> smoothed(const std::vector<double>& count, double sigma_bins) {
-    const int reach = int(std::ceil(3 * sigma_bins));
-    std::vector<double> out(count.size(), 0.0);
-    for (int b = 0; b < int(count.size()); ++b) {
-        double weights = 0;
-        for (int d = -reach; d <= reach; ++d) {
-            if (b + d < 0 || b + d >= int(count.size())) continue;
-            const double w = pinned::exp(-0.5 * d * d / (sigma_bins * sigma_bins));
-            out[size_t(b)] += w * count[size_t(b + d)];
-            weights += w;
-        }
-        out[size_t(b)] /= weights;
-    }
-    return out;
-}
-
-constexpr double kSmoothingBins = 2.0;
-constexpr double kValleyRatio = 0.6;  // a valley must fall below this share of the lower of its two peaks
-constexpr double kLeastMass = 0.005;  // and a material must hold this share of the voxels
-
-struct Mode {
-    size_t bin;     // peak
-    double height;  // of the smoothed histogram
-    double mass;    // share of all voxels between the valleys around it
-};
-
-// Finds peaks of the smoothed histogram that are separated by real valleys and hold a real share
-// of the voxels.
-std::vector<Mode> modesOf(const Histogram& h) {
-    const std::vector<double> s = smoothed(h.count, kSmoothingBins);
-    std::vector<size_t> peaks;
-    size_t valley = 0;  // lowest bin since the last accepted peak
-    for (size_t b = 0; b < s.size(); ++b) {
-        if (!peaks.empty() && s[b] < s[valley]) valley = b;
-        const bool is_peak =
-            s[b] > 0 && (b == 0 || s[b] > s[b - 1]) && (b + 1 == s.size() || s[b] >= s[b + 1]);
-        if (!is_peak) continue;
-        if (!peaks.empty() && s[valley] > kValleyRatio * std::min(s[peaks.back()], s[b])) {
-            if (s[b] <= s[peaks.back()]) continue;  // a shoulder of the last peak
-            peaks.pop_back();                       // the last one was a shoulder of this
-        }
-        peaks.push_back(b);
-        valley = b;
-    }
-    std::vector<Mode> modes;
-    for (size_t p = 0; p < peaks.size(); ++p) {
-        const auto lowest = [&](size_t from, size_t to) {
-            return size_t(std::min_element(s.begin() + ptrdiff_t(from), s.begin() + ptrdiff_t(to)) -
-                          s.begin());
-        };
-        const size_t begin = p == 0 ? 0 : lowest(peaks[p - 1], peaks[p]);
-        const size_t end = p + 1 == peaks.size() ? s.size() : lowest(peaks[p], peaks[p + 1]);
-        double mass = 0;
-        for (size_t b = begin; b < end; ++b) mass += h.count[b];
-        mass /= h.total;
-        if (mass >= kLeastMass) modes.push_back({peaks[p], s[peaks[p]], mass});
-    }
-    return modes;
-}
-
-// Peaks are read off more finely than a bin: centre of mass of the bins around it.
-double peakValue(const Histogram& h, const Mode& mode) {
-    double weight = 0, sum = 0;
-    const size_t reach = size_t(kSmoothingBins);
-    for (size_t b = mode.bin - std::min(mode.bin, reach); b < std::min(h.count.size(), mode.bin + reach + 1);
-         ++b) {
-        weight += h.count[b];
-        sum += h.count[b] * h.centre(b);
-    }
-    return weight > 0 ? sum / weight : h.centre(mode.bin);
-}
-
-// Chooses the threshold with the largest variance between the two classes (Otsu 1979).
-double otsuThreshold(const Histogram& h) {
-    double total = 0, total_moment = 0;
-    for (size_t b = 0; b < h.count.size(); ++b) {
-        total += h.count[b];
-        total_moment += h.count[b] * h.centre(b);
-    }
-    double below = 0, below_moment = 0, best = -1, threshold = h.centre(h.count.size() / 2);
-    for (size_t b = 0; b + 1 < h.count.size(); ++b) {
-        below += h.count[b];
-        below_moment += h.count[b] * h.centre(b);
-        if (below == 0 || below == total) continue;
-        const double gap = below_moment / below - (total_moment - below_moment) / (total - below);
-        const double between = below * (total - below) * gap * gap;
-        if (between > best) {
-            best = between;
-            threshold = h.centre(b) + h.width / 2;
-        }
-    }
-    return threshold;
-}
 
 // Only CT in Hounsfield units has such values: air is at -1000.
 constexpr double kSurelyAirHu = -500;
@@ -234,20 +86,109 @@ std::optional<double> halfWayAboveBackground(const Histogram& h, const std::vect
     return std::nullopt;
 }
 
-}  // namespace
+// Of a scan whose scale is not known: what is far denser than the main material above air, and of many
+// densities, is bone in soft tissue; enamel above dentine is of one. With air at -1000 HU and soft tissue at
+// 40, kBoneHighHu lies a quarter of the way further.
+constexpr double kBoneAboveTissue = 0.25, kLeastSpread = 0.6;  // of the way from the background to the tissue
+constexpr double kAirQuantile = 0.01;
+constexpr double kLeastTail = 0.003, kMostTail = 0.5;  // of the tissue's voxels
 
-double proposeIsoValue(const RawVolume& raw) {
+// The value below which that share of what lies above `from` is.
+double quantileAbove(const Histogram& h, double from, double share) {
+    double rest = share * h.sumAbove(from);
+    for (size_t b = 0; b < h.count.size(); ++b)
+        if (h.low + double(b) * h.width >= from && (rest -= h.count[b]) <= 0) return h.centre(b);
+    return h.centre(h.count.size() - 1);
+}
+
+std::optional<double> boneAbove(const Histogram& h, double air, double tissue, double tissue_share) {
+    const double bone = tissue + kBoneAboveTissue * (tissue - air);
+    const double share = h.sumAbove(bone) / (tissue_share * h.total);
+    if (share < kLeastTail || share > kMostTail) return std::nullopt;
+    const double spread = quantileAbove(h, bone, 0.9) - quantileAbove(h, bone, 0.1);
+    return spread >= kLeastSpread * (tissue - air) ? std::optional(bone) : std::nullopt;
+}
+
+// Of a scan of the trunk most is soft tissue, and air is no material of its own.
+std::optional<double> boneAboveTissue(const Histogram& h, const std::vector<Mode>& modes) {
+    const auto background = std::ranges::max_element(modes, {}, &Mode::mass);
+    const auto above = std::ranges::max_element(background + 1, modes.end(), {}, &Mode::mass);
+    if (above != modes.end())
+        return boneAbove(h, peakValue(h, *background), peakValue(h, *above), above->mass);
+    const double air =
+        background == modes.begin() ? quantileAbove(h, h.low, kAirQuantile) : peakValue(h, modes.front());
+    return boneAbove(h, air, peakValue(h, *background), background->mass);
+}
+
+IsoProposal ofUnknownScale(const Histogram& h, const std::vector<Mode>& modes) {
+    const auto half_way = halfWayAboveBackground(h, modes);
+    if (modes.empty())
+        return {otsuThreshold(h), IsoDoubt::kLarge, {}, "no material stands out: Otsu's threshold"};
+    if (const auto bone = boneAboveTissue(h, modes))
+        return {*bone, IsoDoubt::kLarge, half_way,
+                "what lies above what looks like soft tissue, on an unknown scale"};
+    if (half_way) {
+        const bool are_more = modes.size() > 2;
+        const double other =
+            are_more ? (peakValue(h, modes[modes.size() - 2]) + peakValue(h, modes.back())) / 2 : *half_way;
+        return {*half_way, are_more ? IsoDoubt::kSome : IsoDoubt::kLittle,
+                other == *half_way ? std::nullopt : std::optional(other),
+                "half-way from the background to the next denser material"};
+    }
+    return {otsuThreshold(h), IsoDoubt::kLarge, std::nullopt, "no material stands out: Otsu's threshold"};
+}
+
+IsoProposal proposal(const RawVolume& raw) {
     const ValueRange& range = raw.values.range();
     if (!(range.low < range.high))
         throw UserError("no iso-value can be proposed: all values of the volume are alike (" +
                         raw.description + ")");
     const Histogram h = histogramOf(raw.values, range);
     const std::vector<Mode> modes = modesOf(h);
-    if (const auto water = waterValue(raw, range, h, modes))
-        if (const auto half_way = halfWayFromSoftTissue(raw.values, *water))
-            return *water + std::clamp(*half_way, kBoneLowHu, kBoneHighHu);
-    if (const auto half_way = halfWayAboveBackground(h, modes)) return *half_way;
-    return otsuThreshold(h);
+    const auto water = waterValue(raw, range, h, modes);
+    if (!water) return ofUnknownScale(h, modes);
+    const auto half_way = halfWayFromSoftTissue(raw.values, *water);
+    if (!half_way) return ofUnknownScale(h, modes);
+    const double value = *water + std::clamp(*half_way, kBoneLowHu, kBoneHighHu);
+    const double other = *water + *half_way;
+    const std::string scale = *water == 0 ? "Hounsfield units" : "Hounsfield units shifted by 1024";
+    return {value, *water == 0 ? IsoDoubt::kLittle : IsoDoubt::kSome,
+            other == value ? std::nullopt : std::optional(other),
+            scale + ": half-way from soft tissue to bone, within 200 .. 300 HU"};
+}
+
+constexpr double kLeastBone = 5e-4, kMostBone = 0.6;  // of the voxels
+
+double shareAbove(const RawValues& values, double iso) {
+    size_t above = 0;
+    values.visit([&](auto samples) {
+        for (const double v : samples) above += v >= iso;
+    });
+    return double(above) / double(values.size() - values.range().non_finite);
+}
+
+}  // namespace
+
+IsoProposal proposeIso(const RawVolume& raw) {
+    IsoProposal proposed = proposal(raw);
+    proposed.bone_share = shareAbove(raw.values, proposed.value);
+    return proposed;
+}
+
+std::string textOf(const IsoProposal& proposed) {
+    const char* const doubts[] = {"sure", "not quite sure", "a guess"};
+    char text[96];
+    std::snprintf(text, sizeof text, "%.6g proposed (%s; %.3g %% of the voxels lie above; ", proposed.value,
+                  doubts[size_t(proposed.doubt)], 100 * proposed.bone_share);
+    std::string all = text + proposed.why + ")";
+    if (proposed.runner_up) {
+        std::snprintf(text, sizeof text, "; the next best is %.6g", *proposed.runner_up);
+        all += text;
+    }
+    if (proposed.bone_share < kLeastBone) all += "; that is hardly any: there may be no bone in this scan";
+    if (proposed.bone_share > kMostBone)
+        all += "; that is so much that it may not be bone: look at it, and set volume.iso_value";
+    return all;
 }
 
 }  // namespace bonemill

@@ -1,18 +1,39 @@
-// Proposes the raw value of the bone surface when the scene gives none.
+// Proposes the raw value of the bone surface when the scene gives none, and says how sure it is.
 #pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
 
 #include "haptic_server/volume/raw_volume.h"
 
 namespace bonemill {
 
-// The value comes from the histogram of the finite values; rule and measured table are in docs/volumes.md.
+enum class IsoDoubt : uint8_t { kLittle, kSome, kLarge };
+
+struct IsoProposal {
+    double value = 0;
+    IsoDoubt doubt = IsoDoubt::kLarge;
+    std::optional<double> runner_up = {};
+    std::string why = {};   // the rule that gave it
+    double bone_share = 0;  // of the finite values that are not below
+};
+
+// The value comes from the histogram of the finite values; rules and measured table are in docs/volumes.md.
 //   1. On the Hounsfield scale (is_hounsfield, or shifted by +1024 as some exports are) it is half-way
 //      between the peak of soft tissue and the median of what is clearly bone, kept within 200 .. 300 HU.
-//   2. Without soft tissue, or on another scale (industrial CT, phantoms), it is half-way between the
-//      background (most voxels) and the next denser material that is no mere edge or cavity.
-//   3. Where only one material stands out it is Otsu's threshold.
+//   2. On another scale with one material above air, and a thin tail far above that, the material is taken
+//   for soft
+//      tissue and the tail for bone.
+//   3. Else (industrial CT, dry bone, phantoms) it is half-way between the background (most voxels) and the
+//   next
+//      denser material that is no mere edge or cavity.
+//   4. Where only one material stands out it is Otsu's threshold.
 // It is deterministic. It allocates, so it is not RT-safe. Throws UserError when the values are all alike or
 // none is finite.
-double proposeIsoValue(const RawVolume& raw);
+IsoProposal proposeIso(const RawVolume& raw);
+
+// For people, with what looks odd about it.
+std::string textOf(const IsoProposal& proposed);
 
 }  // namespace bonemill

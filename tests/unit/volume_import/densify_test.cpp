@@ -40,7 +40,7 @@ TEST(Densify, windowDefaultsToTheRangeOfTheData) {
     EXPECT_EQ(mapping.low, 10);
     EXPECT_EQ(mapping.high, 110);
     EXPECT_EQ(mapping.iso, 32768);
-    EXPECT_FALSE(mapping.is_iso_proposed);
+    EXPECT_FALSE(mapping.proposed.has_value());
     EXPECT_NEAR(mapping.raw(mapping.iso), 60, 1e-3);
 }
 

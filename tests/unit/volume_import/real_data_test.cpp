@@ -40,7 +40,7 @@ TEST_P(RealData, isImportedWithASensibleIsoValue) {
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there (unpacked?)";
     const RawVolume raw = importVolume(path);
     EXPECT_EQ(raw.geometry.dims, GetParam().dims);
-    const double iso = proposeIsoValue(raw);
+    const double iso = proposeIso(raw).value;
     EXPECT_GE(iso, GetParam().iso_low);
     EXPECT_LE(iso, GetParam().iso_high);
     EXPECT_NO_THROW(densify(raw, DensityWindow{}));

@@ -1,0 +1,112 @@
+#include "haptic_server/casework/case_plan.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "common/units.h"
+#include "common/user_error.h"
+#include "haptic_server/volume/import/bone_pieces.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kNoiseShare = 1e-3;  // of the largest piece: less is noise
+constexpr double kLeastOutwards = 0.1;
+
+std::optional<Eigen::Vector3d> pointOf(const std::vector<double>& mm) {
+    if (mm.empty()) return std::nullopt;
+    return Eigen::Vector3d(mm[0], mm[1], mm[2]) * kMillimetre;
+}
+
+std::string textOf(const Eigen::Vector3d& p_W) {
+    std::ostringstream text;
+    text.precision(4);
+    text << "(" << (p_W * kPerMillimetre).transpose() << ") mm";
+    return text.str();
+}
+
+// The bone of a scan, as seen from W.
+class ScanBone {
+  public:
+    explicit ScanBone(const VoxelVolume& volume) : volume_(volume), X_VW_(volume.geometry().X_WV.inverse()) {}
+
+    bool isBone(const Eigen::Vector3d& p_W) const {
+        const Eigen::Vector3d v = (X_VW_ * p_W).cwiseQuotient(volume_.spacing());
+        const Eigen::Vector3i voxel = v.array().round().cast<int>();
+        if ((voxel.array() < 0).any() || (voxel.array() >= volume_.dims().array()).any()) return false;
+        return volume_.at(voxel.x(), voxel.y(), voxel.z()) >= volume_.iso();
+    }
+    double reach() const { return volume_.spacing().cwiseProduct(volume_.dims().cast<double>()).norm(); }
+    // The first bone on the way from far out to the middle, within so much of it; else the middle.
+    Eigen::Vector3d surface(const Eigen::Vector3d& middle, const Eigen::Vector3d& outwards,
+                            double within) const {
+        const double step = volume_.spacing().minCoeff() / 2;
+        for (double out = within; out > -within; out -= step)
+            if (isBone(middle + out * outwards)) return middle + out * outwards;
+        return middle;
+    }
+
+  private:
+    const VoxelVolume& volume_;
+    Pose X_VW_;
+};
+
+Eigen::Vector3d toWorld(const VolumeGeometry& geometry, const Eigen::Vector3d& voxel) {
+    return geometry.X_WV * Eigen::Vector3d(voxel.cwiseProduct(geometry.spacing));
+}
+
+void describePieces(const BonePieces& pieces, const VolumeGeometry& geometry, uint32_t smallest,
+                    std::vector<std::string>& remarks) {
+    size_t listed = 0, noise = 0;
+    for (const BonePiece& piece : pieces.list()) {
+        if (piece.voxels < smallest) {
+            ++noise;
+            continue;
+        }
+        std::ostringstream text;
+        text.precision(3);
+        text << "piece " << ++listed
+             << " of bone: " << double(piece.voxels) * geometry.spacing.prod() * kPerCubicMillimetre
+             << " mm^3 around " << textOf(toWorld(geometry, piece.middle));
+        if (listed <= 8) remarks.push_back(text.str());
+    }
+    if (noise > 0) remarks.push_back(std::to_string(noise) + " smaller pieces are taken for noise");
+    if (listed > 1) remarks.push_back("--drop-piece NUMBER leaves one out: a head holder, a cable");
+}
+
+}  // namespace
+
+CasePlan planCase(const RawVolume& scan, const CaseRequest& request) {
+    CasePlan plan;
+    DensityWindow window;
+    window.iso = request.iso;
+    plan.mapping = chooseMapping(scan, window);
+    if (plan.mapping.proposed) plan.remarks.push_back("iso-value " + textOf(*plan.mapping.proposed));
+    VoxelVolume volume = densify(scan, plan.mapping);
+    const BonePieces pieces(volume);
+    if (pieces.list().empty()) throw UserError("no voxel of the scan reaches the iso-value; set --iso");
+    const BonePiece& largest = pieces.list().front();
+    plan.smallest_piece_voxels = uint32_t(kNoiseShare * double(largest.voxels));
+    describePieces(pieces, scan.geometry, plan.smallest_piece_voxels, plan.remarks);
+    const Eigen::Vector3d middle_of_bone = toWorld(scan.geometry, largest.middle);
+    const Eigen::Vector3d middle = pointOf(request.at_mm).value_or(middle_of_bone);
+    const ScanBone bone(volume);
+    double within = bone.reach();
+    if (!request.at_mm.empty()) {
+        const Eigen::Vector3d half = Eigen::Vector3d::Constant(request.size_mm * kMillimetre / 2);
+        plan.region = Eigen::AlignedBox3d(middle - half, middle + half);
+        within = half.x();
+    }
+    const Eigen::Vector3d from = pointOf(request.from_mm).value_or(2 * middle - middle_of_bone) - middle;
+    if (from.norm() > kLeastOutwards * kMillimetre) plan.outwards = from.normalized();
+    plan.start = bone.surface(middle, plan.outwards, within);
+    if (plan.region && !bone.isBone(plan.start))
+        throw UserError("there is no bone at --at " + textOf(middle) + " for a hand that comes from " +
+                        textOf(middle + within * plan.outwards) + "; the bone's middle is " +
+                        textOf(middle_of_bone));
+    plan.remarks.push_back("the hand begins at " + textOf(plan.start) + " and comes from " +
+                           textOf(plan.start + 0.05 * plan.outwards));
+    return plan;
+}
+
+}  // namespace bonemill

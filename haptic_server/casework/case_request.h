@@ -1,0 +1,39 @@
+// What a teacher says of the case that is to be made; all but the scan has a default.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace bonemill {
+
+// One structure of the label map.
+struct CaseLabel {
+    uint32_t label = 0;
+    std::string name;
+    enum class Role : uint8_t { kPlain, kProtected, kTarget } role = Role::kPlain;
+};
+
+struct CaseRequest {
+    std::string scan;    // file or folder
+    std::string series;  // UID; empty: the one with the most slices
+    std::string out;     // folder that is made
+    std::string title;
+    std::optional<double> iso;
+    std::vector<double> at_mm;  // W: middle of the region; empty: all of the bone is milled
+    double size_mm = 40;        // edge of the region
+    std::optional<double> voxel_mm;
+    std::vector<double>
+        from_mm;  // W: from there the hand comes; empty: from outside, away from the bone's middle
+    std::vector<uint32_t> drop_pieces;
+    std::string labels;                    // file
+    std::vector<std::string> label_words;  // NUMBER=NAME[:protected|:target]
+    std::string tools;                     // scene text with tools; empty: the default tool
+};
+
+// Reads NUMBER=NAME[:protected|:target]. Throws UserError.
+std::vector<CaseLabel> labelsOf(const std::vector<std::string>& words);
+
+}  // namespace bonemill

@@ -1,0 +1,137 @@
+#include "haptic_server/casework/make_case.h"
+
+#include <algorithm>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+#include "common/config/scene_file.h"
+#include "common/digest/sha256.h"
+#include "common/require_file.h"
+#include "common/units.h"
+#include "common/user_error.h"
+#include "haptic_server/casework/case_scene.h"
+#include "haptic_server/setup/scanned_bone.h"
+#include "haptic_server/volume/import/import_volume.h"
+#include "haptic_server/volume/import/nrrd_stream.h"
+
+namespace bonemill {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Takes the place of the case when it is whole; else it goes.
+class CaseFolder {
+  public:
+    explicit CaseFolder(const fs::path& path) : path_(fs::absolute(path).lexically_normal()) {
+        if (path_.filename().empty()) path_ = path_.parent_path();
+        std::error_code error;
+        if (fs::exists(path_, error) && (!fs::is_directory(path_, error) || !fs::is_empty(path_, error)))
+            throw UserError(path.string() + ": is there already; give --out a new folder");
+        part_ = path_.parent_path() / (".part_" + path_.filename().string());
+        fs::remove_all(part_, error);
+        if (!fs::create_directories(part_, error))
+            throw UserError(path.string() + ": cannot be made (" + error.message() + ")");
+    }
+    ~CaseFolder() {
+        std::error_code ignored;
+        if (!is_finished_) fs::remove_all(part_, ignored);
+    }
+    CaseFolder(const CaseFolder&) = delete;
+    CaseFolder& operator=(const CaseFolder&) = delete;
+
+    std::string name() const { return path_.filename().string(); }
+    fs::path operator/(const std::string& file) const { return part_ / file; }
+    void finish() {
+        std::error_code error;
+        fs::remove(path_, error);
+        fs::rename(part_, path_);
+        is_finished_ = true;
+    }
+
+  private:
+    fs::path path_, part_;
+    bool is_finished_ = false;
+};
+
+void writeVolume(const fs::path& file, const RawVolume& volume) {
+    volume.values.visit([&]<class T>(std::span<const T> samples) {
+        NrrdStream<T> stream(file, volume.geometry, NrrdEncoding::kGzip);
+        stream.append(samples);
+        stream.close();
+    });
+}
+
+void writeText(const fs::path& file, const std::string& text) {
+    std::ofstream out(file);
+    if (!(out << text << std::flush))
+        throw UserError(file.string() + ": cannot be written; is the disk full?");
+}
+
+std::vector<scene::Tool> toolsOfFile(const std::string& file) {
+    if (file.empty()) return {};
+    requireFile(file);
+    std::ifstream in(file);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const scene::Scene scene = parseSceneText(text, file).scene;  // the case's own check comes with its scene
+    for (const scene::Tool& tool : scene.tool())
+        if (tool.has_mesh_path())
+            throw UserError(file + ": tools with a mesh_path cannot be taken into a case");
+    if (scene.tool_size() == 0) throw UserError(file + ": holds no tool");
+    return {scene.tool().begin(), scene.tool().end()};
+}
+
+std::string provenanceOf(const RawVolume& scan, const CasePlan& plan, const fs::path& file,
+                         const std::string& version) {
+    const std::time_t now = std::time(nullptr);
+    char day[16];
+    std::strftime(day, sizeof day, "%Y-%m-%d", std::gmtime(&now));
+    const auto numbers = [](const auto& v) { return nlohmann::json{v.x(), v.y(), v.z()}; };
+    nlohmann::json json;
+    json["made"] = day;
+    json["by"] = version;
+    json["scan"] = {{"voxels", numbers(scan.geometry.dims)},
+                    {"voxel_mm", numbers(Eigen::Vector3d(scan.geometry.spacing * kPerMillimetre))},
+                    {"hounsfield_units", scan.is_hounsfield},
+                    {"patient_axes_known", !scan.lacks_patient_axes},
+                    {"sha256", sha256OfFile(file)}};
+    json["iso_value"] = plan.mapping.iso_value;
+    if (plan.mapping.proposed) json["iso_value_proposed"] = textOf(*plan.mapping.proposed);
+    json["left_out"] = "name, dates, identifiers and all other text of the scan's file";
+    return json.dump(2) + "\n";
+}
+
+void checkLabels(const CaseRequest& request, const std::vector<CaseLabel>& labels) {
+    if (request.labels.empty() && !labels.empty())
+        throw UserError("--label needs a label map: --labels FILE");
+    if (!request.labels.empty() && labels.empty())
+        throw UserError(
+            "--labels needs at least one --label NUMBER=NAME; which numbers are there depends on the file");
+}
+
+}  // namespace
+
+void makeCase(const CaseRequest& request, const std::string& version, std::ostream& out) {
+    const std::vector<CaseLabel> labels = labelsOf(request.label_words);
+    checkLabels(request, labels);
+    const std::vector<scene::Tool> tools = toolsOfFile(request.tools);
+    CaseFolder folder(request.out);
+    const RawVolume scan = importVolume(request.scan, {request.series});
+    out << scan.description << '\n';
+    const CasePlan plan = planCase(scan, request);
+    for (const std::string& remark : plan.remarks) out << remark << '\n';
+    writeVolume(folder / kScanOfCase, scan);
+    if (!request.labels.empty()) writeVolume(folder / kLabelsOfCase, importVolume(request.labels));
+    const std::string scene_file = folder.name() + ".textproto";
+    writeText(folder / scene_file, textOfScene(sceneOfCase(plan, request, labels, tools, folder.name())));
+    writeText(folder / "provenance.json", provenanceOf(scan, plan, folder / kScanOfCase, version));
+    const ScannedBone bone = readBone(loadScene(folder / scene_file));  // as a session would
+    for (const std::string& remark : bone.remarks) out << remark << '\n';
+    folder.finish();
+    out << "wrote " << (fs::path(request.out) / scene_file).string() << '\n';
+}
+
+}  // namespace bonemill

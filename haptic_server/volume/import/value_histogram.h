@@ -1,0 +1,44 @@
+// Counts a scan's values, and finds the materials among them. For start-up only: it allocates.
+#pragma once
+
+#include <vector>
+
+#include "haptic_server/volume/raw_values.h"
+
+namespace bonemill {
+
+struct Histogram {
+    double low = 0;
+    double width = 1;
+    std::vector<double> count;
+    double total = 0;  // all finite values, also those outside the bins
+
+    double centre(size_t bin) const { return low + (double(bin) + 0.5) * width; }
+    double sumAbove(double value) const;  // of the bins that begin there or above
+};
+
+Histogram countInto(const RawValues& values, double low, double width, size_t bins);
+
+// Some 256 bins over the range, zoomed in until the tails that are cut off hold next to nothing.
+Histogram histogramOf(const RawValues& values, ValueRange range);
+
+inline constexpr double kSmoothingBins = 2.0;
+std::vector<double> smoothed(const std::vector<double>& count, double sigma_bins);
+
+struct Mode {
+    size_t bin;     // peak
+    double height;  // of the smoothed histogram
+    double mass;    // share of all voxels between the valleys around it
+};
+
+// Peaks of the smoothed histogram that are separated by real valleys and hold a real share of the voxels,
+// ascending.
+std::vector<Mode> modesOf(const Histogram& h);
+
+// Peaks are read off more finely than a bin: centre of mass of the bins around it.
+double peakValue(const Histogram& h, const Mode& mode);
+
+// The threshold with the largest variance between the two classes (Otsu 1979).
+double otsuThreshold(const Histogram& h);
+
+}  // namespace bonemill

@@ -1,0 +1,88 @@
+#include "haptic_server/casework/case_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/volume_import/expect_user_error.h"
+#include "tests/unit/volume_import/grid_scan.h"
+
+namespace bonemill {
+namespace {
+
+const Eigen::Vector3d kBall(50e-3, 60e-3, 40e-3);
+constexpr double kRadius = 20e-3;
+
+// A ball of bone in air, and a small one beside it.
+RawVolume ballInAir() {
+    VolumeGeometry grid;
+    grid.dims = {100, 110, 60};
+    grid.spacing = {1e-3, 1e-3, 1.5e-3};
+    return scanOf(grid, [](const Eigen::Vector3d& p) {
+        const double d =
+            std::min((p - kBall).norm() - kRadius, (p - Eigen::Vector3d(90e-3, 100e-3, 80e-3)).norm() - 4e-3);
+        return std::round(std::clamp(300 - 600 * d / 1e-3, -1000.0, 1500.0));
+    });
+}
+
+CaseRequest requestAt(std::vector<double> at_mm) {
+    CaseRequest request;
+    request.iso = 300;
+    request.at_mm = std::move(at_mm);
+    request.size_mm = 20;
+    return request;
+}
+
+TEST(CasePlan, BringsTheHandFromOutsideOntoTheBone) {
+    const CasePlan plan = planCase(ballInAir(), requestAt({68, 60, 40}));
+    EXPECT_TRUE(plan.outwards.isApprox(Eigen::Vector3d::UnitX(), 1e-2));
+    EXPECT_LT((plan.start - (kBall + Eigen::Vector3d(kRadius, 0, 0))).norm(), 1e-3);
+    ASSERT_TRUE(plan.region);
+    EXPECT_TRUE(plan.region->min().isApprox(Eigen::Vector3d(58e-3, 50e-3, 30e-3)));
+    EXPECT_TRUE(plan.region->max().isApprox(Eigen::Vector3d(78e-3, 70e-3, 50e-3)));
+}
+
+TEST(CasePlan, TakesTheWayThatIsAskedFor) {
+    CaseRequest request = requestAt({65, 60, 50});
+    request.from_mm = {65, 60, 150};
+    const CasePlan plan = planCase(ballInAir(), request);
+    EXPECT_TRUE(plan.outwards.isApprox(Eigen::Vector3d::UnitZ()));
+    const double up = std::sqrt(20.0 * 20 - 15 * 15);
+    EXPECT_LT((plan.start - Eigen::Vector3d(65e-3, 60e-3, (40 + up) * 1e-3)).norm(), 1.5e-3);
+}
+
+TEST(CasePlan, WithoutAPlaceIsOfAllBone) {
+    const CasePlan plan = planCase(ballInAir(), requestAt({}));
+    EXPECT_FALSE(plan.region);
+    EXPECT_LT((plan.start - (kBall + Eigen::Vector3d(0, 0, kRadius))).norm(), 1.5e-3) << "from above";
+    EXPECT_NE(plan.remarks[0].find("piece 1 of bone: 3.3"), std::string::npos) << plan.remarks[0];
+}
+
+TEST(CasePlan, RefusesAPlaceWithoutBone) {
+    expectUserError(
+        [] {
+            planCase(ballInAir(), requestAt({20, 10, 10}));
+        },
+        {"no bone at --at", "the bone's middle is"});
+    CaseRequest high = requestAt({});
+    high.iso = 1400;
+    EXPECT_NO_THROW(planCase(ballInAir(), high));
+}
+
+TEST(CaseLabels, AreReadFromWords) {
+    const std::vector<CaseLabel> labels = labelsOf({"1=sinus:protected", "7=caries:target", "2=a=b"});
+    ASSERT_EQ(labels.size(), 3u);
+    EXPECT_EQ(labels[0].name, "sinus");
+    EXPECT_EQ(labels[0].role, CaseLabel::Role::kProtected);
+    EXPECT_EQ(labels[1].label, 7u);
+    EXPECT_EQ(labels[1].role, CaseLabel::Role::kTarget);
+    EXPECT_EQ(labels[2].name, "a=b");
+    EXPECT_EQ(labels[2].role, CaseLabel::Role::kPlain);
+    for (const char* const word : {"sinus", "=x", "1=", "1=:protected", "70000=x", "-1=x", "1x=y", ""})
+        expectUserError([&] { labelsOf({word}); }, {"--label"});
+    expectUserError([] { labelsOf({"1=x", "1=y"}); }, {"given before"});
+    expectUserError([] { labelsOf({"1=x", "2=x:protected"}); }, {"given before"});
+}
+
+}  // namespace
+}  // namespace bonemill
