@@ -124,6 +124,7 @@ struct Head {
 static_assert(std::is_trivially_copyable_v<Head>);
 
 constexpr uint64_t kMostTextBytes = uint64_t(1) << 20;
+constexpr size_t kMostErrorBytes = 2048;  // it may quote a damaged header
 
 bool isWithin(std::span<const double> numbers, double low, double high) {
     return std::ranges::all_of(numbers, [&](double n) { return n >= low && n <= high; });
@@ -224,7 +225,7 @@ bool receive(Incoming& from, RawVolume& raw, std::string& error) {
     std::string text(head.text_bytes, '\0');
     if (!from.read(text.data(), text.size())) return false;
     if (!head.is_volume) {
-        error = oneLine(text);
+        error = oneLine(text.substr(0, kMostErrorBytes));
         return true;
     }
     raw.description = oneLine(text);
