@@ -4,6 +4,7 @@
 #include <linux/capability.h>
 #include <sched.h>
 #include <seccomp.h>
+#include <sys/ioctl.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -22,7 +23,9 @@ constexpr const char* kForbidden[] = {
     "socket", "socketpair", "connect", "bind", "listen", "accept", "accept4",
     // other programs and processes
     "execve", "execveat", "fork", "vfork", "ptrace", "process_vm_readv", "process_vm_writev", "kill", "tkill",
-    "pidfd_open", "pidfd_getfd", "pidfd_send_signal", "kcmp", "setns", "unshare",
+    "rt_sigqueueinfo", "rt_tgsigqueueinfo", "setpriority", "ioprio_set", "sched_setaffinity", "sched_setattr",
+    "sched_setparam", "sched_setscheduler", "migrate_pages", "move_pages", "process_madvise",
+    "process_mrelease", "pidfd_open", "pidfd_getfd", "pidfd_send_signal", "kcmp", "setns", "unshare",
     // what is written into folders
     "creat", "truncate", "rename", "renameat", "renameat2", "unlink", "unlinkat", "mkdir", "mkdirat", "rmdir",
     "link", "linkat", "symlink", "symlinkat", "mknod", "mknodat", "chmod", "fchmod", "fchmodat", "chown",
@@ -79,6 +82,16 @@ bool loadFilter() {
     // Their flags lie in memory, where a filter cannot look; the C library then takes the older calls.
     for (const char* call : {"openat2", "clone3"}) filter.refuse(call, ENOSYS);
     filter.refuse("clone", EPERM, SCMP_A0(SCMP_CMP_MASKED_EQ, CLONE_THREAD, 0));
+    constexpr scmp_datum_t kInt = 0xffffffff;  // the kernel looks at no more of these arguments
+    // What would be typed into the terminal of whoever started this.
+    for (const unsigned command : {TIOCSTI, TIOCLINUX})
+        filter.refuse("ioctl", EPERM, SCMP_A1(SCMP_CMP_MASKED_EQ, kInt, command));
+    // A file may send signals to any process when it has something to read.
+    for (const int command : {F_SETOWN, F_SETOWN_EX, F_SETSIG})
+        filter.refuse("fcntl", EPERM, SCMP_A1(SCMP_CMP_MASKED_EQ, kInt, scmp_datum_t(command)));
+    // This process may end itself, and look at its own limits.
+    filter.refuse("tgkill", EPERM, SCMP_A0(SCMP_CMP_NE, scmp_datum_t(getpid())));
+    filter.refuse("prlimit64", EPERM, SCMP_A0(SCMP_CMP_NE, 0));
     return filter.load();
 }
 

@@ -54,11 +54,37 @@ DicomSlice headerOf(const ItkImageFile& image, const std::filesystem::path& path
         throw UserError(path.string() + ": claims an image of absurd size; the header is damaged");
     slice.columns = int(header.dims[0]);
     slice.rows = int(header.dims[1]);
-    slice.position_mm = Eigen::Vector3d(header.origin.data());
-    slice.row_direction = Eigen::Vector3d(header.axis[0].data());
-    slice.column_direction = Eigen::Vector3d(header.axis[1].data());
-    slice.pixel_spacing_mm = {header.spacing[0], header.spacing[1]};
+    slice.rescale = rescaleFromTexts(image.dicomTag("0028|1053"), image.dicomTag("0028|1052"), path.string());
     return slice;
+}
+
+void putAt(const DicomPlace& place, DicomSlice& slice) {
+    slice.position_mm = place.position_mm;
+    slice.row_direction = place.row_direction;
+    slice.column_direction = place.column_direction;
+    slice.pixel_spacing_mm = place.pixel_spacing_mm;
+    slice.axes_rounding = place.rounding;
+}
+
+// Frames of which only some say their scale would not be alike.
+void checkRescales(const std::vector<DicomFrame>& frames, const DicomSlice& common) {
+    if (common.rescale) return;
+    const auto says = [](const DicomFrame& frame) { return frame.rescale.has_value(); };
+    const auto silent = std::ranges::find_if_not(frames, says);
+    if (silent != frames.end() && std::ranges::any_of(frames, says))
+        throw UserError(common.path.string() + " frame " + std::to_string(silent - frames.begin() + 1) +
+                        ": does not state its Rescale Slope and Intercept, other frames do; export it anew");
+}
+
+std::vector<DicomSlice> slicesOf(const std::vector<DicomFrame>& frames, const DicomSlice& common) {
+    checkRescales(frames, common);
+    std::vector<DicomSlice> slices(frames.size(), common);
+    for (size_t f = 0; f < frames.size(); ++f) {
+        slices[f].frame = int(f);
+        putAt(frames[f].place, slices[f]);
+        if (frames[f].rescale) slices[f].rescale = frames[f].rescale;
+    }
+    return slices;
 }
 
 // Reads the slices of one file, or none and the reason: the file cannot belong to a volume.
@@ -74,22 +100,19 @@ std::vector<DicomSlice> readHeader(const std::filesystem::path& path, LeftOut& l
         return {};
     }
     DicomSlice slice = headerOf(image, path);
-    if (frames == 1) return {slice};
+    if (frames == 1) {
+        putAt(placeFromTexts(
+                  {image.dicomTag("0020|0032"), image.dicomTag("0020|0037"), image.dicomTag("0028|0030")},
+                  kTwoDigits, path.string()),
+              slice);
+        return {slice};
+    }
     const std::vector<DicomFrame> places = readFrames(path);
     if (places.size() != frames) {
         left_out.add("multi-frame images that do not say where each frame lies", path);
         return {};
     }
-    std::vector<DicomSlice> slices;
-    for (size_t f = 0; f < frames; ++f) {
-        slice.frame = int(f);
-        slice.position_mm = places[f].position_mm;
-        slice.row_direction = places[f].row_direction;
-        slice.column_direction = places[f].column_direction;
-        slice.pixel_spacing_mm = places[f].pixel_spacing_mm;
-        slices.push_back(slice);
-    }
-    return slices;
+    return slicesOf(places, slice);
 }
 
 // Damage must not pass as "not an image": the volume would silently lose a slice.
@@ -113,17 +136,26 @@ std::vector<DicomSlice> inspect(const std::filesystem::path& path, LeftOut& left
 void readSlices(const std::vector<DicomSlice>& slices, RawValues& values) {
     std::filesystem::path read_path;
     RawValues pixels;
+    DicomRescale applied;
     for (const DicomSlice& slice : slices) {
         if (slice.path != read_path) {
             pixels = {};
-            ItkImageFile(ItkFormat::kDicom, slice.path).appendValues(pixels);
+            ItkImageFile image(ItkFormat::kDicom, slice.path);
+            image.appendValues(pixels);
+            applied = image.appliedRescale();
             read_path = slice.path;
         }
         const size_t size = size_t(slice.columns) * size_t(slice.rows), begin = size * size_t(slice.frame);
         if (pixels.size() % size != 0 || pixels.size() < begin + size)
             throw UserError(slice.path.string() +
                             ": holds fewer pixels than its header says; the file is damaged");
-        pixels.visit([&](auto samples) { values.append(samples.subspan(begin, size)); });
+        const bool is_scaled = pixels.visit([&](auto samples) {
+            return appendRescaled(samples.subspan(begin, size), applied, slice.rescale.value_or(applied),
+                                  values);
+        });
+        if (!is_scaled)
+            throw UserError(slice.path.string() +
+                            ": its frames are scaled too differently to be read; export it anew");
         pixels.forget(begin, begin + size);
     }
 }
@@ -136,8 +168,8 @@ bool reachesAir(const RawValues& values) {
 bool isSamePicture(const DicomSlice& a, const DicomSlice& b) {
     if (a.frame != 0 || b.frame != 0) return false;
     RawValues of_a, of_b;
-    ItkImageFile(ItkFormat::kDicom, a.path).appendValues(of_a);
-    ItkImageFile(ItkFormat::kDicom, b.path).appendValues(of_b);
+    readSlices({a}, of_a);
+    readSlices({b}, of_b);
     return of_a == of_b;
 }
 
@@ -184,23 +216,30 @@ RawVolume readStack(const DicomStack& stack, const std::string& name) {
     return raw;
 }
 
-std::vector<std::filesystem::path> filesOf(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> files;
-    std::error_code error;
+// Links to folders are not followed, for they may lead in circles.
+std::vector<std::filesystem::path> filesOf(const std::filesystem::path& folder, LeftOut& left_out) {
+    std::vector<std::filesystem::path> files, others;
+    std::error_code error, unreadable;
     for (std::filesystem::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
-         entry.increment(error))
-        if (entry->is_regular_file()) files.push_back(entry->path());
+         entry.increment(error)) {
+        if (entry->is_regular_file(unreadable))
+            files.push_back(entry->path());
+        else if (entry->is_symlink(unreadable) || !entry->is_directory(unreadable))
+            others.push_back(entry->path());
+    }
     if (error) throw UserError("cannot list the folder " + folder.string() + ": " + error.message());
     std::sort(files.begin(), files.end());  // the same messages and choices on every file system
+    std::sort(others.begin(), others.end());
+    for (const auto& other : others) left_out.add("links or devices that are no files", other);
     return files;
 }
 
 }  // namespace
 
 RawVolume importDicomFolder(const std::filesystem::path& folder, const std::string& series_uid) {
-    const auto files = filesOf(folder);
-    if (files.empty()) throw UserError(folder.string() + ": the folder is empty; a DICOM series is needed");
     LeftOut left_out;
+    const auto files = filesOf(folder, left_out);
+    if (files.empty()) throw UserError(folder.string() + ": the folder is empty; a DICOM series is needed");
     std::vector<DicomSlice> slices;
     for (const auto& file : files)
         for (const DicomSlice& slice : inspect(file, left_out)) slices.push_back(slice);

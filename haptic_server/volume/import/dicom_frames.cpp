@@ -1,10 +1,13 @@
 #include "haptic_server/volume/import/dicom_frames.h"
 
-#include <gdcmAttribute.h>
+#include <gdcmByteValue.h>
 #include <gdcmReader.h>
 #include <gdcmSequenceOfItems.h>
 
 #include <optional>
+#include <string>
+
+#include "haptic_server/volume/import/decimal_numbers.h"
 
 namespace bonemill {
 namespace {
@@ -15,6 +18,7 @@ const gdcm::Tag kPerFrameGroups(0x5200, 0x9230);
 const gdcm::Tag kPlanePosition(0x0020, 0x9113);
 const gdcm::Tag kPlaneOrientation(0x0020, 0x9116);
 const gdcm::Tag kPixelMeasures(0x0028, 0x9110);
+const gdcm::Tag kValueTransformation(0x0028, 0x9145);
 
 using Sequence = gdcm::SmartPointer<gdcm::SequenceOfItems>;
 
@@ -23,35 +27,31 @@ Sequence sequence(const gdcm::DataSet& data, const gdcm::Tag& tag) {
     return data.GetDataElement(tag).GetValueAsSQ();
 }
 
-// Reads the numbers of an attribute in the only item of a group, looked for in one place after the other.
-template <uint16_t kGroup, uint16_t kElement>
-std::optional<gdcm::Attribute<kGroup, kElement>> find(const std::vector<const gdcm::DataSet*>& places,
-                                                      const gdcm::Tag& group) {
-    gdcm::Attribute<kGroup, kElement> attribute;
+// Returns the text of an element in the only item of a group, looked for in one place after the other; empty
+// when there is none.
+std::string find(const std::vector<const gdcm::DataSet*>& places, const gdcm::Tag& group,
+                 const gdcm::Tag& element) {
     for (const gdcm::DataSet* place : places) {
         const Sequence items = sequence(*place, group);
         if (!items || items->GetNumberOfItems() == 0) continue;
         const gdcm::DataSet& data = items->GetItem(1).GetNestedDataSet();
-        if (!data.FindDataElement(attribute.GetTag())) continue;
-        attribute.SetFromDataElement(data.GetDataElement(attribute.GetTag()));
-        return attribute;
+        if (!data.FindDataElement(element)) continue;
+        const gdcm::ByteValue* bytes = data.GetDataElement(element).GetByteValue();
+        if (bytes) return withoutPadding(std::string(bytes->GetPointer(), bytes->GetLength()));
     }
-    return std::nullopt;
+    return {};
 }
 
-std::optional<DicomFrame> readFrame(const std::vector<const gdcm::DataSet*>& places) {
-    const auto position = find<0x0020, 0x0032>(places, kPlanePosition);
-    const auto orientation = find<0x0020, 0x0037>(places, kPlaneOrientation);
-    const auto spacing = find<0x0028, 0x0030>(places, kPixelMeasures);
-    if (!position || !orientation || !spacing) return std::nullopt;
-    DicomFrame frame;
-    for (unsigned a = 0; a < 3; ++a) {
-        frame.position_mm[a] = position->GetValue(a);
-        frame.row_direction[a] = orientation->GetValue(a);
-        frame.column_direction[a] = orientation->GetValue(a + 3);
-    }
-    frame.pixel_spacing_mm = {spacing->GetValue(1), spacing->GetValue(0)};  // DICOM: between rows first
-    return frame;
+std::optional<DicomFrame> readFrame(const std::vector<const gdcm::DataSet*>& places,
+                                    const std::string& name) {
+    const DicomPlaceTexts texts{find(places, kPlanePosition, gdcm::Tag(0x0020, 0x0032)),
+                                find(places, kPlaneOrientation, gdcm::Tag(0x0020, 0x0037)),
+                                find(places, kPixelMeasures, gdcm::Tag(0x0028, 0x0030))};
+    if (texts.position.empty() || texts.orientation.empty() || texts.pixel_spacing.empty())
+        return std::nullopt;
+    return DicomFrame{placeFromTexts(texts, kThreeDigits, name),
+                      rescaleFromTexts(find(places, kValueTransformation, gdcm::Tag(0x0028, 0x1053)),
+                                       find(places, kValueTransformation, gdcm::Tag(0x0028, 0x1052)), name)};
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ std::vector<DicomFrame> readFrames(const std::filesystem::path& path) {
         std::vector<const gdcm::DataSet*> places{&per_frame->GetItem(f).GetNestedDataSet()};
         if (shared && shared->GetNumberOfItems() > 0)
             places.push_back(&shared->GetItem(1).GetNestedDataSet());
-        const auto frame = readFrame(places);
+        const auto frame = readFrame(places, path.string() + " frame " + std::to_string(f));
         if (!frame) return {};
         frames.push_back(*frame);
     }

@@ -1,22 +1,24 @@
-// Finds where each frame of a multi-frame DICOM file lies: ITK tells one place for all of them.
+// Finds where each frame of a multi-frame DICOM file lies and how it is scaled: ITK tells one place and one
+// scale for all of them.
 #pragma once
 
-#include <Eigen/Core>
 #include <filesystem>
+#include <optional>
 #include <vector>
+
+#include "haptic_server/volume/import/dicom_place.h"
+#include "haptic_server/volume/import/dicom_rescale.h"
 
 namespace bonemill {
 
-// Lengths are in mm, in LPS.
 struct DicomFrame {
-    Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();  // centre of the first pixel
-    Eigen::Vector3d row_direction = Eigen::Vector3d::Zero();
-    Eigen::Vector3d column_direction = Eigen::Vector3d::Zero();
-    Eigen::Vector2d pixel_spacing_mm = Eigen::Vector2d::Zero();  // along the row, along the column
+    DicomPlace place;
+    std::optional<DicomRescale> rescale;  // nothing: its functional groups do not say it
 };
 
 // There is one of every frame, from the functional groups of an enhanced image (per frame, else shared), and
-// none when the file does not say all of it for each frame.
+// none when the file does not say for each frame where it lies. Throws UserError naming file and frame when
+// what it says is no place or no scale.
 std::vector<DicomFrame> readFrames(const std::filesystem::path& path);
 
 }  // namespace bonemill

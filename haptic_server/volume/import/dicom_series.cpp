@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <tuple>
 #include <utility>
 
@@ -14,12 +13,14 @@
 namespace bonemill {
 namespace {
 
-// Headers carry decimal text; these steps are coarser than its rounding and finer than any real difference.
-constexpr double kDirectionStep = 1e-3;
-constexpr double kPixelSpacingStepMm = 1e-4;
+// Headers carry decimal text; these are coarser than its rounding and finer than any real difference.
+constexpr double kSameDirection = 1e-3;
+constexpr double kSamePixelSpacingMm = 1e-4;
 constexpr double kSamePlaceMm = 1e-3;
 constexpr double kSpacingTolerance = 0.02;  // of the median distance: nothing to speak of
 constexpr double kMaxTiltDegrees = 0.1;
+constexpr double kMostGantryTiltDegrees = 45;  // gantries tilt by 30 at most
+constexpr double kSaidRounding = 1e-3;         // 0.06 degrees
 // Scanners write positions in steps of 0.1 mm at most; so far a slice is from its place then, or this share
 // of a distance.
 constexpr double kRoundingMm = 0.055;
@@ -28,17 +29,32 @@ constexpr double kWidestGap = 3.2;  // distances: two slices in a row may be mis
 constexpr double kMostFiner = 4;    // so much finer than most distances a grid may get by the least
 constexpr size_t kMostScouts = 3;   // a series of so few pictures is no scan
 
-using GroupKey = std::tuple<std::string, std::vector<long>, int, int>;
-
-GroupKey groupKey(const DicomSlice& slice) {
-    std::vector<long> numbers;
-    for (const auto& direction : {slice.row_direction, slice.column_direction})
-        for (const double d : direction) numbers.push_back(std::lround(d / kDirectionStep));
-    for (const double s : slice.pixel_spacing_mm) numbers.push_back(std::lround(s / kPixelSpacingStepMm));
-    return {slice.series_uid, numbers, slice.columns, slice.rows};
+bool belongTogether(const DicomSlice& a, const DicomSlice& b) {
+    const auto isNear = [](const auto& u, const auto& v, double most) {
+        return (u - v).cwiseAbs().maxCoeff() <= most;
+    };
+    return a.series_uid == b.series_uid && a.columns == b.columns && a.rows == b.rows &&
+           isNear(a.row_direction, b.row_direction, kSameDirection) &&
+           isNear(a.column_direction, b.column_direction, kSameDirection) &&
+           isNear(a.pixel_spacing_mm, b.pixel_spacing_mm, kSamePixelSpacingMm);
 }
 
-using Groups = std::map<GroupKey, std::vector<DicomSlice>>;
+using Groups = std::vector<std::vector<DicomSlice>>;
+
+// The same groups come of the slices in any order of series.
+Groups groupsOf(const std::vector<DicomSlice>& slices) {
+    Groups groups;
+    for (const DicomSlice& slice : slices) {
+        const auto found = std::ranges::find_if(
+            groups, [&](const auto& group) { return belongTogether(group.front(), slice); });
+        if (found == groups.end())
+            groups.push_back({slice});
+        else
+            found->push_back(slice);
+    }
+    std::ranges::stable_sort(groups, {}, [](const auto& group) { return group.front().series_uid; });
+    return groups;
+}
 
 std::string describe(const std::vector<DicomSlice>& group) {
     const DicomSlice& first = group.front();
@@ -52,7 +68,7 @@ std::string listOf(const Groups& groups) {
     constexpr size_t kMostListed = 8;
     std::string text;
     size_t listed = 0;
-    for (const auto& [key, group] : groups) {
+    for (const auto& group : groups) {
         if (listed++ == kMostListed) return text + "; ...";
         text += (text.empty() ? "" : "; ") + describe(group);
     }
@@ -187,6 +203,24 @@ void note(std::string& remark, const std::string& text) {
     remark += (remark.empty() ? "" : "; ") + text;
 }
 
+// Slices further aside were acquired in another way, and most of a slice would lie beside its neighbours.
+void checkTilt(double tilt_deg, const std::string& folder) {
+    if (tilt_deg > kMostGantryTiltDegrees)
+        throw UserError(folder + ": " +
+                        textOf("the slices are stacked %.1f degrees off their normal, more than any gantry "
+                               "tilts; resample the series first",
+                               tilt_deg));
+}
+
+// The places are as good as the directions that they were measured along.
+void noteRounding(DicomStack& stack) {
+    double rounding = 0;
+    for (const DicomSlice& slice : stack.slices) rounding = std::max(rounding, slice.axes_rounding);
+    if (rounding > kSaidRounding)
+        note(stack.remark, textOf("the orientation is rounded in the files: it may be off by %.2g degrees",
+                                  rounding / kDegree));
+}
+
 // Says why and how the slices are to be resampled.
 void resample(DicomStack& stack, std::vector<SlicePlace> places, double tilt_deg,
               const Distances& distances) {
@@ -220,6 +254,8 @@ void arrange(DicomStack& stack, const std::string& folder, const IsSamePicture& 
     checkGaps(stack.slices, places, distances, folder);
     stack.slice_spacing_mm = evenStep(places);
     const double tilt_deg = tiltDegrees(places), uneven_mm = unevennessOf(places);
+    checkTilt(tilt_deg, folder);
+    noteRounding(stack);
     if (tilt_deg > kMaxTiltDegrees || !areEven(places, distances))
         return resample(stack, std::move(places), tilt_deg, distances);
     if (uneven_mm > kSpacingTolerance * distances.median)
@@ -232,19 +268,17 @@ void arrange(DicomStack& stack, const std::string& folder, const IsSamePicture& 
 
 DicomStack chooseStack(const std::vector<DicomSlice>& slices, const std::string& series_uid,
                        const std::string& folder, const IsSamePicture& is_same_picture) {
-    Groups groups, wanted;
-    for (const DicomSlice& slice : slices) groups[groupKey(slice)].push_back(slice);
-    for (const auto& [key, group] : groups)
-        if (series_uid.empty() || group.front().series_uid == series_uid) wanted[key] = group;
-    if (wanted.empty())
+    Groups groups = groupsOf(slices);
+    const auto rank = [&](const std::vector<DicomSlice>& group) {
+        const bool is_wanted = series_uid.empty() || group.front().series_uid == series_uid;
+        return std::tuple(is_wanted, group.size() > kMostScouts && group.front().isCt(), group.size());
+    };
+    const auto best = std::ranges::max_element(groups, {}, rank);
+    if (!std::get<0>(rank(*best)))
         throw UserError(folder + ": holds no series " + series_uid + "; it holds " + listOf(groups));
-    const auto best = std::ranges::max_element(wanted, {}, [](const auto& group) {
-        const size_t count = group.second.size();
-        return std::pair(count > kMostScouts && group.second.front().isCt(), count);
-    });
     DicomStack stack;
-    stack.slices = best->second;
-    groups.erase(best->first);
+    stack.slices = std::move(*best);
+    groups.erase(best);
     stack.left_out = listOf(groups);
     arrange(stack, folder, is_same_picture);
     return stack;

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -11,49 +10,26 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <new>
+#include <span>
 #include <stdexcept>
 #include <type_traits>
+#include <variant>
 
 #include "common/user_error.h"
 #include "haptic_server/volume/import/confine_reader.h"
-#include "haptic_server/volume/import/file_being_read.h"
 #include "haptic_server/volume/import/import_limits.h"
+#include "haptic_server/volume/import/memory_cap.h"
+#include "haptic_server/volume/import/shared_name.h"
 
 namespace bonemill {
 namespace {
 
 constexpr rlim_t kMostCpuSeconds = 600;  // The largest volumes take seconds.
-constexpr size_t kNameBytes = 4096;
-
-char* file_being_read = nullptr;  // shared with the child
-
-void mapName(int file) {
-    void* page = mmap(nullptr, kNameBytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
-    if (page != MAP_FAILED) file_being_read = static_cast<char*>(page);
-}
-
-// Without memory for it, messages name the volume's path.
-class SharedName {
-  public:
-    SharedName() : file_(memfd_create("file_being_read", MFD_CLOEXEC)) {
-        if (file_ >= 0 && ftruncate(file_, kNameBytes) == 0) mapName(file_);
-    }
-    ~SharedName() {
-        if (file_being_read) munmap(file_being_read, kNameBytes);
-        file_being_read = nullptr;
-        if (file_ >= 0) close(file_);
-    }
-    SharedName(const SharedName&) = delete;
-    SharedName& operator=(const SharedName&) = delete;
-
-    int file() const { return file_; }
-
-  private:
-    int file_;
-};
 
 class Pipe {
   public:
@@ -134,9 +110,9 @@ bool writeAll(int file, const void* bytes, size_t count) {
 
 // This goes through the pipe first; then the text (description or error), then the values.
 struct Head {
-    bool is_volume;
-    bool is_hounsfield;
-    bool lacks_patient_axes;
+    uint8_t is_volume;  // no bool: the child may have been made to write anything
+    uint8_t is_hounsfield;
+    uint8_t lacks_patient_axes;
     int32_t dims[3];
     double spacing[3];
     double position[3];
@@ -148,6 +124,20 @@ struct Head {
 static_assert(std::is_trivially_copyable_v<Head>);
 
 constexpr uint64_t kMostTextBytes = uint64_t(1) << 20;
+constexpr size_t kMostErrorBytes = 2048;  // it may quote a damaged header
+
+bool isWithin(std::span<const double> numbers, double low, double high) {
+    return std::ranges::all_of(numbers, [&](double n) { return n >= low && n <= high; });
+}
+
+// A volume's place, as far as any file of ours may say it (physical_frame.h).
+bool isPlace(const Head& head) {
+    constexpr double kLeastStep = 1e-10, kLongestStep = 10, kFarthest = 1e5, kUnit = 1e-9;
+    double square = 0;
+    for (const double q : head.rotation) square += q * q;
+    return isWithin(head.spacing, kLeastStep, kLongestStep) &&
+           isWithin(head.position, -kFarthest, kFarthest) && std::abs(square - 1) <= kUnit;
+}
 
 // The child may have been damaged by what it read, and what it says is checked before memory is asked for.
 // Throws std::length_error.
@@ -156,9 +146,11 @@ void checkHead(const Head& head) {
     if (!head.is_volume) return;
     uint64_t voxels = 1;
     for (const int32_t n : head.dims) {
-        if (n < 0 || (voxels *= uint64_t(n)) > kMaxVoxels) throw std::length_error("dims");
+        if (n < 1 || (voxels *= uint64_t(n)) > kMaxVoxels) throw std::length_error("dims");
     }
-    if (head.values != voxels) throw std::length_error("values");
+    if (head.values != voxels || head.type >= std::variant_size_v<RawValues::Samples>)
+        throw std::length_error("values");
+    if (!isPlace(head)) throw std::length_error("place");
 }
 
 constexpr size_t kChunk = size_t(1) << 20;  // values
@@ -233,10 +225,10 @@ bool receive(Incoming& from, RawVolume& raw, std::string& error) {
     std::string text(head.text_bytes, '\0');
     if (!from.read(text.data(), text.size())) return false;
     if (!head.is_volume) {
-        error = text;
+        error = oneLine(text.substr(0, kMostErrorBytes));
         return true;
     }
-    raw.description = text;
+    raw.description = oneLine(text);
     raw.is_hounsfield = head.is_hounsfield;
     raw.lacks_patient_axes = head.lacks_patient_axes;
     raw.geometry.dims = Eigen::Map<const Eigen::Vector3i>(head.dims);
@@ -258,10 +250,12 @@ void readAsChild(int file, const std::filesystem::path& path, const std::functio
     const rlimit no_core{0, 0}, cpu{kMostCpuSeconds, kMostCpuSeconds};
     setrlimit(RLIMIT_CORE, &no_core);
     setrlimit(RLIMIT_CPU, &cpu);
+    dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
     const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
     dup2(nowhere, STDERR_FILENO);  // the libraries' chatter would stand between the user and the one message
     dup2(nowhere, STDOUT_FILENO);
     try {
+        if (const uint64_t available = availableMemory()) capMemoryForGood(available);
         confineReader();
         sendVolume(file, read());
     } catch (const std::bad_alloc&) {
@@ -282,19 +276,21 @@ std::string secondsText(std::chrono::milliseconds time) {
     return text;
 }
 
-std::string nameOr(const std::filesystem::path& path) {
-    return file_being_read && file_being_read[0] ? std::string(file_being_read) : path.string();
+// Whoever waits for a disk that is gone cannot be ended, so it is not waited for long. Returns how it ended.
+int endOf(pid_t child) {
+    kill(child, SIGKILL);  // one that has closed the pipe by ending has ended as it did
+    constexpr timespec kBetween{0, 1'000'000};
+    constexpr int kMostTries = 10'000;  // a large process takes its time to go
+    int status = 0;
+    for (int tries = 0; tries < kMostTries; ++tries) {
+        const pid_t ended = waitpid(child, &status, WNOHANG);
+        if (ended == child || (ended < 0 && errno != EINTR)) break;
+        nanosleep(&kBetween, nullptr);
+    }
+    return status;
 }
 
 }  // namespace
-
-void noteFileBeingRead(const std::filesystem::path& file) noexcept {
-    if (file_being_read) std::strncpy(file_being_read, file.c_str(), kNameBytes - 1);
-}
-
-void shareNameOfFileBeingRead(int file) {
-    mapName(file);
-}
 
 RawVolume importGuarded(const std::filesystem::path& path, const std::function<RawVolume()>& read,
                         std::chrono::milliseconds most) {
@@ -322,24 +318,21 @@ RawVolume importFrom(const std::filesystem::path& path, const StartReader& start
         is_complete = receive(incoming, raw, error);
     } catch (const std::bad_alloc&) {
         error = path.string() + ": there is not enough memory to hold it; crop or resample it";
-        kill(child, SIGKILL);
     } catch (const std::length_error&) {
-        error = nameOr(path) + ": what its reader handed over does not fit together; the file is damaged";
-        kill(child, SIGKILL);
+        error = nameOfFileBeingRead(path) +
+                ": what its reader handed over does not fit together; the file is damaged";
     }
     if (incoming.isLate()) {
         kill(child, SIGKILL);
         // Whoever waits for a disk that is gone cannot be ended, so nobody waits for its end either.
         waitpid(child, nullptr, WNOHANG);
-        throw UserError(nameOr(path) + ": could not be read within " + secondsText(most) +
+        throw UserError(nameOfFileBeingRead(path) + ": could not be read within " + secondsText(most) +
                         " s; is its disk or network slow or gone, or does it lead to a pipe?");
     }
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
+    const int status = endOf(child);
     if (!error.empty()) throw UserError(error);
     if (!is_complete)
-        throw UserError(nameOr(path) + ": the library that reads such files gave up (" +
+        throw UserError(nameOfFileBeingRead(path) + ": the library that reads such files gave up (" +
                         (WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "it ended early") +
                         "); the file is damaged");
     return raw;

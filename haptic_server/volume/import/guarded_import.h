@@ -2,10 +2,10 @@
 //
 // Debian builds GDCM with its assertions on, and ITK's linear algebra aborts on numbers that are not finite:
 // a damaged file can end the process that reads it. The child hands the volume over through a pipe, giving
-// back the memory of what is through, writes nothing to stderr, and is ended when it hangs or takes all
-// memory. It reads files and nothing else (confine_reader.h). It is for one thread at a time. A child that is
-// forked from a process with threads can hang, which is why a program with threads starts a reader of its own
-// instead (import_program.h).
+// back the memory of what is through, writes nothing to stderr, and is ended when it hangs, takes more memory
+// than is free, or has said all. It reads files and nothing else (confine_reader.h). It is for one thread at
+// a time. A child that is forked from a process with threads can hang, which is why a program with threads
+// starts a reader of its own instead (import_program.h).
 #pragma once
 
 #include <sys/types.h>
@@ -36,7 +36,5 @@ RawVolume importFrom(const std::filesystem::path& path, const StartReader& start
 // For the child: hands over what `read` returns, or why not, and ends the process.
 [[noreturn]] void readAsChild(int pipe, const std::filesystem::path& path,
                               const std::function<RawVolume()>& read);
-// For a child that was not forked: noteFileBeingRead() writes there.
-void shareNameOfFileBeingRead(int name);
 
 }  // namespace bonemill

@@ -14,7 +14,8 @@ std::string sizeText(const std::vector<uint64_t>& dims) {
     return text;
 }
 
-// On Linux it is MemAvailable. It is 0 when it cannot be read, which means no limit.
+}  // namespace
+
 uint64_t availableMemory() {
     std::ifstream meminfo("/proc/meminfo");
     std::string key, unit;
@@ -25,8 +26,6 @@ uint64_t availableMemory() {
     }
     return 0;
 }
-
-}  // namespace
 
 void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel, const std::string& file) {
     if (dims.size() != 3)

@@ -8,6 +8,7 @@
 
 #include "common/user_error.h"
 #include "haptic_server/volume/import/guarded_import.h"
+#include "haptic_server/volume/import/shared_name.h"
 
 namespace bonemill {
 namespace {

@@ -5,6 +5,7 @@
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <span>
@@ -45,12 +46,18 @@ std::string plainMessage(const itk::ExceptionObject& error) {
     return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
 }
 
+// A sparse file holds less than its length says.
+uint64_t bytesOnDisk(const std::string& file) {
+    constexpr uint64_t kBlockBytes = 512;  // whatever the file system's are
+    struct stat facts {};
+    if (stat(file.c_str(), &facts) != 0) return 0;
+    return std::min(uint64_t(facts.st_size), uint64_t(facts.st_blocks) * kBlockBytes);
+}
+
 // A reader holds the file, what it unpacks to and some tables; lengths that ask for more are damaged.
 uint64_t memoryFor(const std::string& file, uint64_t voxel_bytes) {
     constexpr uint64_t kTables = 256 << 20;
-    std::error_code error;
-    const auto size = std::filesystem::file_size(file, error);
-    return kTables + 8 * (error ? 0 : uint64_t(size)) + 4 * voxel_bytes;
+    return kTables + 8 * bytesOnDisk(file) + 4 * voxel_bytes;
 }
 
 ItkImageHeader headerOf(const itk::ImageIOBase& io) {
@@ -172,6 +179,11 @@ std::string ItkImageFile::dicomTag(const char* tag) const {
     itk::ExposeMetaData<std::string>(reader_->io->GetMetaDataDictionary(), tag, value);
     while (!value.empty() && (value.back() == ' ' || value.back() == '\0')) value.pop_back();
     return value;
+}
+
+DicomRescale ItkImageFile::appliedRescale() const {
+    const auto* io = dynamic_cast<const itk::GDCMImageIO*>(reader_->io.GetPointer());
+    return io ? DicomRescale{io->GetRescaleSlope(), io->GetRescaleIntercept()} : DicomRescale{};
 }
 
 void ItkImageFile::appendValues(RawValues& values) {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "haptic_server/volume/import/dicom_rescale.h"
 #include "haptic_server/volume/raw_values.h"
 
 namespace bonemill {
@@ -42,6 +43,9 @@ class ItkImageFile {
 
     // This is the value of a DICOM tag as text without padding, such as "0020|0032"; it is empty when absent.
     std::string dicomTag(const char* tag) const;
+
+    // This is what appendValues() scales the stored values of a DICOM file by, all frames alike.
+    DicomRescale appliedRescale() const;
 
     // Appends all samples, rescaled as the file says (HU for CT), first axis fastest.
     void appendValues(RawValues& values);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
 
 namespace bonemill {
 namespace {
@@ -14,20 +15,33 @@ constexpr bool kIsSanitized = true;
 constexpr bool kIsSanitized = false;
 #endif
 
+// Returns the limits with `extra_bytes` more than is mapped now; nothing when there is no capping.
+std::optional<rlimit> cappedLimit(uint64_t extra_bytes, rlimit& now) {
+    uint64_t pages = 0;
+    if (kIsSanitized || !(std::ifstream("/proc/self/statm") >> pages) || getrlimit(RLIMIT_AS, &now) != 0)
+        return std::nullopt;
+    rlimit capped = now;
+    capped.rlim_cur = std::min<rlim_t>(now.rlim_cur, pages * uint64_t(sysconf(_SC_PAGESIZE)) + extra_bytes);
+    return capped;
+}
+
 }  // namespace
 
 MemoryCap::MemoryCap(uint64_t extra_bytes) {
-    uint64_t pages = 0;
-    if (kIsSanitized || !(std::ifstream("/proc/self/statm") >> pages) || getrlimit(RLIMIT_AS, &before_) != 0)
-        return;
-    rlimit capped = before_;
-    capped.rlim_cur =
-        std::min<rlim_t>(before_.rlim_cur, pages * uint64_t(sysconf(_SC_PAGESIZE)) + extra_bytes);
-    is_set_ = setrlimit(RLIMIT_AS, &capped) == 0;
+    const auto capped = cappedLimit(extra_bytes, before_);
+    is_set_ = capped && setrlimit(RLIMIT_AS, &*capped) == 0;
 }
 
 MemoryCap::~MemoryCap() {
     if (is_set_) setrlimit(RLIMIT_AS, &before_);
+}
+
+void capMemoryForGood(uint64_t extra_bytes) noexcept {
+    rlimit now{};
+    auto capped = cappedLimit(extra_bytes, now);
+    if (!capped) return;
+    capped->rlim_max = capped->rlim_cur;
+    setrlimit(RLIMIT_AS, &*capped);
 }
 
 }  // namespace bonemill

@@ -22,4 +22,7 @@ class MemoryCap {
     bool is_set_ = false;
 };
 
+// Does the same for all that this process will do, and cannot be taken back.
+void capMemoryForGood(uint64_t extra_bytes) noexcept;
+
 }  // namespace bonemill

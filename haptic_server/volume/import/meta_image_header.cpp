@@ -1,22 +1,19 @@
 #include "haptic_server/volume/import/meta_image_header.h"
 
 #include <cstdlib>
-#include <fstream>
 #include <map>
 #include <sstream>
 
 #include "common/user_error.h"
+#include "haptic_server/volume/import/header_text.h"
+#include "haptic_server/volume/import/stored_bytes.h"
 
 namespace bonemill {
 namespace {
 
 constexpr size_t kMaxHeaderBytes = size_t(1) << 16;
 
-std::string trimmed(const std::string& text) {
-    const auto first = text.find_first_not_of(" \t\r");
-    if (first == std::string::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
+using Fields = std::map<std::string, std::string>;
 
 bool isTrue(const std::string& text) {
     return !text.empty() && (text[0] == 'T' || text[0] == 't' || text[0] == '1');
@@ -35,7 +32,7 @@ int countOf(const std::string& text) {
 }
 
 // MetaIO's fixed arrays trust these counts.
-void checkCounts(const std::map<std::string, std::string>& fields, const std::string& file) {
+void checkCounts(const Fields& fields, const std::string& file) {
     const auto checkCount = [&](const char* key, int wanted) {
         const auto field = fields.find(key);
         if (field != fields.end() && countOf(field->second) != wanted)
@@ -51,29 +48,74 @@ void checkCounts(const std::map<std::string, std::string>& fields, const std::st
         checkCount(number, 1);
 }
 
-// MetaIO allocates what this number says.
+// MetaIO allocates what this number says, and reads no further.
 uint64_t packedBytes(const std::string& text, const std::string& file) {
-    if (text.empty()) return 0;
     const double bytes = std::strtod(text.c_str(), nullptr);
-    if (!(bytes >= 0 && bytes < 1e15))
-        throw UserError(file + ": CompressedDataSize = " + text + " is no size");
+    if (!(bytes >= 1 && bytes < 1e15))
+        throw UserError(file + ": its voxels are compressed, and CompressedDataSize (\"" + text +
+                        "\") does not say to how many bytes; write the file anew");
     return uint64_t(bytes);
+}
+
+double mmPerDistanceUnit(const std::string& unit, const std::string& file) {
+    if (unit.empty() || unit == "mm" || unit == "?") return 1;
+    if (unit == "cm") return 10;
+    if (unit == "um") return 1e-3;
+    throw UserError(file + ": DistanceUnits = " + unit + " are not known; use mm, cm or um");
+}
+
+// Returns whether the field is absent or holds this number.
+bool isNumber(Fields& fields, const char* key, double wanted) {
+    const std::string& text = fields[key];
+    char* end = nullptr;
+    return text.empty() || (std::strtod(text.c_str(), &end) == wanted && *end == '\0');
+}
+
+// The library takes some of these for other voxels, and passes over the others.
+void checkKind(Fields& fields, const std::string& file) {
+    if (!isTrue(fields["BinaryData"]))
+        throw UserError(file + ": its voxels are not said to be binary (BinaryData = True); write them so");
+    if (!isNumber(fields, "HeaderSize", 0))
+        throw UserError(file + ": HeaderSize = " + fields["HeaderSize"] +
+                        " puts the voxels behind another header; cut that off");
+    for (const auto& [key, none] : {std::pair("ElementToIntensityFunctionSlope", 1.0),
+                                    std::pair("ElementToIntensityFunctionOffset", 0.0)})
+        if (!isNumber(fields, key, none))
+            throw UserError(file + ": " + key + " = " + fields[key] +
+                            " scales the voxels, which is not supported; write them scaled");
+    if (namesSeveralFiles(fields["ElementDataFile"]))
+        throw UserError(file + ": spreads its voxels over several files (" + fields["ElementDataFile"] +
+                        "); write them into one");
+}
+
+// MetaIO parts a name from its value by a colon, too, and takes one of two values of a name.
+void takeLine(const std::string& line, size_t equals, const std::string& file, Fields& fields) {
+    const std::string key = trimmed(line.substr(0, equals));
+    if (key.find(':') != std::string::npos)
+        throw UserError(file + ": its header's line \"" + key + " = ...\" holds a colon; take it out");
+    if (!fields.emplace(key, trimmed(line.substr(equals + 1))).second && key != "Comment")
+        throw UserError(file + ": its header states " + key + " twice; take one of them out");
+}
+
+// Returns the header's length.
+uint64_t readFields(const std::filesystem::path& path, Fields& fields) {
+    std::istringstream text(firstBytes(path, kMaxHeaderBytes));
+    uint64_t bytes = 0;
+    for (std::string line; !fields.count("ElementDataFile") && std::getline(text, line);) {
+        bytes += line.size() + 1;
+        const auto equals = line.find('=');
+        if (equals == std::string::npos) break;
+        takeLine(line, equals, path.string(), fields);
+    }
+    return bytes;
 }
 
 }  // namespace
 
 MetaImageHeader readMetaImageHeader(const std::filesystem::path& path) {
     const std::string file_name = path.string();
-    std::ifstream file(path, std::ios::binary);
-    std::map<std::string, std::string> fields;
-    std::string line;
-    uint64_t bytes = 0;
-    while (!fields.count("ElementDataFile") && bytes < kMaxHeaderBytes && std::getline(file, line)) {
-        bytes += line.size() + 1;
-        const auto equals = line.find('=');
-        if (equals == std::string::npos) break;
-        fields[trimmed(line.substr(0, equals))] = trimmed(line.substr(equals + 1));
-    }
+    Fields fields;
+    const uint64_t bytes = readFields(path, fields);
     if (!fields.count("ElementDataFile") || !fields.count("DimSize") || !fields.count("ElementType"))
         throw UserError(file_name +
                         ": is not a MetaImage (DimSize, ElementType and ElementDataFile are needed)");
@@ -81,8 +123,10 @@ MetaImageHeader readMetaImageHeader(const std::filesystem::path& path) {
         throw UserError(file_name + ": has NDims = " + fields["NDims"] +
                         "; one volume of 3 dimensions is needed");
     checkCounts(fields, file_name);
+    checkKind(fields, file_name);
     MetaImageHeader header;
     header.bytes = bytes;
+    header.mm_per_unit = mmPerDistanceUnit(fields["DistanceUnits"], file_name);
     header.has_spacing = fields.count("ElementSpacing") || fields.count("ElementSize");
     header.has_patient_space = namesPatientSides(fields["AnatomicalOrientation"]);
     header.is_compressed = isTrue(fields["CompressedData"]);

@@ -160,12 +160,26 @@ void takeFrame(const Header& header, NiftiHeader& out) {
     out.remark = text;
 }
 
-// The library stores what comes of the scale in numbers of more bytes.
+// A slope of 0 means that nothing is scaled, but the library adds the intercept even so; a slope that it
+// finds too small it takes for 1.
 void checkScale(const Header& header, const std::string& file) {
-    if (!std::isfinite(header.at<float>(kSlopeOffset)) || !std::isfinite(header.at<float>(kInterceptOffset)))
+    constexpr float kLeastSlope = 1e-15f;
+    const float slope = header.at<float>(kSlopeOffset), intercept = header.at<float>(kInterceptOffset);
+    if (!std::isfinite(slope) || !std::isfinite(intercept))
         throw UserError(
             file +
             ": its NIfTI header scales values by no number (scl_slope, scl_inter); write the file anew");
+    if ((slope == 0 && intercept != 0) || (slope != 0 && std::abs(slope) < kLeastSlope))
+        throw UserError(file + ": its NIfTI header has a scl_inter without a scl_slope to go with it; set " +
+                        "scl_slope to 1, or scl_inter to 0");
+}
+
+// The library takes their absolute values or 1 where there is no sform, and gives up where there is one.
+void checkVoxelSize(const Header& header, const std::string& file) {
+    for (size_t a = 1; a <= std::min<size_t>(size_t(header.at<int16_t>(kDimOffset)), 3); ++a)
+        if (!(header.at<float>(kPixdimOffset + 4 * a) > 0))
+            throw UserError(file + ": its NIfTI header states a voxel size (pixdim) that is not above 0; " +
+                            "write it in mm");
 }
 
 }  // namespace
@@ -191,6 +205,7 @@ NiftiHeader readNiftiHeader(const std::filesystem::path& path) {
         throw UserError(file +
                         ": its NIfTI header puts the voxels at an impossible place; the file is damaged");
     checkScale(header, file);
+    checkVoxelSize(header, file);
     const int bits = header.at<int16_t>(kBitpixOffset);
     if (bits <= 0 || bits % 8 != 0)
         throw UserError(file + ": its NIfTI header states " + std::to_string(bits) +

@@ -1,12 +1,14 @@
 #include "haptic_server/volume/import/nrrd_header.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <sstream>
+#include <vector>
 
 #include "common/user_error.h"
+#include "haptic_server/volume/import/header_text.h"
 
 namespace bonemill {
 namespace {
@@ -14,12 +16,6 @@ namespace {
 constexpr size_t kMaxHeaderBytes = size_t(1) << 20;
 // Decimal text in mm carries 15 digits or more; anything further away is another geometry.
 constexpr double kGeometryTolerance = 1e-9;
-
-std::string trimmed(const std::string& text) {
-    const auto first = text.find_first_not_of(" \t\r");
-    if (first == std::string::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
 
 // Field names ignore blanks and case: "data file", "datafile", "Data File".
 std::string fieldName(const std::string& text) {
@@ -29,17 +25,43 @@ std::string fieldName(const std::string& text) {
     return name;
 }
 
-double mmPerUnit(const std::string& units, const std::filesystem::path& path) {
-    const auto open = units.find('"');
-    const auto close = units.find('"', open + 1);
-    const std::string unit = open == std::string::npos || close == std::string::npos
-                                 ? units.substr(0, units.find(' '))
-                                 : units.substr(open + 1, close - open - 1);
+double mmPerUnit(const std::string& unit, const std::filesystem::path& path) {
     if (unit.empty() || unit == "mm" || unit == "millimeter" || unit == "???") return 1;
     if (unit == "m") return 1000;
     if (unit == "cm") return 10;
     if (unit == "um" || unit == "micron") return 1e-3;
     throw UserError(path.string() + ": space units \"" + unit + "\" are not known; use mm, cm, m or um");
+}
+
+// They stand in quotation marks; some writers leave these out.
+std::vector<std::string> unitsOf(const std::string& text) {
+    std::vector<std::string> units;
+    if (text.find('"') == std::string::npos) {
+        std::istringstream words(text);
+        for (std::string word; words >> word;) units.push_back(word);
+        return units;
+    }
+    for (size_t open = text.find('"'); open != std::string::npos;) {
+        const size_t close = std::min(text.find('"', open + 1), text.size());
+        units.push_back(text.substr(open + 1, close - open - 1));
+        open = text.find('"', close + 1);
+    }
+    return units;
+}
+
+// A fourth axis may be time.
+double mmPerUnitOfAll(const std::string& text, const std::filesystem::path& path) {
+    std::vector<std::string> units = unitsOf(text);
+    units.resize(std::min<size_t>(units.size(), 3));
+    double mm = 1;
+    for (const std::string& unit : units) {
+        const double other = mmPerUnit(unit, path);
+        if (&unit != &units.front() && other != mm)
+            throw UserError(path.string() + ": its units (" + text +
+                            ") differ from axis to axis; write all of them in mm");
+        mm = other;
+    }
+    return mm;
 }
 
 // These spaces have the patient's sides as axes, also with time as a fourth; others are the scanner's or
@@ -75,36 +97,50 @@ void checkSpacings(const std::string& text, const std::filesystem::path& path) {
                             ") are no lengths; write the voxels' size into the NRRD header");
 }
 
+struct Units {
+    std::string of_space, of_axes;
+};
+
+void takeField(const std::string& name, const std::string& value, const std::filesystem::path& path,
+               NrrdHeader& header, Units& units) {
+    if (name == "space") header.has_patient_space = isPatientSpace(value);
+    if (name == "encoding") header.encoding = fieldName(value);
+    if (name == "datafile") header.data_file = value;
+    if (name == "spacedirections") checkDirections(value, path);
+    if (name == "spacings") checkSpacings(value, path);
+    header.has_spacing = header.has_spacing || name == "spacedirections" || name == "spacings";
+    if (name == "spaceunits") units.of_space = value;
+    if (name == "units") units.of_axes = value;
+}
+
+void takeLine(const std::string& line, const std::filesystem::path& path, NrrdHeader& header, Units& units) {
+    const auto colon = line.find(':');
+    if (line[0] == '#' || colon == std::string::npos) return;
+    if (line.compare(colon, 2, ":=") != 0)
+        return takeField(fieldName(line.substr(0, colon)), trimmed(line.substr(colon + 1)), path, header,
+                         units);
+    if (line.substr(0, colon) == kNrrdGeometryKey)
+        header.exact_geometry = geometryFromText(line.substr(colon + 2));
+}
+
 }  // namespace
 
 NrrdHeader readNrrdHeader(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
+    std::istringstream text(firstBytes(path, kMaxHeaderBytes));
     std::string line;
-    if (!std::getline(file, line) || line.rfind("NRRD000", 0) != 0)
+    if (!std::getline(text, line) || line.rfind("NRRD000", 0) != 0)
         throw UserError(path.string() + ": is not a NRRD file (it does not start with NRRD000)");
     NrrdHeader header;
+    Units units;
     header.bytes = line.size() + 1;
-    while (std::getline(file, line)) {
+    while (std::getline(text, line)) {
         header.bytes += line.size() + 1;
         if (trimmed(line).empty()) break;
-        if (header.bytes > kMaxHeaderBytes)
-            throw UserError(path.string() + ": the NRRD header does not end; the file is damaged");
-        const auto colon = line.find(':');
-        if (line[0] == '#' || colon == std::string::npos) continue;
-        if (line.compare(colon, 2, ":=") == 0) {
-            if (line.substr(0, colon) == kNrrdGeometryKey)
-                header.exact_geometry = geometryFromText(line.substr(colon + 2));
-            continue;
-        }
-        const std::string name = fieldName(line.substr(0, colon)), value = trimmed(line.substr(colon + 1));
-        if (name == "space") header.has_patient_space = isPatientSpace(value);
-        if (name == "encoding") header.encoding = fieldName(value);
-        if (name == "datafile") header.data_file = value;
-        if (name == "spacedirections") checkDirections(value, path);
-        if (name == "spacings") checkSpacings(value, path);
-        header.has_spacing = header.has_spacing || name == "spacedirections" || name == "spacings";
-        if (name == "spaceunits" || name == "units") header.mm_per_unit = mmPerUnit(value, path);
+        takeLine(line, path, header, units);
     }
+    if (header.bytes >= kMaxHeaderBytes)
+        throw UserError(path.string() + ": the NRRD header does not end; the file is damaged");
+    header.mm_per_unit = mmPerUnitOfAll(units.of_space.empty() ? units.of_axes : units.of_space, path);
     return header;
 }
 
@@ -130,7 +166,7 @@ std::optional<VolumeGeometry> geometryFromText(const std::string& text) {
         if (end == word.c_str() || !std::isfinite(n)) return std::nullopt;
     }
     for (int a = 0; a < 3; ++a)
-        if (number[a] < 1 || number[a] > 1e9) return std::nullopt;
+        if (number[a] < 1 || number[a] > 1e9 || number[a + 3] <= 0) return std::nullopt;
     VolumeGeometry geometry;
     geometry.dims = Eigen::Vector3d(number[0], number[1], number[2]).cast<int>();
     geometry.spacing = {number[3], number[4], number[5]};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 #include <vector>
 
 #include "common/require_file.h"
@@ -21,6 +22,7 @@ class InflateCounter {
   public:
     explicit InflateCounter(const StoredData& data)
         : file_(data.file, std::ios::binary), name_(data.file.string()) {
+        if (data.packed_bytes > 0) left_ = data.packed_bytes;
         file_.seekg(std::streamoff(data.begin));
         if (inflateInit2(&stream_, kAnyWrapper) != Z_OK) throw std::bad_alloc();
     }
@@ -50,7 +52,9 @@ class InflateCounter {
 
   private:
     bool refill() {
-        file_.read(reinterpret_cast<char*>(in_.data()), std::streamsize(in_.size()));
+        file_.read(reinterpret_cast<char*>(in_.data()),
+                   std::streamsize(std::min<uint64_t>(in_.size(), left_)));
+        left_ -= uint64_t(file_.gcount());
         stream_.next_in = in_.data();
         stream_.avail_in = uInt(file_.gcount());
         return stream_.avail_in > 0;
@@ -58,12 +62,17 @@ class InflateCounter {
 
     std::ifstream file_;
     std::string name_;
+    uint64_t left_ = std::numeric_limits<uint64_t>::max();  // packed bytes that belong to the data
     z_stream stream_{};
     std::vector<Bytef> in_ = std::vector<Bytef>(kBufferBytes);
     std::vector<Bytef> out_ = std::vector<Bytef>(kBufferBytes);
 };
 
 }  // namespace
+
+bool namesSeveralFiles(const std::string& data_file) {
+    return data_file.rfind("LIST", 0) == 0 || data_file.find('%') != std::string::npos;
+}
 
 uint64_t countStoredBytes(const StoredData& data, uint64_t needed) {
     requireFile(data.file);

@@ -77,7 +77,7 @@ SliceGrid gridAround(const std::vector<SlicePlace>& places, const Eigen::Vector2
     const Eigen::Array2d more = ((high - low) / pixel_spacing_mm.array() - kNoVoxel).ceil().max(0);
     const double extent = places.back().along_mm - places.front().along_mm;
     SliceGrid grid;
-    grid.dims << size + more.cast<int>().matrix(), int(extent / slice_spacing_mm + kNoVoxel) + 1;
+    grid.dims << size + more.cast<int>().matrix(), int(std::ceil(extent / slice_spacing_mm - kNoVoxel)) + 1;
     grid.spacing_mm << pixel_spacing_mm, slice_spacing_mm;
     grid.aside_mm = low;
     return grid;

@@ -24,7 +24,8 @@ struct SliceGrid {
     Eigen::Vector2d aside_mm;  // of its first voxel
 };
 
-// The grid holds all pixels of all slices; the places ascend. Its slices are `slice_spacing_mm` apart.
+// The grid holds all pixels of all slices; the places ascend. Its slices are `slice_spacing_mm` apart, from
+// the first one on; the last of them may lie beyond the last slice, and repeats it.
 SliceGrid gridAround(const std::vector<SlicePlace>& places, const Eigen::Vector2i& size,
                      const Eigen::Vector2d& pixel_spacing_mm, double slice_spacing_mm);
 

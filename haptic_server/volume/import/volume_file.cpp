@@ -17,7 +17,7 @@ namespace {
 
 struct FileFacts {
     std::string format;
-    std::optional<StoredData> data;  // nothing: spread over several files
+    StoredData data;
     double mm_per_unit = 1;
     bool has_patient_space = true;
     bool has_spacing = true;              // libraries take 1 mm where it is not said
@@ -45,7 +45,7 @@ FileFrame frameOf(const ItkImageHeader& header, double mm_per_unit) {
 
 RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const FileFacts& facts) {
     const std::string file = path.string();
-    if (facts.data) requireFile(facts.data->file);  // The library opens it with the header.
+    requireFile(facts.data.file);  // The library opens it with the header.
     ItkImageFile image(format, path);
     const ItkImageHeader& header = image.header();
     if (header.components != 1)
@@ -61,7 +61,7 @@ RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const
     const uint64_t voxels = dims[0] * dims[1] * dims[2];
     const uint64_t stored = facts.stored_bytes_per_voxel;
     const uint64_t needed = voxels * (stored > 0 ? stored : header.bytes_per_voxel);
-    if (facts.data) checkStoredBytes(needed, countStoredBytes(*facts.data, needed), file);
+    checkStoredBytes(needed, countStoredBytes(facts.data, needed), file);
     RawVolume raw;
     raw.values.reserve(size_t(voxels));
     image.appendValues(raw.values);
@@ -75,15 +75,13 @@ RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const
 
 using Packing = StoredData::Packing;
 
-// The name is that of one data file, and no list or pattern of several files.
-bool isOneFile(const std::string& name) {
-    return name.rfind("LIST", 0) != 0 && name.find('%') == std::string::npos;
-}
-
 }  // namespace
 
 RawVolume importNrrd(const std::filesystem::path& path) {
     const NrrdHeader header = readNrrdHeader(path);
+    if (namesSeveralFiles(header.data_file))
+        throw UserError(path.string() + ": spreads its voxels over several files (data file: " +
+                        header.data_file + "); write them into one");
     FileFacts facts{.format = "NRRD",
                     .data = StoredData{path, header.bytes},
                     .mm_per_unit = header.mm_per_unit,
@@ -93,8 +91,7 @@ RawVolume importNrrd(const std::filesystem::path& path) {
                     .remark = {}};
     if (!header.data_file.empty()) facts.data = StoredData{path.parent_path() / header.data_file};
     // ITK's NRRD library finds short gzip data itself.
-    if (header.encoding != "raw") facts.data->packing = Packing::kOther;
-    if (!isOneFile(header.data_file)) facts.data.reset();
+    if (header.encoding != "raw") facts.data.packing = Packing::kOther;
     RawVolume raw = readThrough(ItkFormat::kNrrd, path, facts);
     if (header.exact_geometry && isSameGeometry(*header.exact_geometry, raw.geometry))
         raw.geometry = *header.exact_geometry;
@@ -109,7 +106,7 @@ RawVolume importNifti(const std::filesystem::path& path) {
                     .stored_bytes_per_voxel = header.bytes_per_voxel,
                     .frame = header.frame,
                     .remark = header.remark};
-    if (path.extension() == ".gz") facts.data = StoredData{path, 0, Packing::kDeflate, header.data_offset};
+    if (path.extension() == ".gz") facts.data = StoredData{path, 0, Packing::kDeflate, 0, header.data_offset};
     if (header.frame) checkFrame(*header.frame, path.string());
     return readThrough(ItkFormat::kNifti, path, facts);
 }
@@ -118,16 +115,18 @@ RawVolume importMetaImage(const std::filesystem::path& path) {
     const MetaImageHeader header = readMetaImageHeader(path);
     FileFacts facts{.format = "MetaImage",
                     .data = StoredData{path, header.bytes},
+                    .mm_per_unit = header.mm_per_unit,
                     .has_patient_space = header.has_patient_space,
                     .has_spacing = header.has_spacing,
                     .frame = {},
                     .remark = {}};
     if (!header.data_file.empty()) facts.data = StoredData{path.parent_path() / header.data_file};
-    if (header.packed_bytes > 0)
-        checkStoredBytes(header.packed_bytes, countStoredBytes(*facts.data, header.packed_bytes),
+    if (header.is_compressed) {
+        checkStoredBytes(header.packed_bytes, countStoredBytes(facts.data, header.packed_bytes),
                          path.string());
-    if (header.is_compressed) facts.data->packing = Packing::kDeflate;
-    if (!isOneFile(header.data_file)) facts.data.reset();
+        facts.data.packing = Packing::kDeflate;
+        facts.data.packed_bytes = header.packed_bytes;
+    }
     return readThrough(ItkFormat::kMetaImage, path, facts);
 }
 

@@ -201,6 +201,7 @@ TEST_F(DamagedFiles, dicomMultiFrame) {
     DicomImage image = smallSlice(0);
     image.pixels.assign(60, 5);
     image.frame_positions = {"0\\0\\0", "0\\0\\1", "0\\0\\2"};
+    image.frame_rescales = {"1|-1024", "2|0", "0.5|-1024"};
     writeDicomFile(folder_ / "a.dcm", image);
     fuzz(importVolume, "a.dcm", "a.dcm", kDicomShare);
 }

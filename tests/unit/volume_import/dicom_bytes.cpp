@@ -35,7 +35,8 @@ std::string decimal(double value) {
     return text.substr(0, 16);
 }
 
-const char* sopClass(const DicomImage& image) {
+std::string sopClass(const DicomImage& image) {
+    if (!image.sop_class.empty()) return image.sop_class;
     if (!image.frame_positions.empty()) return "1.2.840.10008.5.1.4.1.1.2.1";  // Enhanced CT
     return image.samples_per_pixel == 1 ? "1.2.840.10008.5.1.4.1.1.2" : "1.2.840.10008.5.1.4.1.1.7";
 }
@@ -56,14 +57,25 @@ std::string pixelBytes(const DicomImage& image) {
     return bytes;
 }
 
+// Of "slope|intercept"; nothing of an empty text.
+std::string valueTransformation(const std::string& rescale) {
+    if (rescale.empty()) return {};
+    const size_t bar = rescale.find('|');
+    return element(0x00289145, "SQ",
+                   item(element(0x00281052, "DS", rescale.substr(bar + 1)) +
+                        element(0x00281053, "DS", rescale.substr(0, bar)) + element(0x00281054, "LO", "HU")));
+}
+
 std::string functionalGroups(const DicomImage& image) {
     const std::string shared =
         element(0x00209116, "SQ", item(element(0x00200037, "DS", image.orientation))) +
         element(0x00289110, "SQ",
-                item(element(0x00180050, "DS", "1") + element(0x00280030, "DS", image.pixel_spacing)));
+                item(element(0x00180050, "DS", "1") + element(0x00280030, "DS", image.pixel_spacing))) +
+        valueTransformation(image.shared_rescale);
     std::string frames;
-    for (const std::string& position : image.frame_positions)
-        frames += item(element(0x00209113, "SQ", item(element(0x00200032, "DS", position))));
+    for (size_t f = 0; f < image.frame_positions.size(); ++f)
+        frames += item(element(0x00209113, "SQ", item(element(0x00200032, "DS", image.frame_positions[f]))) +
+                       (image.frame_rescales.empty() ? "" : valueTransformation(image.frame_rescales[f])));
     return element(0x52009229, "SQ", item(shared)) + element(0x52009230, "SQ", frames);
 }
 
@@ -81,10 +93,10 @@ std::string dicomBytes(const DicomImage& image) {
     if (image.samples_per_pixel > 1) bytes += shortElement(0x00280006, 0);
     if (is_enhanced) bytes += element(0x00280008, "IS", std::to_string(image.frame_positions.size()));
     bytes += shortElement(0x00280010, image.rows) + shortElement(0x00280011, image.columns);
-    if (!is_enhanced) bytes += element(0x00280030, "DS", image.pixel_spacing);
+    if (!is_enhanced && !image.pixel_spacing.empty()) bytes += element(0x00280030, "DS", image.pixel_spacing);
     bytes += shortElement(0x00280100, image.bits) + shortElement(0x00280101, image.bits) +
              shortElement(0x00280102, image.bits - 1) + shortElement(0x00280103, image.bits == 16 ? 1 : 0);
-    if (image.samples_per_pixel == 1)
+    if (image.samples_per_pixel == 1 && !is_enhanced)
         bytes += element(0x00281052, "DS", decimal(image.intercept)) +
                  element(0x00281053, "DS", decimal(image.slope));
     if (image.photometric == "PALETTE COLOR")

@@ -12,9 +12,10 @@ struct DicomImage {
     std::string series_uid = "1.2.3.4";
     std::string sop_uid = "1.2.3.4.1";
     std::string modality = "CT";
+    std::string sop_class;             // empty: CT, Enhanced CT or Secondary Capture, as the rest says
     std::string position = "0\\0\\0";  // empty: no Image Position
     std::string orientation = "1\\0\\0\\0\\1\\0";
-    std::string pixel_spacing = "0.5\\0.5";  // row spacing first, as DICOM has it
+    std::string pixel_spacing = "0.5\\0.5";  // row spacing first, as DICOM has it; empty: none
     std::string photometric = "MONOCHROME2";
     int rows = 4;
     int columns = 5;
@@ -25,6 +26,8 @@ struct DicomImage {
     std::vector<int16_t> pixels;  // stored values; 8-bit files keep their low bytes
     bool has_pixels = true;
     std::vector<std::string> frame_positions;  // not empty: an enhanced multi-frame file
+    std::string shared_rescale;                // of all frames, as below
+    std::vector<std::string> frame_rescales;   // slope|intercept of each frame; empty: none says its own
 };
 
 // Returns preamble, meta header and data set.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "tests/unit/volume_import/expect_user_error.h"
@@ -87,6 +88,39 @@ TEST(DicomSeries, CtGoesBeforeALargerSeriesOfAnotherKind) {
     const DicomStack stack = chosen(slices);
     EXPECT_EQ(stack.slices.size(), 6u);
     EXPECT_NE(stack.left_out.find("30 slices 8x8 of MR series 9.9"), std::string::npos) << stack.left_out;
+}
+
+// 5.0499 and 5.0501 lie on both sides of where rounding would part them.
+TEST(DicomSeries, RoundingDoesNotTearASeriesApart) {
+    auto slices = stackOf(6, 1);
+    for (size_t s = 0; s < slices.size(); ++s) {
+        const double angle = 0.0005 + (s % 2 ? 1e-5 : -1e-5);
+        slices[s].row_direction = {std::cos(angle), std::sin(angle), 0};
+        slices[s].column_direction = {-std::sin(angle), std::cos(angle), 0};
+        slices[s].pixel_spacing_mm.setConstant(0.50005 + (s % 2 ? 1e-6 : -1e-6));
+    }
+    EXPECT_EQ(chosen(slices).slices.size(), 6u);
+}
+
+TEST(DicomSeries, allSlicesLieWithinTheGrid) {
+    std::vector<SlicePlace> places(4);
+    for (size_t s = 0; s < 4; ++s) places[s].along_mm = std::array{0, 5, 10, 13}[s];
+    const Eigen::Vector2i size(1, 1);
+    const SliceGrid grid = gridAround(places, size, {1, 1}, 5);
+    ASSERT_EQ(grid.dims.z(), 4);
+    RawValues values;
+    values.append(std::vector<int16_t>{0, 50, 100, 130});
+    const RawValues resampled = resampleStack(values, places, size, grid);
+    EXPECT_EQ(resampled[2], 100);
+    EXPECT_EQ(resampled[3], 130);
+    places[3].along_mm = 15;
+    EXPECT_EQ(gridAround(places, size, {1, 1}, 5).dims.z(), 4) << "and none beyond";
+}
+
+TEST(DicomSeries, aTiltBeyondAnyGantryIsRefused) {
+    auto slices = stackOf(6, 1);
+    for (size_t s = 0; s < slices.size(); ++s) slices[s].position_mm.y() += 1.01 * double(s);
+    expectUserError([&] { chosen(slices); }, {"f: ", "45.3 degrees", "gantry"});
 }
 
 TEST(DicomSeries, sidewaysShiftIsRefused) {

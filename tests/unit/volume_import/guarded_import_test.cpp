@@ -2,15 +2,23 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <signal.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
 #include <sys/mount.h>
 #include <sys/ptrace.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
+#include <limits>
 #include <thread>
 
 #include "haptic_server/volume/import/file_being_read.h"
@@ -78,6 +86,25 @@ TEST(GuardedImport, whatDoesNotFitTogetherIsRefused) {
         sent.values.append(std::vector<int16_t>(1000000, -7));
         expectUserError([&] { importGuarded("file", [&] { return sent; }); }, {"file", "fit together"});
     }
+    using Spoil = std::function<void(VolumeGeometry&)>;
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const Spoil& spoil :
+         {Spoil([](VolumeGeometry& g) { g.spacing.y() = 0; }),
+          Spoil([](VolumeGeometry& g) { g.spacing.z() = -1; }),
+          Spoil([&](VolumeGeometry& g) { g.spacing.x() = nan; }),
+          Spoil([&](VolumeGeometry& g) { g.X_WV.position.y() = nan; }),
+          Spoil([](VolumeGeometry& g) { g.X_WV.position.y() = 1e30; }),
+          Spoil([](VolumeGeometry& g) { g.X_WV.rotation.coeffs() *= 1.1; }),
+          Spoil([&](VolumeGeometry& g) { g.X_WV.rotation.x() = nan; }), Spoil([](VolumeGeometry& g) {
+              g.dims = {0, 0, 0};
+          })}) {
+        RawVolume sent;
+        sent.geometry.dims = {100, 100, 100};
+        sent.values.append(std::vector<int16_t>(1000000, -7));
+        spoil(sent.geometry);
+        if (sent.geometry.dims.x() == 0) sent.values = {};
+        expectUserError([&] { importGuarded("file", [&] { return sent; }); }, {"file", "fit together"});
+    }
     RawVolume talkative;
     talkative.description.assign(2 << 20, 'a');
     expectUserError([&] { importGuarded("file", [&] { return talkative; }); }, {"file", "fit together"});
@@ -91,6 +118,59 @@ TEST(GuardedImport, aReaderThatWaitsForEverIsEndedAndTheFileNamed) {
     };
     expectUserError([&] { importGuarded("folder", readAndWait, std::chrono::milliseconds(50)); },
                     {"folder/slice7", "within 0.05 s"});
+}
+
+RawVolume smallVolume() {
+    RawVolume small;
+    small.geometry.dims = {10, 10, 10};
+    small.values.append(std::vector<int16_t>(1000, -7));
+    return small;
+}
+
+TEST(GuardedImport, aReaderThatHasSaidAllIsNotWaitedFor) {
+    const auto sayAllAndWait = [](int pipe, int) {
+        const pid_t child = fork();
+        if (child != 0) return child;
+        if (fork() == 0) readAsChild(pipe, "file", smallVolume);
+        for (;;) pause();
+    };
+    EXPECT_EQ(importFrom("file", sayAllAndWait).values, smallVolume().values);
+}
+
+// What the reader writes there may come from whoever took it over.
+TEST(GuardedImport, theSharedNameCannotBeShrunkAndIsReadNoFurther) {
+    const auto start = [](int, int name) {
+        const pid_t child = fork();
+        if (child != 0) return child;
+        const bool is_shrunk = ftruncate(name, 0) == 0, is_grown = ftruncate(name, 1 << 20) == 0;
+        const std::string text(4096, is_shrunk ? 's' : is_grown ? 'g' : 'n');
+        if (pwrite(name, text.data(), text.size(), 0) < 0) _exit(1);
+        _exit(0);
+    };
+    expectUserError([&] { importFrom("file", start); }, {std::string(4096, 'n') + ": the library"});
+}
+
+TEST(GuardedImport, whatTheReaderSaysStaysOneLine) {
+    expectUserError([] { importGuarded("file", []() -> RawVolume { throw UserError("one\ntwo\x1b[2J"); }); },
+                    {"one two [2J"});
+    const auto readAndDie = []() -> RawVolume {
+        noteFileBeingRead("folder/a\nb");
+        std::abort();
+    };
+    expectUserError([&] { importGuarded("folder", readAndDie); }, {"folder/a b"});
+}
+
+TEST(GuardedImport, theReadersMemoryIsBounded) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "sanitizers map terabytes themselves";
+#endif
+    const auto readGreedily = []() -> RawVolume {
+        if (mmap(nullptr, size_t(1) << 44, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0) ==
+            MAP_FAILED)
+            throw std::bad_alloc();
+        throw UserError("there is no bound");
+    };
+    expectUserError([&] { importGuarded("file", readGreedily); }, {"file", "not enough memory"});
 }
 
 TEST(GuardedImport, deathOfTheReaderNamesTheFileItWasAt) {
@@ -118,6 +198,29 @@ std::string doneByReader(const std::string& folder) {
     attempt("mode", chmod((folder + "/there").c_str(), 0777));
     attempt("trace", ptrace(PTRACE_TRACEME, 0, nullptr, nullptr));
     attempt("kill", kill(getppid(), 0));
+    // These would fail here for other reasons, too.
+    const auto attemptAllowed = [&done](const char* what, long result) {
+        if (result >= 0 || errno != EPERM) done += std::string(what) + " ";
+    };
+    char key = 'x';
+    attemptAllowed("typing", ioctl(STDIN_FILENO, TIOCSTI, &key));
+    attemptAllowed("console", ioctl(STDIN_FILENO, TIOCLINUX, &key));
+    attempt("queued signal", sigqueue(getppid(), 0, {}));
+    siginfo_t info{};
+    info.si_code = SI_QUEUE;
+    attempt("thread's queued signal", syscall(SYS_rt_tgsigqueueinfo, getppid(), getppid(), 0, &info));
+    attempt("thread's signal", syscall(SYS_tgkill, getppid(), getppid(), 0));
+    rlimit limit{};
+    attempt("limits", prlimit(getppid(), RLIMIT_NOFILE, nullptr, &limit));
+    cpu_set_t processors;
+    sched_getaffinity(0, sizeof processors, &processors);
+    attempt("processors", sched_setaffinity(getppid(), sizeof processors, &processors));
+    attempt("priority", setpriority(PRIO_PROCESS, id_t(getppid()), 5));
+    const sched_param batch{};
+    attempt("scheduling", sched_setscheduler(getppid(), SCHED_BATCH, &batch));
+    attempt("signals of a file", fcntl(STDIN_FILENO, F_SETOWN, getppid()));
+    char byte;
+    if (read(STDIN_FILENO, &byte, 1) != 0) done += "stdin ";
     attempt("mount", mount("none", folder.c_str(), "tmpfs", 0, nullptr));
     attempt("process", fork());
     char name[] = "/bin/true";
