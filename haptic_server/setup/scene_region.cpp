@@ -104,13 +104,15 @@ RawVolume resampled(const LoadedScene& loaded, const RawVolume& scan, std::vecto
                     ": " + rounded(voxelsOf(region) / 1e6) + " million voxels are more than the " +
                         rounded(kMostVoxels / 1e6) +
                         " million that are allowed; raise it or take a smaller region");
+    const double deblur_mm = loaded.scene.volume().region().deblur_mm();
+    const std::string deblurred = deblur_mm > 0 ? ", a blur of " + rounded(deblur_mm) + " mm taken back" : "";
     std::ostringstream text;
     text << "region of " << region.dims.transpose() << " voxels of " << rounded(voxel.edge * kPerMillimetre)
          << " mm (" << voxel.why << "), resampled from voxels of "
-         << (scan.geometry.spacing * kPerMillimetre).transpose()
-         << " mm by cubic B-spline; the rest is shown, but neither felt nor milled";
+         << (scan.geometry.spacing * kPerMillimetre).transpose() << " mm by cubic B-spline" << deblurred
+         << "; the rest is shown, but neither felt nor milled";
     remarks.push_back(text.str());
-    return resampleRegion(scan, region);
+    return resampleRegion(scan, region, deblur_mm * kMillimetre);
 }
 
 }  // namespace

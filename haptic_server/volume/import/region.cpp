@@ -14,11 +14,13 @@ namespace {
 // The scan's voxels around the region, as coefficients of the spline.
 class SplineCoefficients {
   public:
-    SplineCoefficients(const RawVolume& scan, const Eigen::Vector3d& low, const Eigen::Vector3d& high)
+    SplineCoefficients(const RawVolume& scan, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                       double blur)
         : first_((low.array().floor().cast<int>() - kSplineReach).max(0)),
           dims_(((high.array().ceil().cast<int>() + kSplineReach + 1).min(scan.geometry.dims.array()) -
                  first_.array())) {
         read(scan);
+        if (blur > 0) takeBack(blur, scan.geometry.spacing);
         for (int axis = 0; axis < 3; ++axis) filter(axis);
     }
 
@@ -46,7 +48,9 @@ class SplineCoefficients {
                 }
         });
     }
-    void filter(int axis) {
+    // change(line) for all lines along the axis.
+    template <class Change>
+    void forEachLine(int axis, Change&& change) {
         const std::array<size_t, 3> stride = {1, size_t(dims_.x()), size_t(dims_.x()) * size_t(dims_.y())};
         std::vector<double> line(size_t(dims_[axis]));
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -55,9 +59,31 @@ class SplineCoefficients {
                 float* const start =
                     values_.data() + size_t(a) * stride[size_t(u)] + size_t(b) * stride[size_t(v)];
                 for (size_t n = 0; n < line.size(); ++n) line[n] = double(start[n * stride[size_t(axis)]]);
-                toSplineCoefficients(line);
-                for (size_t n = 0; n < line.size(); ++n) start[n * stride[size_t(axis)]] = float(line[n]);
+                change(line, start, stride[size_t(axis)]);
             }
+    }
+    void filter(int axis) {
+        forEachLine(axis, [](std::vector<double>& line, float* start, size_t stride) {
+            toSplineCoefficients(line);
+            for (size_t n = 0; n < line.size(); ++n) start[n * stride] = float(line[n]);
+        });
+    }
+    // A Gaussian blur adds half of its variance times the second derivatives, to first order.
+    void takeBack(double blur, const Eigen::Vector3d& spacing) {
+        const std::vector<float> scanned = values_;
+        std::vector<float> sharp = scanned;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double gain = blur * blur / 2 / (spacing[axis] * spacing[axis]);
+            forEachLine(axis, [&](std::vector<double>& line, const float* start, size_t stride) {
+                toSplineCoefficients(line);
+                const size_t at = size_t(start - values_.data()), last = line.size() - 1;
+                for (size_t n = 0; n <= last && last > 0; ++n) {
+                    const double before = line[n > 0 ? n - 1 : 1], after = line[n < last ? n + 1 : last - 1];
+                    sharp[at + n * stride] -= float(gain * (before - 2 * line[n] + after));
+                }
+            });
+        }
+        values_ = std::move(sharp);
     }
 
     Eigen::Vector3i first_, dims_;
@@ -139,11 +165,11 @@ VolumeGeometry regionGeometry(const VolumeGeometry& scan, const Eigen::AlignedBo
     return region;
 }
 
-RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region) {
+RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region, double blur) {
     const Eigen::Affine3d map = indexMap(region, scan.geometry);
     const Eigen::Vector3d low = map.translation(), step = map.linear().diagonal();
     const Eigen::Vector3d high = low + step.cwiseProduct((region.dims.array() - 1).matrix().cast<double>());
-    const SplineCoefficients spline(scan, low, high);
+    const SplineCoefficients spline(scan, low, high, blur);
     SliceMaker slices(spline, region.dims, low, step);
     RawVolume out;
     out.geometry = region;
@@ -156,7 +182,7 @@ RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region) {
     for (int k = 0; k < region.dims.z(); ++k) {
         slices.make(k, slice);
         for (float& value : slice) {
-            value = std::clamp(value, float(range.low), float(range.high));
+            if (blur <= 0) value = std::clamp(value, float(range.low), float(range.high));
             if (range.are_integers) value = std::nearbyint(value);
         }
         out.values.append(std::span<const float>(slice));

@@ -3,7 +3,7 @@
 //
 // The scan is taken for a cubic B-spline through its voxels (Unser, Splines, IEEE Signal Processing Magazine
 // 16, 1999): smooth to the second derivative, and exact at the scan's own voxels. It makes nothing sharper
-// than it was scanned: what the scanner blurred stays blurred.
+// than it was scanned: what the scanner blurred stays blurred, unless its blur is named.
 //
 // Lengths are in m. For start-up only: not RT-safe, it allocates the result, the scan's voxels around the
 // region as float, and four slices.
@@ -20,8 +20,10 @@ namespace bonemill {
 // do not meet.
 VolumeGeometry regionGeometry(const VolumeGeometry& scan, const Eigen::AlignedBox3d& box_W, double voxel);
 
-// The value at each voxel of the region. Values stay within the scan's range, and whole numbers whole. What
-// is not finite counts as the nearer end of that range, NaN as the lower one.
-RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region);
+// The value at each voxel of the region. Values stay within the scan's range, unless a blur is taken back,
+// and whole numbers whole. What is not finite counts as the nearer end of that range, NaN as the lower one.
+// `blur` (m) is the standard deviation of the scanner's blur: it is taken back to first order before, which
+// raises the noise; 0: it stays.
+RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region, double blur = 0);
 
 }  // namespace bonemill

@@ -99,6 +99,26 @@ TEST(Region, StaysWithinTheScansRange) {
     EXPECT_LE(fine.values.range().high, 3000);
 }
 
+// Blurring a wave of this length takes 1 - exp(-(blur k)² / 2) of it; the first order gives most of that
+// back.
+TEST(Region, TakesABlurBackToFirstOrder) {
+    VolumeGeometry grid = coarseGrid();
+    grid.X_WV = {};
+    const double blur = 0.5 * kMm, k = 2 * M_PI / (8 * kMm), left = std::exp(-blur * blur * k * k / 2);
+    const RawVolume scan =
+        scanOf(grid, [&](const Eigen::Vector3d& p) { return 1000.5 + 400.25 * left * std::sin(k * p.x()); });
+    const VolumeGeometry region = regionGeometry(grid, boxInMiddle(grid, 4 * kMm), 0.25 * kMm);
+    const RawVolume blurred = resampleRegion(scan, region), sharp = resampleRegion(scan, region, blur);
+    double worst_blurred = 0, worst_sharp = 0;
+    forEachIndex({Eigen::Vector3i::Zero(), region.dims.array() - 1}, [&](const Eigen::Vector3i& v) {
+        const double truth = 1000.5 + 400.25 * std::sin(k * placeOfVoxel(region, v).x());
+        worst_blurred = std::max(worst_blurred, std::abs(double(blurred.values[indexOf(region, v)]) - truth));
+        worst_sharp = std::max(worst_sharp, std::abs(double(sharp.values[indexOf(region, v)]) - truth));
+    });
+    EXPECT_NEAR(worst_blurred, 400 * (1 - left), 4);
+    EXPECT_LT(worst_sharp, 0.15 * worst_blurred);
+}
+
 TEST(Region, TakesWhatIsNotFiniteForTheEndsOfTheRange) {
     VolumeGeometry grid = coarseGrid();
     const RawVolume scan = scanOf(grid, [&](const Eigen::Vector3d& p) {
