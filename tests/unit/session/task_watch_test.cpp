@@ -173,5 +173,31 @@ TEST_F(LimitedAttempts, AnAttemptEndsWithItsTime) {
     EXPECT_TRUE(stateOf(watch, false).is_result());
 }
 
+TEST_F(LimitedAttempts, OfAnExaminationOnlyTheTimeIsTold) {
+    task_->is_exam = true;
+    TaskWatch watch(task_, ball_.bone, ball_.history);
+    scene::Scene scene;
+    scene.mutable_assessment()->set_exam(true);
+    scene.mutable_effects()->mutable_thermal();
+    AttemptKeeper attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(),
+                           scene, {}, &watch);
+    start(attempts, "Ann");
+    ball_.restoreAll();
+    ball_.groove(10e-3);
+    attempts.stop();
+    const auto lesson = lesson_.takeChanged();
+    ASSERT_TRUE(lesson);
+    ASSERT_EQ(lesson->attempts_size(), 1);
+    topics::Attempt told = lesson->attempts(0);
+    EXPECT_EQ(told.trainee(), "Ann");
+    EXPECT_EQ(told.number(), 1u);
+    EXPECT_GT(told.start_stamp_ns(), 0);
+    EXPECT_TRUE(told.is_exam());
+    told.clear_number(), told.clear_trainee(), told.clear_start_stamp_ns(), told.clear_time_s();
+    told.clear_is_exam();
+    EXPECT_EQ(told.ByteSizeLong(), 0u) << told.ShortDebugString();
+    watch.finish();
+}
+
 }  // namespace
 }  // namespace bonemill
