@@ -107,6 +107,7 @@ bool AttemptKeeper::end(const std::optional<topics::Command>& order) {
     // While the bone is still going back to the scan nothing was removed.
     const int64_t removed_voxels = history_.isRestoring() ? 0 : history_.missingVoxels();
     if (removed_voxels == 0 && time_s_ < kShortest) {
+        journal_.noteAttemptDropped();
         book_.dropAttempt();
         return false;
     }
