@@ -1,6 +1,7 @@
 // The attempts of a recorded session, as its journal has them. For normal threads.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
