@@ -29,7 +29,11 @@ inline void writePrivateFile(const std::filesystem::path& path, std::string_view
     }
     if (opened >= 0) is_written = close(opened) == 0 && is_written;
     if (!is_written) throw UserError(path.string() + ": cannot be written: " + std::strerror(errno));
-    file.finish();
+    try {
+        file.finish();
+    } catch (const std::filesystem::filesystem_error& error) {
+        throw UserError(path.string() + ": cannot be written: " + error.code().message());
+    }
 }
 
 }  // namespace bonemill

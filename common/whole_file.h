@@ -1,5 +1,6 @@
-// A result that is whole or not there: it is written beside its place, as ".part_NAME", and takes the place
-// of the file of before when it is done. Links and devices are written to where they lead. It is not RT-safe.
+// A result that is whole or not there, also after a power cut: it is written beside its place, as
+// ".part_NAME", and takes the place of the file of before when it is on the disk. Links and devices are
+// written to where they lead. It is not RT-safe.
 #pragma once
 
 #include <fcntl.h>
@@ -9,10 +10,23 @@
 #include <cstring>
 #include <filesystem>
 #include <string>
+#include <system_error>
 
 #include "common/user_error.h"
 
 namespace bonemill {
+
+// Waits until the file, or the entries of the folder, are on the disk. False, with errno: they may not be.
+inline bool syncToDisk(const std::filesystem::path& path) {
+    const int opened = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (opened < 0) return false;
+    // Some file systems cannot be told to, and say so.
+    const bool is_there = fsync(opened) == 0 || errno == EINVAL || errno == ENOTSUP;
+    const int why = errno;
+    close(opened);
+    errno = why;
+    return is_there;
+}
 
 class WholeFile {
   public:
@@ -42,13 +56,23 @@ class WholeFile {
     // The content is to be written there, and closed, before finish().
     std::string part() const { return part_.string(); }
 
-    // Throws std::filesystem::filesystem_error.
+    // Throws std::filesystem::filesystem_error; what was there before stays then. Once the file has taken
+    // its place, a folder that cannot be synced is no failure.
     void finish() {
-        if (is_beside_) std::filesystem::rename(part_, path_);
+        if (is_beside_) takeItsPlace();
         is_finished_ = true;
     }
 
   private:
+    void takeItsPlace() const {
+        if (!syncToDisk(part_))
+            throw std::filesystem::filesystem_error("cannot be brought to the disk", path_,
+                                                    std::error_code(errno, std::generic_category()));
+        std::filesystem::rename(part_, path_);
+        const std::filesystem::path folder = path_.parent_path();
+        syncToDisk(folder.empty() ? "." : folder);
+    }
+
     std::filesystem::path path_, part_;
     bool is_beside_ = false;
     bool is_finished_ = false;

@@ -37,7 +37,7 @@ struct MessagePlace {
 };
 using ChunkPlaces = std::map<uint16_t, std::vector<MessagePlace>>;
 
-// It grows by some 100 bytes for each chunk.
+// It grows by some 100 bytes for each chunk, and by each schema and channel.
 class Index {
   public:
     // These bytes come next in the file, before the end of its data.
@@ -52,6 +52,9 @@ class Index {
     };
     std::string addChunk(const Chunk& chunk, const ChunkPlaces& places);
 
+    // How much of these there is: the whole of it is kept.
+    uint64_t recordBytes() const { return schemas_.size() + channels_.size(); }
+    uint64_t records() const { return uint64_t(schema_count_) + channel_count_; }
     uint64_t size() const { return size_; }
     uint64_t chunks() const { return chunk_count_; }
     uint64_t messages() const;

@@ -15,6 +15,7 @@ namespace {
 constexpr uint64_t kMostHeader = 4096;
 constexpr uint64_t kMostPlain = kMostChunk + kMostMessage;
 constexpr uint64_t kMostPacked = kMostPlain + kMostPlain / 128;  // more than zstd ever makes of it
+constexpr uint64_t kMostTorn = uint64_t(1) << 20;                // of one chunk
 
 // The rest of the file, of which no more is read than is there.
 class Input {
@@ -48,6 +49,7 @@ struct OpenChunk {
     std::vector<Channel> new_channels;
     ChunkPlaces places;
     uint64_t first_ns = 0, last_ns = 0;
+    uint64_t record_bytes = 0;  // of schemas and channels
 };
 
 class FileReader {
@@ -61,6 +63,7 @@ class FileReader {
         if (out_.problem.empty()) readEnding();
         out_.is_whole = out_.problem.empty();
         out_.lost_bytes = out_.is_whole ? 0 : size_ - out_.index.size();
+        out_.is_torn_chunk = out_.is_whole || (is_cut_off_ && out_.lost_bytes <= kMostTorn);
         return std::move(out_);
     }
 
@@ -69,14 +72,18 @@ class FileReader {
         out_.problem = what + " at byte " + std::to_string(out_.index.size());
     }
 
+    bool takeAll(uint64_t count, std::string& bytes) {
+        is_cut_off_ = count > input_.left();
+        return input_.take(count, bytes);
+    }
     // False: no whole record is there.
     bool takeRecord(uint64_t most) {
         std::string head;
-        if (!input_.take(kRecordHead, head)) return false;
+        if (!takeAll(kRecordHead, head)) return false;
         Taker taker(head);
         op_ = taker.number<uint8_t>();
         const auto length = taker.number<uint64_t>();
-        if (length > most || !input_.take(length, content_)) return false;
+        if (length > most || !takeAll(length, content_)) return false;
         record_size_ = kRecordHead + length;
         head_ = std::move(head);
         return true;
@@ -95,14 +102,16 @@ class FileReader {
     }
 
     void readRecord() {
-        if (input_.left() == 0) return fail("the end is missing: whoever wrote it was stopped");
+        is_cut_off_ = input_.left() == 0;
+        if (is_cut_off_) return fail("the end is missing: whoever wrote it was stopped");
         if (!takeRecord(kMostPacked)) return fail("the file is torn");
         if (op_ == kDataEnd) {
             is_at_end_ = true;
             return;
         }
         OpenChunk chunk;
-        if (op_ != kChunk || !open(chunk)) return fail("a chunk is damaged");
+        if (op_ != kChunk || !open(chunk))
+            return fail(hasRoomFor(chunk) ? "a chunk is damaged" : "there are too many schemas and channels");
         keep(chunk);
         for (const Message& message : chunk.messages) visit_(channels_.at(message.channel), message);
     }
@@ -139,8 +148,16 @@ class FileReader {
             else if (op == kChannel ? !takeChannel(content, record, chunk)
                                     : op != kMessage || !takeMessage(content, offset, chunk))
                 return false;
+            if (op != kMessage) chunk.record_bytes += record.size();
+            if (!hasRoomFor(chunk)) return false;
         }
         return true;
+    }
+
+    // They are kept, and looked through for each message.
+    bool hasRoomFor(const OpenChunk& chunk) const {
+        return out_.index.recordBytes() + chunk.record_bytes <= kMostRecordBytes &&
+               out_.index.records() + chunk.schemas.size() + chunk.channels.size() <= kMostRecords;
     }
 
     bool takeChannel(std::string_view content, std::string_view record, OpenChunk& chunk) {
@@ -186,7 +203,7 @@ class FileReader {
         const std::string indexes = out_.index.addChunk(
             {record_size_, packed_size_, chunk.plain.size(), chunk.first_ns, chunk.last_ns}, chunk.places);
         std::string found;
-        if (input_.take(indexes.size(), found) && found == indexes) return out_.index.addBytes(indexes);
+        if (takeAll(indexes.size(), found) && found == indexes) return out_.index.addBytes(indexes);
         fail("the index of a chunk is torn or changed");
         out_.missing = indexes;
     }
@@ -195,9 +212,11 @@ class FileReader {
     void readEnding() {
         const std::string ending = out_.index.ending();
         std::string found = head_ + content_, rest;
-        const bool has_size = found.size() + input_.left() == ending.size();
-        if (!has_size || !input_.take(input_.left(), rest) || found + rest != ending)
-            fail("the end is torn or changed, or something before it that no chunk covers,");
+        const bool is_longer = found.size() + input_.left() > ending.size();
+        if (!is_longer && input_.take(input_.left(), rest)) found += rest;
+        if (found == ending && !is_longer) return;
+        is_cut_off_ = !is_longer && ending.starts_with(found);
+        fail("the end is torn or changed, or something before it that no chunk covers,");
     }
 
     Input input_;
@@ -209,6 +228,7 @@ class FileReader {
     std::string head_, content_;  // of the record under way
     uint64_t record_size_ = 0, packed_size_ = 0;
     bool is_at_end_ = false;
+    bool is_cut_off_ = false;  // what was taken last goes on behind the file's end
 };
 
 }  // namespace

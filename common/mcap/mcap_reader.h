@@ -13,10 +13,15 @@
 
 namespace bonemill::mcap {
 
+// Schemas and channels are kept to the end of the file, whoever made it: no more of them are taken.
+constexpr uint64_t kMostRecordBytes = uint64_t(1) << 20, kMostRecords = 1024;
+
 struct Reading {
     bool is_whole = false;    // from the first byte to the last, with its end
     std::string problem;      // for people; empty if whole
     uint64_t lost_bytes = 0;  // in the file, after the last that is whole
+    // Nothing is lost but what the writer had begun to write when it was stopped.
+    bool is_torn_chunk = false;
     std::string profile, library;
     // Of what is whole: its size() is that of the file up to there.
     Index index;

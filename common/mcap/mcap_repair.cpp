@@ -4,17 +4,37 @@
 
 #include "common/require_file.h"
 #include "common/user_error.h"
+#include "common/whole_file.h"
 
 namespace bonemill::mcap {
+namespace {
 
-Reading repair(const std::filesystem::path& path) {
+namespace fs = std::filesystem;
+
+// One that is there is what a repair that was stopped has kept.
+fs::path keepBeside(const fs::path& path) {
+    fs::path kept = path;
+    kept.replace_extension(kDamagedEnding);
+    std::error_code error;
+    if (fs::exists(fs::symlink_status(kept, error))) return kept;
+    WholeFile copy(kept, 0600);
+    fs::copy_file(path, copy.part(), fs::copy_options::overwrite_existing, error);
+    if (error) throw UserError(kept.string() + ": cannot be written: " + error.message());
+    copy.finish();
+    return kept;
+}
+
+}  // namespace
+
+Repair repair(const std::filesystem::path& path) {
     requireFile(path);
     std::ifstream input(path, std::ios::binary);
     if (!input) throw UserError(path.string() + ": cannot be opened");
-    Reading reading = read(input, [](const Channel&, const Message&) {});
+    Repair reading{read(input, [](const Channel&, const Message&) {}), {}};
     if (reading.is_whole) return reading;
     if (reading.index.size() == 0) throw UserError(path.string() + ": " + reading.problem);
     input.close();
+    if (!reading.is_torn_chunk) reading.kept = keepBeside(path);
     Index index = reading.index;
     index.addBytes(reading.missing);
     std::error_code error;

@@ -25,17 +25,18 @@ void StructureMeter::add(const TickStep& step) noexcept {
     hit->damage_time += step.dt;
 }
 
-// Of a structure that was never in reach there is nothing to say but that it was not cut.
+// A structure that was never in reach was not cut: a gate may ask for that. How far it was nobody knows.
 void StructureMeter::append(Figures& figures) const {
     for (size_t id = 0; id < structures_.size(); ++id) {
         const Structure& structure = structures_[id];
-        if (!std::isfinite(structure.distance) && !structure.isTouched()) continue;
+        const bool was_in_reach = std::isfinite(structure.distance);
+        if (!scene_.isProtected(id) && !was_in_reach && !structure.isTouched()) continue;
         const std::string& name = scene_.materials[id];
         put(figures, "damage.episodes", double(structure.episodes), name);
         put(figures, "damage.volume", structure.damaged * kPerCubicMillimetre, name);
         put(figures, "damage.time", structure.damage_time, name);
         put(figures, "structure.force", structure.force, name);
-        put(figures, "structure.distance", structure.distance * kPerMillimetre, name);
+        if (was_in_reach) put(figures, "structure.distance", structure.distance * kPerMillimetre, name);
     }
 }
 

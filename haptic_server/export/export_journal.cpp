@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "common/printable_line.h"
 #include "common/require_apart.h"
 #include "common/rt/clock.h"
 #include "common/user_error.h"
@@ -117,7 +118,7 @@ void exportJournal(const ExportOptions& options) {
                  read);
     if (!recording.content().incomplete.empty())
         spdlog::warn("the recording is incomplete from tick {} on: {}", recording.content().incomplete_from,
-                     recording.content().incomplete);
+                     printableLine(recording.content().incomplete));
     if (!options.traj.empty()) writeTrajectory(options.traj, recording);
     if (options.h5.empty() && options.csv.empty() && options.tool_path.empty()) return;
 

@@ -10,11 +10,12 @@ namespace {
 struct Eyes {
     std::vector<double> t_s, p_m, q_wxyz, field_of_view_rad;
 
-    void add(double at_s, const topics::Eye& eye) {
+    void add(double at_s, const RecordedEye& eye) {
         t_s.push_back(at_s);
-        p_m.insert(p_m.end(), eye.p_wc_m().begin(), eye.p_wc_m().end());
-        q_wxyz.insert(q_wxyz.end(), eye.q_wc().begin(), eye.q_wc().end());
-        field_of_view_rad.push_back(eye.field_of_view_rad());
+        p_m.insert(p_m.end(), eye.p_WC.begin(), eye.p_WC.end());
+        for (const double part : {eye.q_WC.w(), eye.q_WC.x(), eye.q_WC.y(), eye.q_WC.z()})
+            q_wxyz.push_back(part);
+        field_of_view_rad.push_back(eye.field_of_view);
     }
 };
 
@@ -22,8 +23,7 @@ struct Eyes {
 
 void writeEyes(const Recording& recording, H5File& file) {
     Eyes eyes;
-    for (const RecordedEye& seen : recordedEyes(recording))
-        eyes.add(recording.secondsOf(seen.tick), seen.eye);
+    for (const RecordedEye& seen : recordedEyes(recording)) eyes.add(recording.secondsOf(seen.tick), seen);
     if (eyes.t_s.empty()) return;
     const auto write = [&](const char* place, size_t width, const H5About& about,
                            const std::vector<double>& values) {

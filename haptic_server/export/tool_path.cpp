@@ -1,8 +1,10 @@
 #include "haptic_server/export/tool_path.h"
 
 #include <iomanip>
+#include <vector>
 
 #include "common/user_error.h"
+#include "haptic_server/rerun/recorded_attempts.h"
 
 namespace bonemill {
 namespace {
@@ -13,19 +15,15 @@ constexpr double kRowPeriod = 0.01;  // s; viewers are told where the tool is so
 
 ToolPathExport::ToolPathExport(const std::string& path, const Recording& recording, int attempt)
     : file_(path), out_(file_.part()) {
-    int number = 0;
-    for (const journal::Event& event : recording.content().events) {
-        if (event.has_attempt_began()) {
-            if (attempt != 0 && number == attempt) break;
-            ++number;
-            first_bone_order_ = event.bone_order();
-            end_ = std::numeric_limits<uint64_t>::max();
-        }
-        if (event.has_attempt_ended()) end_ = event.tick();
-    }
-    if (attempt > number)
-        throw UserError(path + ": the session has " + std::to_string(number) + " attempts, not " +
+    const std::vector<RecordedAttempt> attempts = recordedAttempts(recording.content());
+    if (attempt > int(attempts.size()))
+        throw UserError(path + ": the session has " + std::to_string(attempts.size()) + " attempts, not " +
                         std::to_string(attempt));
+    if (!attempts.empty()) {
+        const RecordedAttempt& chosen = attempt == 0 ? attempts.back() : attempts[size_t(attempt) - 1];
+        first_bone_order_ = chosen.bone_order;
+        end_ = chosen.end;
+    }
     out_ << "t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons\n";
 }
 

@@ -15,6 +15,14 @@
 
 namespace bonemill {
 
+bool isJournalWritten(const std::filesystem::path& path) {
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+    if (file < 0) return true;
+    const bool is_locked = flock(file, LOCK_SH | LOCK_NB) != 0;
+    close(file);
+    return is_locked;
+}
+
 JournalFile::JournalFile(const std::filesystem::path& path) : path_(path) {
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(), error);  // the opening says what is wrong

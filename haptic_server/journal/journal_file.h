@@ -15,6 +15,9 @@
 
 namespace bonemill {
 
+// Tells whether somebody writes to it; a file that cannot be opened counts as such.
+bool isJournalWritten(const std::filesystem::path& path);
+
 class JournalFile {
   public:
     // As much waits for the disk at most.

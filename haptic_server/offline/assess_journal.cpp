@@ -7,6 +7,7 @@
 #include "common/user_error.h"
 #include "haptic_server/offline/task_run.h"
 #include "haptic_server/offline/write_assessment.h"
+#include "haptic_server/rerun/recorded_attempts.h"
 #include "haptic_server/rerun/recorded_eyes.h"
 #include "haptic_server/rerun/rerun.h"
 
@@ -24,23 +25,21 @@ class JournalAssessment {
           simulation_(makeSimulation(loaded_)),
           bones_(recording_.readBones(*simulation_.bone)),
           eyes_(recordedEyes(recording_)),
+          attempts_(recordedAttempts(recording_.content())),
           rerun_(recording_, simulation_, bones_.checkpoints, *simulation_.bone, bones_.keyframes.front()) {}
 
     int run() {
-        const auto& events = recording_.content().events;
-        if (std::ranges::none_of(events, &journal::Event::has_attempt_began))
+        if (attempts_.empty())
             throw UserError(options_.journal.string() +
                             ": holds no attempt of a trainee; nothing can be assessed");
-        size_t next_event = 0;
         while (!rerun_.isAtEnd()) {
             const uint64_t tick = rerun_.next();
             look(tick);
             const TickRecord& record = rerun_.step();
-            if (attempt_ && record.bone_order >= attempt_->bone_order) attempt_->run.add(record);
-            for (; next_event < events.size() && events[next_event].tick() <= tick; ++next_event)
-                take(events[next_event]);
+            if (attempt_ && record.bone_order >= attempt_->recorded.bone_order) attempt_->run.add(record);
+            follow(tick);
         }
-        if (attempt_) end(rerun_.next() - 1, std::nullopt);
+        if (attempt_) end(rerun_.next() - 1);
         for (const std::string& problem : files_.problems()) said_ << "error: " << problem << '\n';
         return files_.problems().empty() ? 0 : 1;
     }
@@ -48,9 +47,7 @@ class JournalAssessment {
   private:
     struct Attempt {
         TaskRun run;
-        std::string trainee;
-        uint64_t bone_order;  // that puts the bone back for it
-        uint64_t begin;       // tick
+        RecordedAttempt recorded;
     };
 
     // Who looks on from elsewhere tells of it some times per second; meanwhile the eye is where it was.
@@ -60,28 +57,32 @@ class JournalAssessment {
         if (attempt_ && next_eye_ > before) tellEye();
     }
     void tellEye() {
-        if (next_eye_ > 0) attempt_->run.setEye(Eigen::Vector3d(eyes_[next_eye_ - 1].eye.p_wc_m().data()));
+        if (next_eye_ > 0) attempt_->run.setEye(eyes_[next_eye_ - 1].p_WC);
     }
 
     // An attempt begins with an order to put the bone back, which no tick has taken up yet.
-    void take(const journal::Event& event) {
-        if (event.has_attempt_ended() && attempt_) end(event.tick(), event.attempt_ended().time_s());
-        if (event.has_attempt_began()) {
-            attempt_.emplace(Attempt{TaskRun(loaded_.scene, simulation_, true), event.attempt_began(),
-                                     event.bone_order(), event.tick()});
+    void follow(uint64_t tick) {
+        endAt(tick);
+        while (!attempt_ && number_ < attempts_.size() && attempts_[number_].begin <= tick) {
+            attempt_.emplace(Attempt{TaskRun(loaded_.scene, simulation_, true), attempts_[number_++]});
             tellEye();
+            endAt(tick);
         }
     }
+    void endAt(uint64_t tick) {
+        if (attempt_ && attempt_->recorded.end <= tick) end(attempt_->recorded.end);
+    }
 
-    void end(uint64_t tick, std::optional<double> time_s) {
+    void end(uint64_t tick) {
+        const RecordedAttempt& recorded = attempt_->recorded;
+        const double begin_s = recording_.secondsOf(recorded.begin);
         AssessmentTarget target;
         target.folder = options_.out;
-        target.pseudonym = attempt_->trainee;
-        target.number = ++number_;
-        target.duration_s =
-            time_s.value_or(recording_.secondsOf(tick) - recording_.secondsOf(attempt_->begin));
-        target.start_unix_ns = recording_.manifest().start_stamp_ns() +
-                               int64_t(recording_.secondsOf(attempt_->begin) * double(kNsPerSecond));
+        target.pseudonym = recorded.trainee;
+        target.number = number_;
+        target.duration_s = recorded.time_s.value_or(recording_.secondsOf(tick) - begin_s);
+        target.start_unix_ns =
+            recording_.manifest().start_stamp_ns() + int64_t(begin_s * double(kNsPerSecond));
         target.journal = options_.journal.filename().string();
         const size_t problems = files_.problems().size();
         const TaskRun::Result result =
@@ -99,10 +100,11 @@ class JournalAssessment {
     Simulation simulation_;
     Recording::Bones bones_;
     std::vector<RecordedEye> eyes_;
+    std::vector<RecordedAttempt> attempts_;
     Rerun rerun_;
     std::optional<Attempt> attempt_;
     size_t next_eye_ = 0;
-    uint32_t number_ = 0;
+    uint32_t number_ = 0;  // of the attempt that began last
     FinalFiles files_;
 };
 

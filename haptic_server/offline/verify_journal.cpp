@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <Eigen/Core>
 #include <cmath>
 #include <deque>
 #include <map>
@@ -110,11 +111,11 @@ class BitComparison {
         if (topic == JournalTopic::kInputs) takeInputs(message);
         if (topic == JournalTopic::kStateHash) takeHash(parsed<journal::StateHash>(message));
         if (topic == JournalTopic::kTool)
-            poses_.emplace_back(message.time_ns, parsed<foxglove::PoseInFrame>(message));
+            poses_.push_back({message.time_ns, of(parsed<foxglove::PoseInFrame>(message).pose().position())});
         if (topic == JournalTopic::kWrench)
-            wrenches_.emplace_back(message.time_ns, parsed<journal::WrenchInFrame>(message));
+            forces_.push_back({message.time_ns, of(parsed<journal::WrenchInFrame>(message).force_n())});
         if (poses_.size() > kMostWaitingPoses) poses_.pop_front();
-        if (wrenches_.size() > kMostWaitingPoses) wrenches_.pop_front();
+        if (forces_.size() > kMostWaitingPoses) forces_.pop_front();
     }
 
   private:
@@ -165,22 +166,22 @@ class BitComparison {
         if (verdict_.part.empty()) verdict_.part = part;
     }
 
+    // What was written of a tick: no more than this is kept of a message.
+    struct Written {
+        uint64_t stamp_ns;
+        Eigen::Vector3d value;
+    };
+    static Eigen::Vector3d of(const foxglove::Vector3& v) { return {v.x(), v.y(), v.z()}; }
+
     void compareFigures(uint64_t stamp_ns, const TickRecord& record) {
-        while (!poses_.empty() && poses_.front().first <= stamp_ns) {
-            const foxglove::Vector3& p = poses_.front().second.pose().position();
-            if (poses_.front().first == stamp_ns)
-                verdict_.position = std::max(verdict_.position, distance(p, record.p_WT));
-            poses_.pop_front();
-        }
-        while (!wrenches_.empty() && wrenches_.front().first <= stamp_ns) {
-            const foxglove::Vector3& f = wrenches_.front().second.force_n();
-            if (wrenches_.front().first == stamp_ns)
-                verdict_.force = std::max(verdict_.force, distance(f, record.f_hand_W));
-            wrenches_.pop_front();
-        }
+        compare(poses_, stamp_ns, record.p_WT, verdict_.position);
+        compare(forces_, stamp_ns, record.f_hand_W, verdict_.force);
     }
-    static double distance(const foxglove::Vector3& a, const double (&b)[3]) {
-        return std::hypot(a.x() - b[0], a.y() - b[1], a.z() - b[2]);
+    static void compare(std::deque<Written>& waiting, uint64_t stamp_ns, const double (&now)[3],
+                        double& largest) {
+        for (; !waiting.empty() && waiting.front().stamp_ns <= stamp_ns; waiting.pop_front())
+            if (const Written& then = waiting.front(); then.stamp_ns == stamp_ns)
+                largest = std::max(largest, (then.value - Eigen::Vector3d(now)).norm());
     }
 
     Rerun& rerun_;
@@ -189,8 +190,7 @@ class BitComparison {
     const std::multimap<uint64_t, LeafHashes>& leaves_;
     JournalVerdict& verdict_;
     std::vector<JournalTick> ticks_;
-    std::deque<std::pair<uint64_t, foxglove::PoseInFrame>> poses_;
-    std::deque<std::pair<uint64_t, journal::WrenchInFrame>> wrenches_;
+    std::deque<Written> poses_, forces_;  // of the tool's point, and on the hand; W
     uint64_t compared_bones_ = 0;
     bool has_gap_ = false;
 };
@@ -201,8 +201,8 @@ std::string notWhole(const JournalContent& content) {
         text += fmt::format("incomplete from tick {}: {}", content.incomplete_from,
                             printableLine(content.incomplete));
     if (!content.problem.empty())
-        text += fmt::format("{}{} ({} bytes are lost)", text.empty() ? "" : "; ", content.problem,
-                            content.lost_bytes);
+        text += fmt::format("{}{} ({} bytes are lost)", text.empty() ? "" : "; ",
+                            printableLine(content.problem), content.lost_bytes);
     else if (!content.has_ended)
         text += std::string(text.empty() ? "" : "; ") + "the session did not end in order";
     return text;
@@ -215,7 +215,8 @@ std::vector<std::string> reasonsAgainstSameBits(const journal::Manifest& manifes
     std::vector<std::string> reasons;
     const journal::Build now = buildFacts(version);
     const auto compare = [&](const char* what, const std::string& then, const std::string& here) {
-        if (then != here) reasons.push_back(fmt::format("{}: it was '{}', and is '{}'", what, then, here));
+        if (then != here)
+            reasons.push_back(fmt::format("{}: it was '{}', and is '{}'", what, printableLine(then), here));
     };
     compare("the program", manifest.build().version(), now.version());
     compare("its compiler", manifest.build().compiler(), now.compiler());

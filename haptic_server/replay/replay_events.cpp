@@ -21,6 +21,8 @@ std::string textOf(const journal::Event& event) {
             return "attempt of " + printableLine(event.attempt_began()) + " begins";
         case journal::Event::kAttemptEnded:
             return "attempt of " + printableLine(event.attempt_ended().trainee()) + " ends";
+        case journal::Event::kAttemptDropped:
+            return "the attempt was begun by mistake: it counts as none";
         case journal::Event::kIncomplete:
             return "the recording lacks something from here on: " + printableLine(event.incomplete().why());
         case journal::Event::kEnd:

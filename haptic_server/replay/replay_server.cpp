@@ -7,6 +7,7 @@
 #include <cmath>
 #include <thread>
 
+#include "common/printable_line.h"
 #include "common/rt/clock.h"
 #include "common/rt/stop_signals.h"
 #include "common/units.h"
@@ -89,10 +90,11 @@ class ReplayServer {
         spdlog::info("{:.1f} s of session {}, {} ticks, {} moments of the bone, {} events",
                      recording_.lengthS(), recording_.manifest().session(), recording_.ticks(),
                      keyframes_.size(), events_.count());
-        if (!content.problem.empty()) spdlog::warn("the journal is not whole: {}", content.problem);
+        if (!content.problem.empty())
+            spdlog::warn("the journal is not whole: {}", printableLine(content.problem));
         if (!content.incomplete.empty())
             spdlog::warn("the recording is incomplete from tick {} on: {}", content.incomplete_from,
-                         content.incomplete);
+                         printableLine(content.incomplete));
         if (!bones_.problem.empty()) spdlog::warn("{}", bones_.problem);
         for (const std::string& reason : reasonsAgainstSameBits(recording_.manifest(), version))
             spdlog::warn("the replay may differ in the last bits: {}", reason);

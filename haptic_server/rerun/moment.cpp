@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "common/printable_line.h"
 #include "common/user_error.h"
 #include "haptic_server/journal/build_facts.h"
 #include "haptic_server/rerun/rerun.h"
@@ -22,8 +23,8 @@ const Keyframe& keyframeBefore(const std::vector<Keyframe>& keyframes, uint64_t 
 void requireSameScene(const Recording& recording, const LoadedScene& scene) {
     if (recording.manifest().scene_hash() == sceneHashOf(scene.scene)) return;
     throw UserError(recording.path().string() + ": is a session of the scene '" +
-                    recording.manifest().scene_name() + "' as it was then, which " + scene.file.string() +
-                    " is not");
+                    printableLine(recording.manifest().scene_name()) + "' as it was then, which " +
+                    scene.file.string() + " is not");
 }
 
 // Whoever goes on mills this PC's files, wherever they lay then: by name and hash they are the session's.

@@ -1,6 +1,7 @@
 // What the trainee saw in a recorded session, as its journal has it. For normal threads.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "haptic_server/rerun/recording.h"
@@ -8,8 +9,10 @@
 namespace bonemill {
 
 struct RecordedEye {
-    uint64_t tick = 0;  // from which on it was known
-    topics::Eye eye;    // with place and orientation, W
+    uint64_t tick = 0;        // from which on it was known
+    Eigen::Vector3d p_WC;     // m
+    Eigen::Quaterniond q_WC;  // as it was written
+    double field_of_view;     // rad, vertical
 };
 
 // In the order of ticks, and of ticks that there are. Reads the journal once more. Throws UserError.

@@ -4,6 +4,7 @@
 
 #include "common/config/scene_check.h"
 #include "common/config/scene_text.h"
+#include "common/printable_line.h"
 #include "common/user_error.h"
 #include "haptic_server/journal/build_facts.h"
 
@@ -27,14 +28,15 @@ bool isSceneFile(const NamedFile& file, const LoadedScene& scene) {
 LoadedScene recordedScene(const journal::Manifest& manifest, const std::string& journal) {
     const std::filesystem::path file = manifest.scene_path();
     if (!file.is_absolute()) throw UserError(journal + ": does not say where its scene was; it is damaged");
-    const std::string name = "the scene in the journal, " + file.string();
+    const std::string name = "the scene in the journal, " + printableLine(file.string());
     ParsedScene parsed = parseSceneText(manifest.scene_text(), name);
     checkScene(parsed, name);
     LoadedScene scene{std::move(parsed.scene), file.parent_path().lexically_normal(), file,
                       std::move(parsed.lines)};
     for (const NamedFile& read : filesOf(scene))
         if (!isSceneFile(read, scene) && !listedFile(manifest, read))
-            throw UserError(journal + ": its scene reads " + read.name + " " + read.path.string() +
+            throw UserError(journal + ": its scene reads " + read.name + " " +
+                            printableLine(read.path.string()) +
                             ", which the session did not read; the journal is damaged or forged");
     return scene;
 }
@@ -45,7 +47,7 @@ std::vector<std::string> changedFiles(const journal::Manifest& manifest, const L
         if (isSceneFile(read, scene)) continue;
         const journal::File* const listed = listedFile(manifest, read);
         if (!listed || listed->sha256() != sha256Of(read.path))
-            changed.push_back(read.name + " " + read.path.string() + " is another file now");
+            changed.push_back(read.name + " " + printableLine(read.path.string()) + " is another file now");
     }
     return changed;
 }

@@ -40,7 +40,8 @@ AttemptKeeper::AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& 
       tell_device_(std::move(tell_device)),
       task_(task),
       material_names_(materialNamesOf(scene)),
-      scene_hash_(sceneHashOf(scene)) {}
+      scene_hash_(sceneHashOf(scene)),
+      told_(scene.assessment().exam() ? LessonBook::Told::kOnlyThatItWas : LessonBook::Told::kAll) {}
 
 std::optional<std::string> AttemptKeeper::start(const topics::Command& order) {
     const std::string& trainee = order.start_attempt();
@@ -106,6 +107,7 @@ bool AttemptKeeper::end(const std::optional<topics::Command>& order) {
     // While the bone is still going back to the scan nothing was removed.
     const int64_t removed_voxels = history_.isRestoring() ? 0 : history_.missingVoxels();
     if (removed_voxels == 0 && time_s_ < kShortest) {
+        journal_.noteAttemptDropped();
         book_.dropAttempt();
         return false;
     }
@@ -116,7 +118,7 @@ bool AttemptKeeper::end(const std::optional<topics::Command>& order) {
     attempt.set_max_force_n(figures.max_force);
     effects_.describe(figures.effects, material_names_, attempt);
     journal_.noteAttemptEnded(attempt);
-    book_.endAttempt(std::move(attempt), order, judgement(figures.breach));
+    book_.endAttempt(std::move(attempt), order, judgement(figures.breach), told_);
     return true;
 }
 

@@ -60,6 +60,7 @@ class AttemptKeeper {
     TaskWatch* task_;
     std::vector<std::string> material_names_;
     uint64_t scene_hash_;
+    LessonBook::Told told_;
     double time_s_ = 0;
     int64_t counted_ns_ = 0;  // CLOCK_MONOTONIC until which it is counted
 };

@@ -12,11 +12,16 @@ namespace {
 constexpr size_t kLongestHeader = 4096;
 constexpr size_t kLargestTable = size_t(64) << 20;
 
+// 0: it is no class table.
+size_t columnsIn(const LineFile& file) {
+    const std::string start = file.read(0, kLongestHeader);
+    return attemptColumns(start.substr(0, start.find('\n')));
+}
+
 // The columns of the table: those of today, or fewer of a table that an earlier release began.
 size_t columnsOf(const LineFile& file, const std::string& path) {
     if (file.size() == 0) return attemptColumns(kAttemptsHeader);
-    const std::string start = file.read(0, kLongestHeader);
-    const size_t columns = attemptColumns(start.substr(0, start.find('\n')));
+    const size_t columns = columnsIn(file);
     if (columns == 0)
         throw UserError(path + ": is there and has other columns than a class table; name another file");
     return columns;
@@ -74,12 +79,7 @@ size_t ClassTable::forget(const std::string& path, const std::string& trainee) {
 bool ClassTable::isTable(const std::string& path) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) return false;
-    try {
-        const LineFile file(path);
-        return file.size() > 0 && columnsOf(file, path) > 0;
-    } catch (const UserError&) {
-        return false;
-    }
+    return columnsIn(LineFile(path)) > 0;
 }
 
 }  // namespace bonemill

@@ -22,7 +22,8 @@ class ClassTable {
     // Returns why the line is not there (disk full, among others), or "".
     std::string append(const topics::Attempt& attempt, const std::string& scene) const;
 
-    // Tells whether a class table lies there.
+    // Tells whether a class table lies there. Throws UserError if that cannot be read, or another program
+    // keeps it locked.
     static bool isTable(const std::string& path);
     // Takes all lines of this trainee out of it, and returns how many. Throws UserError.
     static size_t forget(const std::string& path, const std::string& trainee);

@@ -7,6 +7,7 @@
 
 #include "common/user_error.h"
 #include "haptic_server/assessment_report/forget.h"
+#include "haptic_server/journal/journal_file.h"
 #include "haptic_server/journal/journal_reader.h"
 #include "haptic_server/session/class_table.h"
 
@@ -19,8 +20,9 @@ void forgetInTables(const ForgetOptions& options, Forgotten& forgotten) {
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(options.folder, error)) {
         const std::string path = entry.path().string();
-        if (entry.path().extension() != ".csv" || !ClassTable::isTable(path)) continue;
+        if (entry.path().extension() != ".csv") continue;
         try {
+            if (!ClassTable::isTable(path)) continue;
             if (const size_t lines = ClassTable::forget(path, options.pseudonym))
                 forgotten.deleted.push_back(path + ": " + std::to_string(lines) + " lines");
         } catch (const UserError& problem) {
@@ -36,7 +38,13 @@ std::set<std::string> traineesOf(const fs::path& journal) {
     return trainees;
 }
 
+// What its writer has not yet written may be of anybody.
 void forgetRecording(const fs::path& file, const std::string& pseudonym, Forgotten& forgotten) {
+    if (isJournalWritten(file)) {
+        forgotten.problems.push_back(file.string() +
+                                     ": is being written, or cannot be read; end its session, and try again");
+        return;
+    }
     const std::set<std::string> trainees = traineesOf(file);
     if (!trainees.contains(pseudonym)) return;
     std::error_code error;

@@ -83,4 +83,12 @@ void JournalKeeper::noteAttemptEnded(const topics::Attempt& attempt) {
     journal_->put(JournalTopic::kEvent, event);
 }
 
+void JournalKeeper::noteAttemptDropped() {
+    if (!journal_) return;
+    journal::Event event;
+    event.set_tick(journal_->ticks());
+    event.mutable_attempt_dropped();
+    journal_->put(JournalTopic::kEvent, event);
+}
+
 }  // namespace bonemill

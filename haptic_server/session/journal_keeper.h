@@ -33,6 +33,7 @@ class JournalKeeper {
     // It begins when this order to put the bone back is done.
     void noteAttemptBegan(const std::string& trainee, uint64_t bone_order);
     void noteAttemptEnded(const topics::Attempt& attempt);
+    void noteAttemptDropped();
     // Of the recording; empty if there is none.
     std::string fileName() const { return journal_ ? journal_->path().filename().string() : ""; }
 

@@ -23,6 +23,17 @@ int64_t nowUnixNs() {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(since_epoch).count();
 }
 
+topics::Attempt onlyThatItWas(const topics::Attempt& attempt) {
+    topics::Attempt told;
+    told.set_number(attempt.number());
+    told.set_trainee(attempt.trainee());
+    told.set_scene_id(attempt.scene_id());
+    told.set_start_stamp_ns(attempt.start_stamp_ns());
+    told.set_time_s(attempt.time_s());
+    told.set_is_exam(true);
+    return told;
+}
+
 }  // namespace
 
 LessonBook::LessonBook(std::vector<ListedScene> scenes, ClassTable table)
@@ -137,7 +148,7 @@ void LessonBook::dropAttempt() {
 }
 
 void LessonBook::endAttempt(topics::Attempt attempt, const std::optional<topics::Command>& order,
-                            std::optional<AttemptJudgement> judgement) {
+                            std::optional<AttemptJudgement> judgement, Told told) {
     const std::lock_guard lock(mutex_);
     lesson_.set_is_running(false);
     attempt.set_number(attempts_begun_);
@@ -151,7 +162,7 @@ void LessonBook::endAttempt(topics::Attempt attempt, const std::optional<topics:
     }
     auto& attempts = *lesson_.mutable_attempts();
     if (attempts.size() == kMostAttempts) attempts.DeleteSubrange(0, 1);
-    *attempts.Add() = std::move(attempt);
+    *attempts.Add() = told == Told::kAll ? std::move(attempt) : onlyThatItWas(attempt);
     has_changed_ = true;
 }
 

@@ -56,11 +56,13 @@ class LessonBook {
     int attemptsOf(const std::string& trainee) const;
     // The attempt under way ends as if it had never begun.
     void dropAttempt();
+    // In an examination viewers are told no figures of an attempt.
+    enum class Told { kAll, kOnlyThatItWas };
     // Takes the attempt's figures; name, number, scene and start are filled in. It goes into the class table;
     // `order` is answered with takeAnswers() when it is there, or with what kept it from there. Where there
     // is a class table the attempt is judged, and its verdict shown when it is known.
     void endAttempt(topics::Attempt attempt, const std::optional<topics::Command>& order = {},
-                    std::optional<AttemptJudgement> judgement = std::nullopt);
+                    std::optional<AttemptJudgement> judgement = std::nullopt, Told told = Told::kAll);
 
   private:
     void takeVerdict(uint32_t attempt, const topics::Verdict& verdict);

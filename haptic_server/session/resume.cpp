@@ -1,9 +1,5 @@
 #include "haptic_server/session/resume.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -17,7 +13,9 @@
 #include "haptic_server/bone/checkpoints.h"
 #include "haptic_server/journal/build_facts.h"
 #include "haptic_server/journal/input_columns.h"
+#include "haptic_server/journal/journal_file.h"
 #include "haptic_server/journal/journal_reader.h"
+#include "haptic_server/rerun/recording.h"
 
 namespace bonemill {
 namespace {
@@ -29,15 +27,6 @@ bool hasEnd(const fs::path& path) {
     std::string magic(mcap::kMagic.size(), '\0');
     file.seekg(-std::streamoff(magic.size()), std::ios::end);
     return file.read(magic.data(), std::streamsize(magic.size())) && magic == mcap::kMagic;
-}
-
-// Its writer holds a lock as long as it lives.
-bool isWritten(const fs::path& path) {
-    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
-    if (file < 0) return true;
-    const bool is_locked = flock(file, LOCK_SH | LOCK_NB) != 0;
-    close(file);
-    return is_locked;
 }
 
 struct Enough {};  // was read
@@ -88,7 +77,9 @@ std::vector<fs::path> journalsOf(const fs::path& folder, uint32_t session) {
     const std::string begin = std::to_string(session) + "_";
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
         const fs::path& path = entry->path();
-        if (path.extension() != ".mcap" || !path.filename().string().starts_with(begin)) continue;
+        const std::string name = path.filename().string();
+        if (!name.ends_with(".mcap") || name.ends_with(mcap::kDamagedEnding) || !name.starts_with(begin))
+            continue;
         std::error_code ignored;
         if (!fs::is_regular_file(fs::symlink_status(path, ignored))) continue;
         found.emplace_back(fs::last_write_time(path, ignored), path);
@@ -105,7 +96,7 @@ std::optional<UnfinishedJournal> findUnfinished(const fs::path& folder, uint32_t
     for (const fs::path& path : journalsOf(folder, session)) {
         if (hasEnd(path) && isEmpty(path)) continue;
         if (hasEnd(path)) return std::nullopt;
-        if (isWritten(path)) return std::nullopt;
+        if (isJournalWritten(path)) return std::nullopt;
         std::optional<journal::Manifest> manifest = manifestOf(path);
         if (manifest && manifest->session() == session) return UnfinishedJournal{path, std::move(*manifest)};
     }
@@ -132,8 +123,11 @@ struct ResumeReading::Raw {
     struct Run {
         std::vector<journal::Bone> bones;
         std::set<uint32_t> checkpoints;
+        size_t bytes = 0;
     };
+    static constexpr size_t kMostBytes = Recording::kMostBoneBytes;
     std::vector<Run> runs;
+    size_t bytes = 0;  // of all runs
     std::map<uint64_t, uint32_t> put_backs;
     uint64_t bone_order = 0;  // that is done in the newest bone
     uint32_t newest_checkpoint = 0;
@@ -161,14 +155,20 @@ struct ResumeReading::Raw {
         }
         const bool is_whole = !bone.goes_on() && bone.kind() != journal::Bone::OTHER;
         if (is_whole) bone_order = bone.bone_order();
+        bytes += bone.SpaceUsedLong();
+        if (bytes > kMostBytes)
+            throw UserError("its bones take more memory than there may be; it is damaged");
+        runs.back().bytes += bone.SpaceUsedLong();
         runs.back().bones.push_back(std::move(bone));
         if (is_whole) dropRunsBeforeTheLast();
     }
     // A KEY of which only a part is there replaces nothing.
     void dropRunsBeforeTheLast() {
         const auto last = std::prev(runs.end());
-        runs.erase(std::remove_if(runs.begin(), last, [this](const Run& run) { return !isWanted(run); }),
-                   last);
+        const auto gone =
+            std::stable_partition(runs.begin(), last, [this](const Run& run) { return isWanted(run); });
+        for (auto run = gone; run != last; ++run) bytes -= run->bytes;
+        runs.erase(gone, last);
     }
     bool isWanted(const Run& run) const {
         return !run.checkpoints.empty() && *run.checkpoints.rbegin() + Checkpoints::kMost > newest_checkpoint;
@@ -236,11 +236,15 @@ std::string ResumedSession::text() const {
 }
 
 // It stays as old as it is: the newest of a session is the one that was written last.
-void closeResumed(const fs::path& path) {
+std::string closeResumed(const fs::path& path) {
     std::error_code error;
     const fs::file_time_type time = fs::last_write_time(path, error);
-    mcap::repair(path);
+    const mcap::Repair repair = mcap::repair(path);
     if (!error) fs::last_write_time(path, time, error);
+    if (repair.kept.empty()) return "";
+    return path.string() + " was damaged (" + repair.problem + "): its last " +
+           std::to_string(repair.lost_bytes) + " bytes were cut off; as it was it is kept as " +
+           repair.kept.filename().string();
 }
 
 }  // namespace bonemill

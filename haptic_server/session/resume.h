@@ -58,6 +58,7 @@ class ResumeReading {
 };
 
 // Once the session's next journal has all that this one gave: gives it its end, so that it is found no more.
-void closeResumed(const std::filesystem::path& path);
+// What is lost but a torn chunk at its end stays beside it; then this says so, for people. Throws UserError.
+std::string closeResumed(const std::filesystem::path& path);
 
 }  // namespace bonemill

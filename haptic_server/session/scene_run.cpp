@@ -145,8 +145,8 @@ void SceneRun::startJournal() {
     if (!journal_->problem().empty()) return;
     closing_ = std::async(std::launch::async, [path = options_.resumed_journal] {
         try {
-            closeResumed(path);
-        } catch (const UserError& error) {
+            if (const std::string kept = closeResumed(path); !kept.empty()) spdlog::warn("{}", kept);
+        } catch (const std::exception& error) {
             spdlog::warn("{}", error.what());
         }
     });

@@ -7,10 +7,20 @@
 #include "haptic_server/setup/scene_materials.h"
 
 namespace bonemill {
+namespace {
+
+std::vector<bool> areProtectedOf(const scene::Scene& scene) {
+    std::vector<bool> are_protected;
+    for (const scene::Material& material : scene.material()) are_protected.push_back(material.is_protected());
+    return are_protected;
+}
+
+}  // namespace
 
 TechniqueScene techniqueSceneOf(const scene::Scene& scene) {
     return {.recorded = recordedEffectsOf(scene.effects()),
             .materials = materialNamesOf(scene),
+            .are_protected = areProtectedOf(scene),
             .tools = toolNamesOf(scene),
             .force_limit = scene.assessment().force_limit_n()};
 }

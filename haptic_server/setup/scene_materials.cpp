@@ -6,6 +6,7 @@
 #include "common/config/scene_tools.h"
 #include "common/units.h"
 #include "common/user_error.h"
+#include "haptic_server/assessment/force_meter.h"
 #include "haptic_server/setup/refuse_field.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/material_ids.h"
@@ -26,9 +27,10 @@ MaterialRule ruleOf(const scene::Material& material) {
     return rule;
 }
 
+// What is measured near structures (near.force) knows how near the burr was.
 double protectedReachOf(const scene::Scene& scene) {
     const scene::Effects& effects = scene.effects();
-    double reach = 0;
+    double reach = DistanceBins::kLimits.back() * kPerMillimetre;
     if (effects.has_protected_structures())
         reach = std::max(reach, effects.protected_structures().warning_distance_mm());
     if (effects.has_virtual_fixture()) reach = std::max(reach, effects.virtual_fixture().distance_mm());

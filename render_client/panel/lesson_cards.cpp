@@ -46,6 +46,8 @@ void addVerdict(const topics::Verdict& verdict, std::vector<HudRow>& rows) {
 }
 
 std::vector<HudRow> rowsOf(const topics::Attempt& attempt) {
+    if (attempt.is_exam())
+        return {{"Time", clockText(attempt.time_s())}, {"Result", "an examination tells none"}};
     std::vector<HudRow> rows{{"Time", clockText(attempt.time_s())},
                              {"Removed", readableText(attempt.removed_mm3(), " mm\u00b3")},
                              {"Highest force", readableText(attempt.max_force_n(), " N")},

@@ -186,8 +186,9 @@ void PanelContent::buildAttempt(const topics::Lesson& lesson, const topics::Atte
     note(label, what.c_str());
     ImGui::SetCursorPos(corner);
     ImGui::TextUnformatted((number + "  " + attempt.trainee() + "\n" + scene).c_str());
-    cell(clockText(attempt.time_s()), readableText(attempt.removed_mm3(), " mm\u00b3"));
-    cell(readableText(attempt.max_force_n(), " N"),
+    const auto unlessExam = [&](const std::string& text) { return attempt.is_exam() ? kNoNumber : text; };
+    cell(clockText(attempt.time_s()), unlessExam(readableText(attempt.removed_mm3(), " mm\u00b3")));
+    cell(unlessExam(readableText(attempt.max_force_n(), " N")),
          training.has_least_distance_mm() ? readableText(training.least_distance_mm(), " mm") : kNoNumber);
     cell(!training.has_damaged_mm3()  ? kNoNumber
          : training.damaged_mm3() > 0 ? readableText(training.damaged_mm3(), " mm\u00b3")

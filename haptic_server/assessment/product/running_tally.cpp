@@ -1,11 +1,6 @@
 #include "haptic_server/assessment/product/running_tally.h"
 
 namespace bonemill {
-namespace {
-
-constexpr uint32_t kNeverSeen = 1;  // odd: no version at rest
-
-}  // namespace
 
 RunningTally::RunningTally(const VoxelVolume& scanned, const VoxelVolume& now, const LeafLattice& lattice,
                            const JudgedTask& task)
@@ -13,7 +8,7 @@ RunningTally::RunningTally(const VoxelVolume& scanned, const VoxelVolume& now, c
       now_(now),
       lattice_(lattice),
       task_(task),
-      seen_version_(lattice.leafCount(), kNeverSeen),
+      seen_version_(lattice.leafCount()),
       removed_(task.zones.size() + 1) {}
 
 bool RunningTally::update(uint32_t most_leaves) {

@@ -16,7 +16,8 @@ namespace bonemill {
 
 class RunningTally {
   public:
-    // All must outlive this object. Nothing has been looked at yet.
+    // All must outlive this object. A leaf of version 0 was never written, and is as scanned; no other has
+    // been looked at yet.
     RunningTally(const VoxelVolume& scanned, const VoxelVolume& now, const LeafLattice& lattice,
                  const JudgedTask& task);
 

@@ -28,8 +28,12 @@ if (!nrow(ratings)) {
     quit(status = 0)
 }
 
+# What was asked once per visit is a baseline where the same was asked under conditions, and in no comparison of groups.
+under <- nzchar(ratings$condition) & !is.na(ratings$condition)
+asked <- paste(ratings$form, ratings$item)
+compared <- ratings[under | !asked %in% asked[under], ]
 # Each person once: sessions of one person are not independent.
-people <- aggregate(value ~ pseudonym + group + form + item, ratings, mean)
+people <- aggregate(value ~ pseudonym + group + form + item, compared, mean)
 exact_rank_p <- function(a, b) {
     if (requireNamespace("coin", quietly = TRUE)) {
         frame <- data.frame(y = c(a, b), g = factor(rep(c("a", "b"), c(length(a), length(b)))))

@@ -104,8 +104,7 @@ std::vector<ConditionComparison> compareConditions(const StudyData& data,
     const std::vector<Condition>& conditions = data.protocol().conditions;
     std::vector<ConditionComparison> all;
     for (const Measure& measure : measures) {
-        if (!isCompared(measure) || measure.values.front().condition.empty())
-            continue;  // asked once per visit
+        if (!isCompared(measure) || !measure.hasConditions()) continue;
         for (size_t i = 0; i < conditions.size(); ++i)
             for (size_t j = i + 1; j < conditions.size(); ++j)
                 all.push_back(comparedWithin(measure, conditions[i].id, conditions[j].id));

@@ -43,14 +43,27 @@ void addScores(const StudyData& data, const Form& form, std::vector<Measure>& me
     for (auto& [id, measure] : scores) measures.push_back(std::move(measure));
 }
 
+// An item's mean answers.
+struct Column {
+    std::map<size_t, double> by_person;
+    bool is_turned = false;  // a statement of SUS against the system
+};
+
+// The even ones of the form, whether or not all others were answered.
+bool isTurned(const Measure& measure) {
+    const std::vector<const Item*> items = measure.form->items();
+    const auto at =
+        std::find_if(items.begin(), items.end(), [&](const Item* item) { return item->id == measure.id; });
+    return measure.form->scoring == Scoring::kSus && (at - items.begin()) % 2 == 1;
+}
+
 // A person's row of a block; empty when one item has no answer.
-std::vector<double> rowOf(const std::vector<std::map<size_t, double>>& items, size_t person,
-                          bool turns_even) {
+std::vector<double> rowOf(const std::vector<Column>& columns, size_t person) {
     std::vector<double> row;
-    for (size_t i = 0; i < items.size(); ++i) {
-        const auto found = items[i].find(person);
-        if (found == items[i].end()) return {};
-        row.push_back(turns_even && i % 2 ? 6 - found->second : found->second);
+    for (const Column& column : columns) {
+        const auto found = column.by_person.find(person);
+        if (found == column.by_person.end()) return {};
+        row.push_back(column.is_turned ? 6 - found->second : found->second);
     }
     return row;
 }
@@ -80,10 +93,19 @@ StudyData readStudy(const StudyFolder& folder) {
     return data;
 }
 
+bool Measure::hasConditions() const {
+    return std::any_of(values.begin(), values.end(),
+                       [](const Value& value) { return !value.condition.empty(); });
+}
+
 std::map<size_t, double> Measure::byPerson(const std::string& condition) const {
+    const bool has_conditions = hasConditions();
+    const auto isWanted = [&](const Value& value) {
+        return condition.empty() ? value.condition.empty() != has_conditions : value.condition == condition;
+    };
     std::map<size_t, std::vector<double>> all;
     for (const Value& value : values)
-        if (condition.empty() || value.condition == condition) all[value.person].push_back(value.value);
+        if (isWanted(value)) all[value.person].push_back(value.value);
     std::map<size_t, double> means;
     for (const auto& [person, of_person] : all) means[person] = withoutRounding(meanOf(of_person));
     return means;
@@ -109,16 +131,17 @@ std::vector<Alpha> alphasOf(const StudyData& data, const std::vector<Measure>& m
     std::vector<Alpha> alphas;
     for (size_t begin = 0, end = 0; begin < measures.size(); begin = end) {
         const Measure& first = measures[begin];
-        std::vector<std::map<size_t, double>> items;
+        std::vector<Column> columns;
         while (end < measures.size() && measures[end].form == first.form &&
-               measures[end].block == first.block)
-            items.push_back(measures[end++].byPerson());
-        if (first.is_score || items.size() < 2) continue;
+               measures[end].block == first.block) {
+            columns.push_back({measures[end].byPerson(), isTurned(measures[end])});
+            ++end;
+        }
+        if (first.is_score || columns.size() < 2) continue;
         Table table;
         for (size_t person = 0; person < data.people.size(); ++person)
-            if (auto row = rowOf(items, person, first.form->scoring == Scoring::kSus); !row.empty())
-                table.push_back(std::move(row));
-        alphas.push_back({first.form, first.block, table.size(), items.size(), cronbachsAlpha(table)});
+            if (auto row = rowOf(columns, person); !row.empty()) table.push_back(std::move(row));
+        alphas.push_back({first.form, first.block, table.size(), columns.size(), cronbachsAlpha(table)});
     }
     return alphas;
 }

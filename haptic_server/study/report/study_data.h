@@ -39,8 +39,11 @@ struct Measure {
     bool has_share = false;  // a question of few steps that stands by itself
     std::vector<Value> values;
 
-    // The mean over a person's sessions, of one condition unless it is empty. People without an answer are
-    // not there: people are independent of each other, sessions of one person are not.
+    // Tells whether it was asked in sessions of conditions, and not only once per visit.
+    bool hasConditions() const;
+    // The mean over a person's sessions, of one condition unless it is empty. What was asked once per visit
+    // is no session's where there are conditions: it is a baseline. People without an answer are not there:
+    // people are independent of each other, sessions of one person are not.
     std::map<size_t, double> byPerson(const std::string& condition = "") const;
 };
 

@@ -40,7 +40,8 @@ class FieldBuilder {
         if (voxels <= std::max(kAlwaysFew, kScans * properties_.dims().cast<int64_t>().prod())) return;
         constexpr int64_t kMillion = 1'000'000;
         throw UserError("protected structures: " + std::to_string(std::lround(reach * kPerMillimetre)) +
-                        " mm around them (distance and burr) are " + std::to_string(voxels / kMillion) +
+                        " mm around them (distance, 4 mm at least, and burr) are " +
+                        std::to_string(voxels / kMillion) +
                         " million voxels; give effects.protected_structures.warning_distance_mm and "
                         "effects.virtual_fixture.distance_mm less, or take a scan with larger voxels");
     }

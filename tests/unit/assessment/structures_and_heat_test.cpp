@@ -49,6 +49,18 @@ TEST(Structures, DamageComesInEpisodes) {
     EXPECT_EQ(findFigure(figures, "damage.episodes:bone"), nullptr) << "never in reach";
 }
 
+// A gate may ask that it was not cut.
+TEST(Structures, AProtectedOneThatWasNeverInReachWasNotCut) {
+    TechniqueScene scene = sceneWithNerve();
+    scene.materials.push_back("vessel");
+    scene.are_protected = {false, true, true, true};
+    const Figures figures = cutNerve().figures(scene);
+    for (const char* figure : {"damage.episodes", "damage.volume", "damage.time", "structure.force"})
+        EXPECT_EQ(valueOf(figures, std::string(figure) + ":vessel"), 0) << figure;
+    EXPECT_EQ(findFigure(figures, "structure.distance:vessel"), nullptr) << "nobody knows";
+    EXPECT_EQ(findFigure(figures, "damage.volume:bone"), nullptr) << "it may be cut";
+}
+
 TEST(Structures, EachEpisodeIsAMomentWithItsVolume) {
     Technique technique(sceneWithNerve());
     cutNerve().measure(technique);

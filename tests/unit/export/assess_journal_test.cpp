@@ -23,10 +23,11 @@ constexpr double kRestoring = 0.02;
 class AssessJournal : public testing::Test {
   protected:
     // An attempt by ada, from this tick on, whose bone is put back by the order.
-    void addAttempt(uint64_t begin, uint64_t end, uint64_t bone_order) {
+    void addAttempt(uint64_t begin, uint64_t end, uint64_t bone_order, bool is_dropped = false) {
         journal::Event began, ended;
         began.set_tick(begin), began.set_attempt_began("ada"), began.set_bone_order(bone_order);
         ended.set_tick(end), ended.mutable_attempt_ended()->set_time_s(double(end - begin) * 1e-3);
+        if (is_dropped) ended.mutable_attempt_dropped();
         const auto isEnd = [](const JournalMessage& message) {
             return message.topic == JournalTopic::kEvent && message.as<journal::Event>().has_end();
         };
@@ -106,6 +107,18 @@ TEST_F(AssessJournal, AnOrderThatNoTickTookUpIsAnAttemptOfNothing) {
     ASSERT_EQ(results.size(), 2u);
     EXPECT_EQ(secondsOf(results[0]), 0);
     EXPECT_NEAR(secondsOf(results[1]), 0.2, kRestoring) << "the next one is whole";
+}
+
+TEST_F(AssessJournal, AnAttemptThatWasDroppedHasNoResultAndNoNumber) {
+    addAttempt(test::kTickOfReset - 100, 2600, 1);
+    addAttempt(test::kTickOfRestore - 50, 2700, 2, true);
+    auto results = assessed();
+    ASSERT_EQ(results.size(), 1u);
+    EXPECT_EQ(results[0].at("attempt"), 1);
+    addAttempt(2750, 2900, 2);
+    results = assessed();
+    ASSERT_EQ(results.size(), 2u);
+    EXPECT_EQ(results[1].at("attempt"), 2);
 }
 
 }  // namespace

@@ -21,10 +21,11 @@ constexpr double kPause_s = 1e-3 * test::kTickOfPause;
 class ToolPath : public testing::Test {
   protected:
     // From one tick to the other, on the bone that was put back by this order.
-    void addAttempt(uint64_t begin, uint64_t end, uint64_t bone_order) {
+    void addAttempt(uint64_t begin, uint64_t end, uint64_t bone_order, bool is_dropped = false) {
         journal::Event began, ended;
         began.set_tick(begin), began.set_attempt_began("ada"), began.set_bone_order(bone_order);
         ended.set_tick(end), ended.mutable_attempt_ended()->set_time_s(double(end - begin) * 1e-3);
+        if (is_dropped) ended.mutable_attempt_dropped();
         auto messages = test::journalMessages(session_.journal);
         const auto isEnd = [](const test::JournalMessage& message) {
             return message.topic == JournalTopic::kEvent && message.as<journal::Event>().has_end();
@@ -73,6 +74,15 @@ TEST_F(ToolPath, AnAttemptsTimeRestsInPauses) {
     addAttempt(test::kTickOfRestore, 2900, 2);
     EXPECT_NEAR(exported().back().t_s, 0.2, 0.03) << "the last one";
     EXPECT_NEAR(exported(1).back().t_s, 0.75, 0.03);
+}
+
+TEST_F(ToolPath, AnAttemptThatWasDroppedHasNoNumber) {
+    addAttempt(100, 900, 0, true);
+    addAttempt(test::kTickOfReset - 100, test::kTickOfRestore - 50, 1);
+    addAttempt(test::kTickOfRestore, 2900, 2, true);
+    EXPECT_NEAR(exported(1).back().t_s, 0.75, 0.03);
+    EXPECT_NEAR(exported().back().t_s, 0.75, 0.03) << "the last that counts";
+    EXPECT_THROW(exported(2), UserError);
 }
 
 TEST_F(ToolPath, AnAttemptThatIsNotThereIsRefused) {

@@ -43,6 +43,13 @@ class JournalTest : public testing::Test {
     test::MilledBall ball_;
 };
 
+TEST_F(JournalTest, HasFarFewerSchemasThanAreRead) {
+    record(config());
+    const mcap::Reading reading = readJournal(folder_ / "j.mcap", [](JournalTopic, const auto&) {});
+    EXPECT_LT(reading.index.recordBytes(), mcap::kMostRecordBytes / 2);
+    RecordProperty("bytes", int(reading.index.recordBytes()));
+}
+
 TEST_F(JournalTest, TellsWhatTheSessionTold) {
     const auto records = record(config());
     BoneStateReader bones(scanned());

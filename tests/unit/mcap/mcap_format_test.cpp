@@ -87,5 +87,28 @@ TEST(McapFormat, AMessageLargerThanAChunkHasOneOfItsOwn) {
     EXPECT_EQ(content.reading.index.chunks(), 2u);
 }
 
+// Of so many schemas and channels, of a schema of so many bytes.
+std::string fileOf(uint64_t channels, size_t schema_bytes) {
+    mcap::Writer writer("bonemill", "test");
+    writer.addSchema({1, "a", "protobuf", std::string(schema_bytes, 'x')});
+    for (uint64_t id = 1; id <= channels; ++id) writer.addChannel({uint16_t(id), 1, "t", "protobuf"});
+    writer.addMessage(1, 1, "m");
+    writer.finish();
+    return writer.take();
+}
+
+// They pack well, and are kept.
+TEST(McapFormat, MoreSchemasAndChannelsThanAreKeptAreRefused) {
+    EXPECT_TRUE(readMcap(fileOf(mcap::kMostRecords - 1, 10)).reading.is_whole);
+    EXPECT_TRUE(readMcap(fileOf(1, mcap::kMostRecordBytes - 1000)).reading.is_whole);
+    for (const std::string& file : {fileOf(mcap::kMostRecords, 10), fileOf(1, mcap::kMostRecordBytes)}) {
+        const auto content = readMcap(file);
+        EXPECT_EQ(content.reading.problem.rfind("there are too many schemas and channels", 0), 0u)
+            << content.reading.problem;
+        EXPECT_TRUE(content.messages.empty());
+        EXPECT_EQ(content.reading.index.records(), 0u);
+    }
+}
+
 }  // namespace
 }  // namespace bonemill

@@ -64,6 +64,34 @@ TEST(TornMcap, GetsTheEndThatItWouldHaveHad) {
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), mcapFile(3, true).bytes);
 }
 
+std::string contentOf(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// The rest of it may be read by somebody who knows more.
+TEST(TornMcap, WhatIsDamagedBeforeItsLastChunkStaysBesideIt) {
+    const test::TemporaryFolder folder;
+    const std::string path = folder / "1_a.mcap", kept = folder / "1_a.damaged.mcap";
+    McapFile file = mcapFile(4, true);
+    file.bytes[file.chunks[1].first - 20] ^= 1;
+    std::ofstream(path, std::ios::binary) << file.bytes;
+    EXPECT_EQ(mcap::repair(path).kept, kept);
+    EXPECT_EQ(contentOf(kept), file.bytes);
+    EXPECT_TRUE(readMcap(contentOf(path)).reading.is_whole);
+}
+
+TEST(TornMcap, ATornChunkAtTheEndIsNotKept) {
+    const test::TemporaryFolder folder;
+    const std::string path = folder / "1_a.mcap";
+    const McapFile file = mcapFile(3, false);
+    for (size_t size = file.chunks[1].first; size < file.bytes.size(); size += 5) {
+        std::ofstream(path, std::ios::binary) << file.bytes.substr(0, size);
+        EXPECT_EQ(mcap::repair(path).kept, "") << size;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "1_a.damaged.mcap"));
+}
+
 TEST(TornMcap, WhatIsNoMcapFileIsLeftAlone) {
     const test::TemporaryFolder folder;
     const std::string path = folder / "text.mcap";

@@ -121,6 +121,19 @@ TEST(RunningTally, keepsUpWithAWholeCount) {
     }
 }
 
+TEST(RunningTally, whatWasNeverWrittenKeepsNobodyWaiting) {
+    VoxelVolume volume(test::boxGeometry({40, 40, 40}), 32768);
+    volume.fill([](int, int, int) { return kMaxDensity; });
+    const VoxelVolume scanned = volume;
+    LeafLattice lattice(volume, {4, 4, 4});
+    JudgedTask task;
+    task.map = std::make_shared<const VoxelIds>(volume.dims(), std::vector<ZoneId>(64000));
+    test::writeLikeTick(volume, lattice, {{38, 38, 38}, {38, 38, 38}}, [](int, int, int) { return 0; });
+    RunningTally tally(scanned, volume, lattice, task);
+    EXPECT_TRUE(tally.update(16));
+    EXPECT_EQ(tally.removed()[0], 1) << "in the last of 1331 leaves";
+}
+
 TEST(RunningTally, leavesBeingWrittenWait) {
     VoxelVolume volume(test::boxGeometry({16, 16, 16}), 32768);
     volume.fill([](int, int, int) { return kMaxDensity; });

@@ -31,6 +31,13 @@ TEST(AttemptsCsv, ATimeThatIsNotKnownStaysEmpty) {
     EXPECT_EQ(attemptLine(attempt, "cavity").find("0,,"), 0u);
 }
 
+TEST(AttemptsCsv, WhatAnExaminationKeepsBackIsNoZero) {
+    topics::Attempt attempt;
+    attempt.set_time_s(61);
+    attempt.set_is_exam(true);
+    EXPECT_NE(attemptLine(attempt, "clay").find(",61,,,"), std::string::npos) << attemptLine(attempt, "clay");
+}
+
 TEST(AttemptsCsv, NothingTouchedIsToldFromNothingToTouch) {
     topics::Attempt attempt;
     EXPECT_NE(attemptLine(attempt, "clay").find(",,,,,,\"\",\"\""), std::string::npos);

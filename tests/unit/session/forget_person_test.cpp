@@ -1,6 +1,9 @@
 #include "haptic_server/session/forget_person.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <map>
@@ -91,6 +94,29 @@ TEST_F(ForgetPerson, WhoseARecordingIsMayNotBeReadable) {
     test::writeFile(folder_ / "a.mcap", "damaged");
     EXPECT_EQ(forget("P07"), 1);
     EXPECT_NE(out_.str().find("a.mcap: whose it is cannot be read"), std::string::npos) << out_.str();
+}
+
+TEST_F(ForgetPerson, ARecordingThatIsBeingWrittenIsLeftAndSaid) {
+    record("a.mcap", "P07");
+    const int writer = open((folder_ / "a.mcap").c_str(), O_RDONLY);
+    ASSERT_EQ(flock(writer, LOCK_EX), 0);
+    EXPECT_EQ(forget("P07"), 1);
+    EXPECT_NE(out_.str().find("a.mcap: is being written"), std::string::npos) << out_.str();
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "a.mcap"));
+    close(writer);
+    EXPECT_EQ(forget("P07"), 0);
+}
+
+TEST_F(ForgetPerson, ATableThatIsLockedIsAProblemAndAnotherFileNone) {
+    attempt("P07", 1, "a.mcap");
+    test::writeFile(folder_ / "grades.csv", "grades of 2026\n");
+    const int other = open((folder_ / "class.csv").c_str(), O_RDONLY);
+    ASSERT_EQ(flock(other, LOCK_EX), 0);
+    EXPECT_EQ(forget("P07"), 1);
+    EXPECT_NE(out_.str().find("class.csv: cannot be written: another program"), std::string::npos)
+        << out_.str();
+    close(other);
+    EXPECT_EQ(forget("P07"), 0) << out_.str();
 }
 
 TEST_F(ForgetPerson, AFolderThatIsNoneIsRefused) {

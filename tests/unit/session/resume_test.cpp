@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "common/user_error.h"
 #include "haptic_server/setup/scene_setup.h"
 #include "tests/support/recorded_session.h"
@@ -66,6 +68,17 @@ TEST_F(Resume, FindsTheNewestThatHoldsSomething) {
     EXPECT_EQ(found(), "1_e.mcap");
     write("1_f.mcap", messages_, true);
     EXPECT_EQ(found(), "") << "what came after was ended in order";
+}
+
+TEST_F(Resume, WhatWasDamagedIsKeptSaidAndFoundNoMore) {
+    write("1_a.mcap", messages_, false);
+    const std::string path = folder_ / "1_a.mcap";
+    const auto size = std::filesystem::file_size(path);
+    std::fstream(path, std::ios::in | std::ios::out | std::ios::binary).seekp(3000).put('?').put('!');
+    const std::string said = closeResumed(path);
+    EXPECT_NE(said.find("it is kept as 1_a.damaged.mcap"), std::string::npos) << said;
+    EXPECT_EQ(std::filesystem::file_size(folder_ / "1_a.damaged.mcap"), size);
+    EXPECT_EQ(found(), "");
 }
 
 TEST_F(Resume, GoesOnWithBoneCheckpointsAndTool) {

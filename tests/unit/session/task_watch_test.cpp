@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "haptic_server/journal/journal.h"
+#include "haptic_server/journal/journal_reader.h"
 #include "haptic_server/session/attempt_keeper.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/unit/bone/milled_ball.h"
 
 namespace bonemill {
@@ -171,6 +174,57 @@ TEST_F(LimitedAttempts, AnAttemptEndsWithItsTime) {
     EXPECT_TRUE(ball_.history.isMillingPaused());
     watch.finish();
     EXPECT_TRUE(stateOf(watch, false).is_result());
+}
+
+TEST_F(LimitedAttempts, TheJournalSaysThatOneWasDropped) {
+    const test::TemporaryFolder folder;
+    JournalConfig config;
+    config.path = folder / "j.mcap";
+    config.manifest.set_rate_hz(1000);
+    const ScannedBone scanned{ball_.history.scanned(), ball_.bone.lattice};
+    Journal journal(config, scanned);
+    journal_.begin(&journal, Checkpoints(ball_.history, ball_.bone));
+    AttemptKeeper attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(), {});
+    start(attempts, "Ann");
+    attempts.stop();
+    start(attempts, "Bob");
+    ball_.restoreAll();
+    ball_.groove(10e-3);
+    attempts.stop();
+    journal.finish();
+    std::string events;
+    for (const journal::Event& event : readJournalContent(config.path, KeepInputs::kNo).events)
+        events += event.has_attempt_began()     ? event.attempt_began() + " "
+                  : event.has_attempt_dropped() ? "dropped "
+                  : event.has_attempt_ended()   ? "ended "
+                                                : "";
+    EXPECT_EQ(events, "Ann dropped Bob ended ");
+}
+
+TEST_F(LimitedAttempts, OfAnExaminationOnlyTheTimeIsTold) {
+    task_->is_exam = true;
+    TaskWatch watch(task_, ball_.bone, ball_.history);
+    scene::Scene scene;
+    scene.mutable_assessment()->set_exam(true);
+    scene.mutable_effects()->mutable_thermal();
+    AttemptKeeper attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(),
+                           scene, {}, &watch);
+    start(attempts, "Ann");
+    ball_.restoreAll();
+    ball_.groove(10e-3);
+    attempts.stop();
+    const auto lesson = lesson_.takeChanged();
+    ASSERT_TRUE(lesson);
+    ASSERT_EQ(lesson->attempts_size(), 1);
+    topics::Attempt told = lesson->attempts(0);
+    EXPECT_EQ(told.trainee(), "Ann");
+    EXPECT_EQ(told.number(), 1u);
+    EXPECT_GT(told.start_stamp_ns(), 0);
+    EXPECT_TRUE(told.is_exam());
+    told.clear_number(), told.clear_trainee(), told.clear_start_stamp_ns(), told.clear_time_s();
+    told.clear_is_exam();
+    EXPECT_EQ(told.ByteSizeLong(), 0u) << told.ShortDebugString();
+    watch.finish();
 }
 
 }  // namespace

@@ -71,9 +71,15 @@ TEST_F(SceneMaterials, ComeFromValuesAndLabels) {
         ASSERT_EQ(effects.properties->original(v), simulation.bone->volume.at(v.x(), v.y(), v.z()));
     });
     ASSERT_TRUE(effects.protected_field);
-    EXPECT_EQ(effects.protected_field->reach(), 2e-3 + 1e-3 + 1e-3);
+    EXPECT_EQ(effects.protected_field->reach(), 4e-3 + 1e-3 + 1e-3) << "what is measured near it is known";
     // The place is three voxels above the nerve's upper face.
     EXPECT_NEAR(effects.protected_field->at({5e-3, 4e-3, 9 * 0.5e-3}).distance, 1.25e-3, 1e-6);
+}
+
+TEST_F(SceneMaterials, AreSeenFartherWhereTheSceneWarnsFarther) {
+    const Simulation simulation = makeSimulation(
+        sceneOf("labels.nrrd", kMaterials + "effects { protected_structures { warning_distance_mm: 5 } }"));
+    EXPECT_EQ(simulation.tick.effects.protected_field->reach(), 5e-3 + 1e-3 + 1e-3);
 }
 
 TEST_F(SceneMaterials, OfEqualStiffnessDoNotAskForTheEffect) {

@@ -75,6 +75,58 @@ TEST(StudyReport, ComparesWithAFamilyPerFormAndSusByItsScoreOnly) {
     }
 }
 
+// The same form before all and after each: what is asked before is no session's, and has no condition.
+struct BaselineRig : test::StudyRig {
+    BaselineRig() {
+        std::string protocol = test::kSmallProtocol;
+        protocol.replace(protocol.find("\"forms_after\""), 0, "\"forms_before\": [\"nasa_tlx_raw\"], ");
+        test::writeFile(path + "/protocol.json", protocol);
+        StudyFolder study(path);
+        for (size_t i = 0; i < 8; ++i) {
+            const Participant person = study.enrol(i < 4 ? "expert" : "novice", "");
+            for (const Session& session : person.sessions)
+                study.save(filled(study, person, session, "nasa_tlx_raw", [&](const std::string&) {
+                    return session.condition.empty() ? 100 : 5 * (i + (session.condition == "without"));
+                }));
+        }
+    }
+};
+
+TEST(StudyReport, ABaselineIsOfNoConditionAndInNoComparison) {
+    const BaselineRig rig;
+    const StudyFolder study(rig.path);
+    const StudyData data = readStudy(study);
+    const std::vector<Measure> measures = measuresOf(data);
+    const auto conditions = compareConditions(data, measures);
+    ASSERT_FALSE(conditions.empty());
+    EXPECT_EQ(conditions[0].of_first.n, 8u);
+    EXPECT_DOUBLE_EQ(conditions[0].of_second.mean - conditions[0].of_first.mean, 5);
+    const auto groups = compareGroups(data, measures);
+    ASSERT_FALSE(groups.empty());
+    EXPECT_DOUBLE_EQ(groups[0].of_first.mean, 5 * 1.5 + 2.5);
+}
+
+TEST(StudyReport, AlphaOfSusTurnsStatementsByTheirPlaceInTheForm) {
+    const test::StudyRig rig;
+    StudyFolder study(rig.path);
+    for (size_t i = 0; i < 4; ++i) {
+        const Participant person = study.enrol("expert", "");
+        const std::vector<const Item*> items = study.form("sus").items();
+        Answers answers = study.answers(person, person.sessions[0].uuid, "sus");
+        for (size_t n = 0; n < items.size(); ++n)
+            if (n == 2)
+                answers.left_out.push_back(items[n]->id);  // by everyone
+            else
+                answers.values[items[n]->id] = double(n % 2 ? 5 - i : 1 + i);
+        study.save(answers);
+    }
+    const StudyData data = readStudy(study);
+    const std::vector<Alpha> alphas = alphasOf(data, measuresOf(data));
+    ASSERT_EQ(alphas.size(), 1u);
+    EXPECT_EQ(alphas[0].items, 9u);
+    EXPECT_NEAR(alphas[0].alpha, 1, 1e-12) << "all of one mind";
+}
+
 TEST(StudyReport, SaysWhatItCanAndCannotBear) {
     const FilledRig rig;
     const StudyData data = readStudy(rig.study);
