@@ -223,8 +223,7 @@ int serveLive(const Options& options) {
 }
 
 int serve(int argc, char** argv) {
-    // A path may look like an option, so that no parser of options sees it.
-    if (argc == 4 && std::string(argv[1]) == kReadVolumeWord) runReaderProgram(argv[2], {argv[3]});
+    runReaderIfCalled(argc, argv);
     setReaderProgram("/proc/self/exe");
     CLI::App app("Haptic bone-milling server", "haptic_server");
     Options options;
