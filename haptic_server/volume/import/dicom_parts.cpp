@@ -127,7 +127,27 @@ std::string commonNumber(const std::vector<DicomSlice>& slices) {
 bool areInterleaved(const Trait& trait, const DicomStack& whole, const std::vector<DicomStack>& stacks) {
     const auto is_even = [](const DicomStack& stack) { return !stack.is_uneven; };
     return areProper(stacks) && allOverlap(stacks) &&
-           (!trait.is_mixed || (whole.is_uneven && std::ranges::all_of(stacks, is_even)));
+           (!trait.is_mixed || !whole.problem.empty() ||
+            (whole.is_uneven && std::ranges::all_of(stacks, is_even)));
+}
+
+// How good a split is: stacks that overlap are acquisitions and phases, others may be ranges that were
+// scanned one after the other and belong together.
+std::tuple<bool, bool, size_t> worthOf(const std::vector<DicomStack>& stacks) {
+    return {areProper(stacks) && allOverlap(stacks), areProper(stacks), properSlices(stacks)};
+}
+
+// Of stacks at the same places.
+std::vector<DicomStack> bestSplit(const std::vector<DicomSlice>& slices,
+                                  const std::vector<DicomSlice>& strangers,
+                                  const IsSamePicture& is_same_picture) {
+    std::vector<DicomStack> best;
+    for (const Split& split : splits()) {
+        std::vector<DicomStack> stacks = splitBy(split, slices, strangers, is_same_picture);
+        if (worthOf(stacks) > worthOf(best)) best = std::move(stacks);
+        if (std::get<0>(worthOf(best))) break;
+    }
+    return best;
 }
 
 }  // namespace
@@ -135,25 +155,18 @@ bool areInterleaved(const Trait& trait, const DicomStack& whole, const std::vect
 std::vector<DicomStack> partsOf(const std::vector<DicomSlice>& slices,
                                 const std::vector<DicomSlice>& strangers,
                                 const IsSamePicture& is_same_picture) {
-    std::vector<DicomStack> best{arrangedStack(slices, strangers, is_same_picture)};
-    best.front().name = printable(commonNumber(slices));
-    if (!best.front().has_several) {
-        for (const Trait& trait : kTraits) {
-            std::vector<DicomStack> stacks = splitBy({&trait}, slices, strangers, is_same_picture);
-            if (areInterleaved(trait, best.front(), stacks)) return stacks;
-        }
-        return best;
+    DicomStack whole = arrangedStack(slices, strangers, is_same_picture);
+    whole.name = printable(commonNumber(slices));
+    if (whole.has_several) {
+        std::vector<DicomStack> best = bestSplit(slices, strangers, is_same_picture);
+        if (properSlices(best) > 0) return best;
+        return {std::move(whole)};
     }
-    size_t most = 0;
-    for (const Split& split : splits()) {
-        std::vector<DicomStack> stacks = splitBy(split, slices, strangers, is_same_picture);
-        if (areProper(stacks)) return stacks;
-        if (const size_t proper = properSlices(stacks); proper > most) {
-            most = proper;
-            best = std::move(stacks);
-        }
+    for (const Trait& trait : kTraits) {
+        std::vector<DicomStack> stacks = splitBy({&trait}, slices, strangers, is_same_picture);
+        if (areInterleaved(trait, whole, stacks)) return stacks;
     }
-    return best;
+    return {std::move(whole)};
 }
 
 std::optional<double> acquisitionOf(const DicomStack& stack) {

@@ -40,7 +40,7 @@ void add(std::string& remark, const std::string& text) {
 
 std::string remarkOf(const DicomStack& stack) {
     std::string remark = stack.problem.empty() ? "" : "cannot be used: " + stack.problem;
-    if (isScout(stack)) add(remark, "scout");
+    if (stack.problem.empty() && isScout(stack)) add(remark, "scout");
     add(remark, stack.remark);
     if (!stack.told_by.empty()) add(remark, "told from stacks that overlap it by " + stack.told_by);
     return remark.empty() ? "-" : shortened(remark, kLongestLine);

@@ -149,6 +149,25 @@ TEST(DicomParts, TimesThatAllDifferTellNothing) {
     expectUserError([&] { choose(slices); }, {"same place and differ", "several acquisitions"});
 }
 
+// Scanners that step count every rotation of the gantry.
+TEST(DicomParts, WhatSplitsIntoShortRangesGoesAfterWhatDoesNot) {
+    std::vector<DicomSlice> slices;
+    addStack(slices, 12, &DicomTraits::content_time, "1");
+    addStack(slices, 12, &DicomTraits::content_time, "2");
+    for (size_t s = 0; s < slices.size(); ++s) slices[s].traits.acquisition_number = std::to_string(s / 4);
+    EXPECT_EQ(choose(slices).stack.slices.size(), 12u);
+    for (DicomSlice& slice : slices) slice.traits.content_time.clear();
+    EXPECT_EQ(choose(slices).stack.slices.size(), 4u);
+}
+
+TEST(DicomParts, StacksBesideEachOtherAreToldApart) {
+    std::vector<DicomSlice> slices;
+    addStack(slices, 8, &DicomTraits::acquisition_number, "1");
+    addStack(slices, 8, &DicomTraits::acquisition_number, "2");
+    for (size_t s = 8; s < 16; ++s) slices[s].position_mm += Eigen::Vector3d(30, 0, 0.5);
+    EXPECT_EQ(choose(slices).stack.slices.size(), 8u);
+}
+
 TEST(DicomParts, StacksThatShareANumberAreCounted) {
     std::vector<DicomSlice> slices;
     addStack(slices, 6, &DicomTraits::acquisition_number, "1");
