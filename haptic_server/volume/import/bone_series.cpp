@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <limits>
 #include <tuple>
 
@@ -102,7 +103,8 @@ BoneRecommendation recommendForBone(const std::vector<DicomStack>& stacks) {
     const auto rank = [&](const DicomStack& stack) {
         return std::tuple(canBeUsed(stack), isCt(stack),
                           hasBoneKernel(stack) && stack.slice_spacing_mm <= limit,
-                          -std::lround(100 * stack.slice_spacing_mm), stack.slices.size());
+                          -std::lround(100 * stack.slice_spacing_mm), stack.slices.size(),
+                          stack.slices.front().traits.image_type.starts_with("ORIGINAL"));
     };
     const auto best = std::ranges::max_element(stacks, {}, rank);
     if (best == stacks.end() || !canBeUsed(*best)) return {};

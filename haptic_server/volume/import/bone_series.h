@@ -17,7 +17,8 @@ struct BoneRecommendation {
 };
 
 // Scouts and what cannot be used are left out. CT goes before all else, bone kernels before others unless
-// their slices are more than twice as far apart as the thinnest, then the thinnest slices, then the most.
+// their slices are more than twice as far apart as the thinnest, then the thinnest slices, then the most,
+// then originals.
 BoneRecommendation recommendForBone(const std::vector<DicomStack>& stacks);
 
 }  // namespace bonemill

@@ -10,9 +10,10 @@
 namespace bonemill {
 namespace {
 
-constexpr double kWidestGap = 3.2;         // distances: two slices in a row may be missing
-constexpr double kGap = 1.5;               // distances: one is missing
-constexpr double kMostTurnedDegrees = 40;  // a slice that is turned further is a scout or another view
+constexpr double kWidestGap = 3.2;  // distances: two slices in a row may be missing
+constexpr double kGap = 1.5;        // distances: one is missing
+constexpr double kMostLeaningDegrees =
+    40;  // of its plane: a slice that leans further is a scout or another view
 constexpr double kTurnedDegrees = 0.05;
 constexpr size_t kMostNamed = 4;
 
@@ -22,6 +23,11 @@ double degreesBetween(const DicomSlice& a, const DicomSlice& b) {
     R_WB << b.row_direction, b.column_direction, b.normal();
     const Eigen::Quaterniond q_AB(Eigen::Matrix3d(R_WA.transpose() * R_WB));
     return 2 * pinned::atan2(q_AB.vec().norm(), std::abs(q_AB.w())) / kDegree;
+}
+
+// Of their planes, whichever way up they are.
+double leaningDegrees(const DicomSlice& a, const DicomSlice& b) {
+    return pinned::atan2(a.normal().cross(b.normal()).norm(), std::abs(a.normal().dot(b.normal()))) / kDegree;
 }
 
 // Turning moves its corner, not its middle.
@@ -35,7 +41,7 @@ std::vector<DicomSlice> strangersBetween(const DicomSlice& before, const DicomSl
                                          const std::vector<DicomSlice>& strangers) {
     std::vector<DicomSlice> found;
     for (const DicomSlice& stranger : strangers)
-        if (liesBetween(before, after, stranger) && degreesBetween(before, stranger) <= kMostTurnedDegrees)
+        if (liesBetween(before, after, stranger) && leaningDegrees(before, stranger) <= kMostLeaningDegrees)
             found.push_back(stranger);
     return found;
 }
@@ -46,7 +52,7 @@ std::string differenceOf(const DicomSlice& stranger, const DicomSlice& first) {
                        first.rows);
     const double turned_deg = degreesBetween(first, stranger);
     if (turned_deg > kTurnedDegrees)
-        return printed("is rotated by %.2g degrees against the others", turned_deg);
+        return printed("is rotated by %.3g degrees against the others", turned_deg);
     return printed("has pixels of %.4g x %.4g mm, the others %.4g x %.4g mm", stranger.pixel_spacing_mm.x(),
                    stranger.pixel_spacing_mm.y(), first.pixel_spacing_mm.x(), first.pixel_spacing_mm.y());
 }

@@ -163,7 +163,7 @@ std::vector<DicomStack> partsOf(const std::vector<DicomSlice>& slices,
         return {std::move(whole)};
     }
     for (const Trait& trait : kTraits) {
-        std::vector<DicomStack> stacks = splitBy({&trait}, slices, strangers, is_same_picture);
+        std::vector<DicomStack> stacks = splitBy({&trait}, whole.slices, strangers, is_same_picture);
         if (areInterleaved(trait, whole, stacks)) return stacks;
     }
     return {std::move(whole)};

@@ -170,6 +170,13 @@ TEST(DicomSeries, aRotatedSliceIsNotSaidToBeMissing) {
     expectUserError([&] { chosen(slices); }, {"slice4 is rotated", "and 1 slices are missing"});
 }
 
+TEST(DicomSeries, ASliceThatIsUpsideDownIsNotSaidToBeMissing) {
+    auto slices = stackOf(12, 1);
+    turn(slices[4], 180);
+    EXPECT_NE(chosen(slices).remark.find("slice4 is rotated by 180 degrees"), std::string::npos)
+        << chosen(slices).remark;
+}
+
 TEST(DicomSeries, ASliceOfAnotherSizeIsNotSaidToBeMissing) {
     auto slices = stackOf(12, 1);
     slices[4].columns = 16;
