@@ -150,6 +150,8 @@ void addCaseOptions(CLI::App& app, CaseRequest& request) {
     app.add_option("scan", request.scan, "folder of a DICOM series, or a file")->required();
     app.add_option("--out", request.out, "new folder for the case")->required()->type_name("DIR");
     app.add_option("--series", request.series, "UID of the series; default: the one with the most slices");
+    app.add_option("--acquisition", request.acquisition,
+                   "which of the series' acquisitions, phases or kernels, as list-series names them");
     app.add_option("--title", request.title, "what people read in the list of scenes");
     app.add_option("--iso", request.iso, "raw value (HU) of the bone's surface; default: proposed");
     app.add_option("--at", request.at_mm,
@@ -185,6 +187,7 @@ struct Options {
     ExportOptions files;
     CaseRequest request;
     std::string journal;
+    std::string series_folder;
 };
 
 int simulateInOrder(const SimulateOptions& options) {
@@ -198,6 +201,12 @@ int verifyInOrder(const std::string& journal) {
     const JournalVerdict verdict = verifyJournal(journal, versionText());
     std::cout << journal << ": " << verdict.text() << std::flush;
     return verdict.isProven() ? 0 : 1;
+}
+
+int printSeries(const std::string& folder) {
+    for (const std::string& line : listSeries(folder)) std::cout << line << '\n';
+    std::cout << std::flush;
+    return 0;
 }
 
 // What a session leaves says who did what: it is its user's alone.
@@ -223,8 +232,7 @@ int serveLive(const Options& options) {
 }
 
 int serve(int argc, char** argv) {
-    // A path may look like an option, so that no parser of options sees it.
-    if (argc == 4 && std::string(argv[1]) == kReadVolumeWord) runReaderProgram(argv[2], {argv[3]});
+    runReaderIfCalled(argc, argv);
     setReaderProgram("/proc/self/exe");
     CLI::App app("Haptic bone-milling server", "haptic_server");
     Options options;
@@ -245,6 +253,9 @@ int serve(int argc, char** argv) {
     CLI::App* const case_command =
         app.add_subcommand("make-case", "make a training case of a scan (docs/cases.md)");
     addCaseOptions(*case_command, options.request);
+    CLI::App* const series_command = app.add_subcommand(
+        "list-series", "print which DICOM series a folder holds, and which is the best for bone");
+    series_command->add_option("FOLDER", options.series_folder, "folder of DICOM files")->required();
     CLI::App* const session_command =
         app.add_subcommand("session", "what can be done with what sessions have left")->require_subcommand(1);
     CLI::App* const forget_command = session_command->add_subcommand(
@@ -269,6 +280,7 @@ int serve(int argc, char** argv) {
         exportJournal(options.files);
         return 0;
     }
+    if (series_command->parsed()) return printSeries(options.series_folder);
     if (case_command->parsed()) {
         makeCase(options.request, versionText(), std::cout);
         return 0;

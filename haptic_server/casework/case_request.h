@@ -17,9 +17,10 @@ struct CaseLabel {
 };
 
 struct CaseRequest {
-    std::string scan;    // file or folder
-    std::string series;  // UID; empty: the one with the most slices
-    std::string out;     // folder that is made
+    std::string scan;         // file or folder
+    std::string series;       // UID; empty: the one with the most slices
+    std::string acquisition;  // of the series (DicomWish); empty: by rule
+    std::string out;          // folder that is made
     std::string title;
     std::optional<double> iso;
     std::vector<double> at_mm;  // W: middle of the region; empty: all of the bone is milled

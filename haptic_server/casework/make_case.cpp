@@ -119,7 +119,7 @@ void makeCase(const CaseRequest& request, const std::string& version, std::ostre
     checkLabels(request, labels);
     const std::vector<scene::Tool> tools = toolsOfFile(request.tools);
     CaseFolder folder(request.out);
-    const RawVolume scan = importVolume(request.scan, {request.series});
+    const RawVolume scan = importVolume(request.scan, {request.series, request.acquisition});
     out << scan.description << '\n';
     const CasePlan plan = planCase(scan, request);
     for (const std::string& remark : plan.remarks) out << remark << '\n';

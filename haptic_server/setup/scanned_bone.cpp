@@ -51,7 +51,8 @@ ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
 
 ScannedBone readBone(const LoadedScene& loaded) {
     const scene::Volume& scene = loaded.scene.volume();
-    Scan scan{importVolume(resolvePath(loaded, scene.path()), {scene.series_uid()}), {}, {}};
+    const ImportOptions options{scene.series_uid(), scene.acquisition()};
+    Scan scan{importVolume(resolvePath(loaded, scene.path()), options), {}, {}};
     scan.remarks.push_back(scan.raw.description);
     scan.mapping = chooseMapping(scan.raw, windowOf(scene));
     if (scan.mapping.proposed)

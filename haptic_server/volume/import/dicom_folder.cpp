@@ -1,137 +1,18 @@
 #include "haptic_server/volume/import/dicom_folder.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cctype>
 
 #include "common/user_error.h"
-#include "haptic_server/volume/import/dicom_frames.h"
+#include "haptic_server/volume/import/dicom_headers.h"
 #include "haptic_server/volume/import/dicom_scan.h"
-#include "haptic_server/volume/import/dicom_series.h"
 #include "haptic_server/volume/import/import_limits.h"
 #include "haptic_server/volume/import/itk_image_file.h"
 #include "haptic_server/volume/import/physical_frame.h"
+#include "haptic_server/volume/import/series_table.h"
 
 namespace bonemill {
 namespace {
-
-constexpr size_t kMaxEdge = 16384;  // detectors of today have 4096; more is a damaged header
-
-// Counts files that are left out on purpose, by reason, with one example each.
-class LeftOut {
-  public:
-    void add(const std::string& reason, const std::filesystem::path& file) {
-        for (Entry& entry : entries_)
-            if (entry.reason == reason) return void(++entry.count);
-        entries_.push_back({reason, file.filename().string(), 1});
-    }
-    std::string text() const {
-        std::string text;
-        for (const Entry& entry : entries_)
-            text += (text.empty() ? "" : ", ") + std::to_string(entry.count) + " " + entry.reason + " (" +
-                    entry.example + (entry.count > 1 ? ", ...)" : ")");
-        return text;
-    }
-
-  private:
-    struct Entry {
-        std::string reason, example;
-        int count;
-    };
-    std::vector<Entry> entries_;
-};
-
-// All images of one file have this in common.
-DicomSlice headerOf(const ItkImageFile& image, const std::filesystem::path& path) {
-    const ItkImageHeader& header = image.header();
-    DicomSlice slice;
-    slice.path = path;
-    slice.series_uid = image.dicomTag("0020|000e");
-    slice.series_description = image.dicomTag("0008|103e");
-    slice.modality = image.dicomTag("0008|0060");
-    slice.kernel = image.dicomTag("0018|1210");
-    slice.contrast = image.dicomTag("0018|0010");
-    if (header.dims.size() < 2 || header.dims[0] > kMaxEdge || header.dims[1] > kMaxEdge)
-        throw UserError(path.string() + ": claims an image of absurd size; the header is damaged");
-    slice.columns = int(header.dims[0]);
-    slice.rows = int(header.dims[1]);
-    slice.rescale = rescaleFromTexts(image.dicomTag("0028|1053"), image.dicomTag("0028|1052"), path.string());
-    return slice;
-}
-
-void putAt(const DicomPlace& place, DicomSlice& slice) {
-    slice.position_mm = place.position_mm;
-    slice.row_direction = place.row_direction;
-    slice.column_direction = place.column_direction;
-    slice.pixel_spacing_mm = place.pixel_spacing_mm;
-    slice.axes_rounding = place.rounding;
-}
-
-// Frames of which only some say their scale would not be alike.
-void checkRescales(const std::vector<DicomFrame>& frames, const DicomSlice& common) {
-    if (common.rescale) return;
-    const auto says = [](const DicomFrame& frame) { return frame.rescale.has_value(); };
-    const auto silent = std::ranges::find_if_not(frames, says);
-    if (silent != frames.end() && std::ranges::any_of(frames, says))
-        throw UserError(common.path.string() + " frame " + std::to_string(silent - frames.begin() + 1) +
-                        ": does not state its Rescale Slope and Intercept, other frames do; export it anew");
-}
-
-std::vector<DicomSlice> slicesOf(const std::vector<DicomFrame>& frames, const DicomSlice& common) {
-    checkRescales(frames, common);
-    std::vector<DicomSlice> slices(frames.size(), common);
-    for (size_t f = 0; f < frames.size(); ++f) {
-        slices[f].frame = int(f);
-        putAt(frames[f].place, slices[f]);
-        if (frames[f].rescale) slices[f].rescale = frames[f].rescale;
-    }
-    return slices;
-}
-
-// Reads the slices of one file, or none and the reason: the file cannot belong to a volume.
-std::vector<DicomSlice> readHeader(const std::filesystem::path& path, LeftOut& left_out) {
-    const ItkImageFile image(ItkFormat::kDicom, path);
-    const size_t frames = image.header().dims.size() > 2 ? size_t(image.header().dims[2]) : 1;
-    if (image.header().components != 1 || image.dicomTag("0028|0004").rfind("PALETTE", 0) == 0) {
-        left_out.add("colour images (RGB or palette)", path);
-        return {};
-    }
-    if (frames == 1 && (image.dicomTag("0020|0032").empty() || image.dicomTag("0020|0037").empty())) {
-        left_out.add("images without a position in the patient", path);
-        return {};
-    }
-    DicomSlice slice = headerOf(image, path);
-    if (frames == 1) {
-        putAt(placeFromTexts(
-                  {image.dicomTag("0020|0032"), image.dicomTag("0020|0037"), image.dicomTag("0028|0030")},
-                  kTwoDigits, path.string()),
-              slice);
-        return {slice};
-    }
-    const std::vector<DicomFrame> places = readFrames(path);
-    if (places.size() != frames) {
-        left_out.add("multi-frame images that do not say where each frame lies", path);
-        return {};
-    }
-    return slicesOf(places, slice);
-}
-
-// Damage must not pass as "not an image": the volume would silently lose a slice.
-std::vector<DicomSlice> inspect(const std::filesystem::path& path, LeftOut& left_out) {
-    const DicomScan scan = scanDicomFile(path);
-    switch (scan.kind) {
-        case DicomKind::kNotDicom:
-            left_out.add("files that are not DICOM", path);
-            return {};
-        case DicomKind::kNoImage:
-            left_out.add("DICOM files without an image", path);
-            return {};
-        case DicomKind::kCutShort:
-            throw UserError(path.string() + ": the DICOM file is cut short or damaged: " + scan.problem);
-        case DicomKind::kImage:
-            break;
-    }
-    return readHeader(path, left_out);
-}
 
 void readSlices(const std::vector<DicomSlice>& slices, RawValues& values) {
     std::filesystem::path read_path;
@@ -174,20 +55,23 @@ bool isSamePicture(const DicomSlice& a, const DicomSlice& b) {
 }
 
 // What a reader of the scan asks first.
-std::string describe(const DicomStack& stack) {
+std::string describe(const DicomChoice& choice) {
+    const DicomStack& stack = choice.stack;
     const DicomSlice& first = stack.slices.front();
-    std::string text = "DICOM series " + first.series_uid;
+    std::string text = "DICOM " + titleOf(stack);
     if (!first.series_description.empty()) text += " (" + first.series_description + ")";
     if (!first.modality.empty()) text += ", " + first.modality;
-    if (!first.kernel.empty()) text += ", kernel " + first.kernel;
+    if (!first.traits.kernel.empty()) text += ", kernel " + first.traits.kernel;
     if (!first.contrast.empty()) text += ", contrast " + first.contrast;
     text += ", " + std::to_string(stack.slices.size()) + " slices";
     if (!stack.remark.empty()) text += "; " + stack.remark;
-    if (!stack.left_out.empty()) text += "; other series left out: " + stack.left_out;
+    if (!choice.how_chosen.empty()) text += "; " + choice.how_chosen;
+    if (!choice.left_out.empty()) text += "; other series left out: " + choice.left_out;
     return text;
 }
 
-RawVolume readStack(const DicomStack& stack, const std::string& name) {
+RawVolume readChoice(const DicomChoice& choice, const std::string& name) {
+    const DicomStack& stack = choice.stack;
     const DicomSlice& first = stack.slices.front();
     const size_t depth = stack.slices.size();
     constexpr uint64_t kPixelBytes = 4;  // a multi-frame file is read as a whole
@@ -212,50 +96,112 @@ RawVolume readStack(const DicomStack& stack, const std::string& name) {
     }
     makeRightHanded(frame, name, raw.geometry, raw.values);
     raw.is_hounsfield = first.isCt() && reachesAir(raw.values);
-    raw.description = describe(stack);
+    raw.description = describe(choice);
     return raw;
 }
 
-// Links to folders are not followed, for they may lead in circles.
-std::vector<std::filesystem::path> filesOf(const std::filesystem::path& folder, LeftOut& left_out) {
-    std::vector<std::filesystem::path> files, others;
-    std::error_code error, unreadable;
-    for (std::filesystem::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
-         entry.increment(error)) {
-        if (entry->is_regular_file(unreadable))
-            files.push_back(entry->path());
-        else if (entry->is_symlink(unreadable) || !entry->is_directory(unreadable))
-            others.push_back(entry->path());
-    }
-    if (error) throw UserError("cannot list the folder " + folder.string() + ": " + error.message());
-    std::sort(files.begin(), files.end());  // the same messages and choices on every file system
-    std::sort(others.begin(), others.end());
-    for (const auto& other : others) left_out.add("links or devices that are no files", other);
-    return files;
-}
-
-}  // namespace
-
-RawVolume importDicomFolder(const std::filesystem::path& folder, const std::string& series_uid) {
-    LeftOut left_out;
-    const auto files = filesOf(folder, left_out);
-    if (files.empty()) throw UserError(folder.string() + ": the folder is empty; a DICOM series is needed");
+std::vector<DicomSlice> slicesOfFiles(const std::vector<std::filesystem::path>& files, LeftOut& left_out) {
     std::vector<DicomSlice> slices;
     for (const auto& file : files)
-        for (const DicomSlice& slice : inspect(file, left_out)) slices.push_back(slice);
+        for (const DicomSlice& slice : slicesOfFile(file, left_out)) slices.push_back(slice);
+    return slices;
+}
+
+RawVolume importFolder(const std::filesystem::path& folder, Subfolders subfolders, const DicomWish& wish) {
+    LeftOut left_out;
+    const auto files = filesOf(folder, subfolders, left_out);
+    if (files.empty()) throw UserError(folder.string() + ": the folder is empty; a DICOM series is needed");
+    const std::vector<DicomSlice> slices = slicesOfFiles(files, left_out);
     if (slices.empty())
         throw UserError(folder.string() + ": holds no DICOM slice that can be used: " + left_out.text());
-    RawVolume raw =
-        readStack(chooseStack(slices, series_uid, folder.string(), isSamePicture), folder.string());
+    RawVolume raw = readChoice(chooseStack(slices, wish, folder.string(), isSamePicture), folder.string());
     if (!left_out.text().empty()) raw.description += "; files left out: " + left_out.text();
     return raw;
 }
 
-RawVolume importDicomFile(const std::filesystem::path& file) {
+std::filesystem::path folderOf(const std::filesystem::path& file) {
+    return file.has_parent_path() ? file.parent_path() : ".";
+}
+
+// What belongs to a file that is one slice lies beside it: folders below may be anything.
+RawVolume importAroundSlice(const std::filesystem::path& file, const DicomSlice& slice, DicomWish wish) {
+    if (wish.series_uid.empty()) wish.series_uid = slice.series_uid;
+    wish.file = folderOf(file) / file.filename();
+    RawVolume raw = importFolder(folderOf(file), Subfolders::kNo, wish);
+    raw.description += "; " + file.filename().string() + " is a slice of this series: the folder " +
+                       folderOf(file).string() + " was read";
+    return raw;
+}
+
+// Damage is told in a line of its own, so that it hides no other series.
+std::vector<DicomSlice> readableSlices(const std::vector<std::filesystem::path>& files, LeftOut& left_out,
+                                       std::vector<std::string>& problems) {
+    std::vector<DicomSlice> slices;
+    for (const auto& file : files) try {
+            for (const DicomSlice& slice : slicesOfFile(file, left_out)) slices.push_back(slice);
+        } catch (const UserError& error) {
+            problems.push_back(error.what());
+        }
+    return slices;
+}
+
+std::vector<std::string> listFiles(const std::vector<std::filesystem::path>& files,
+                                   const std::filesystem::path& path, LeftOut& left_out) {
+    SeriesTableNotes notes;
+    const std::vector<DicomSlice> slices = readableSlices(files, left_out, notes.problems);
+    notes.left_out = left_out.text();
+    if (slices.empty())
+        throw UserError(path.string() + ": holds no DICOM slice that can be used: " +
+                        (notes.problems.empty() ? notes.left_out : notes.problems.front()));
+    return seriesTable(stacksOf(slices, isSamePicture), notes);
+}
+
+std::vector<std::string> listFolder(const std::filesystem::path& folder, Subfolders subfolders) {
     LeftOut left_out;
-    const auto slices = inspect(file, left_out);
+    const auto files = filesOf(folder, subfolders, left_out);
+    if (files.empty()) throw UserError(folder.string() + ": the folder is empty; a DICOM series is needed");
+    return listFiles(files, folder, left_out);
+}
+
+}  // namespace
+
+bool isDicomDirectory(const std::filesystem::path& file) {
+    constexpr const char* kMediaStorageDirectory = "1.2.840.10008.1.3.10";
+    std::string name = file.filename().string();
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::toupper(c)); });
+    return name == "DICOMDIR" || scanDicomFile(file).media_class == kMediaStorageDirectory;
+}
+
+bool isDicom(const std::filesystem::path& file) {
+    return scanDicomFile(file).kind != DicomKind::kNotDicom;
+}
+
+RawVolume importDicomFolder(const std::filesystem::path& folder, const DicomWish& wish) {
+    return importFolder(folder, Subfolders::kYes, wish);
+}
+
+RawVolume importDicomDirectory(const std::filesystem::path& file, const DicomWish& wish) {
+    RawVolume raw = importDicomFolder(folderOf(file), wish);
+    raw.description += "; " + file.filename().string() + " only names files: the folder " +
+                       folderOf(file).string() + " was read";
+    return raw;
+}
+
+RawVolume importDicomFile(const std::filesystem::path& file, const DicomWish& wish) {
+    LeftOut left_out;
+    const auto slices = slicesOfFile(file, left_out);
     if (slices.empty()) throw UserError(file.string() + ": cannot be used: " + left_out.text());
-    return readStack(chooseStack(slices, {}, file.string(), isSamePicture), file.string());
+    if (slices.size() == 1) return importAroundSlice(file, slices.front(), wish);
+    return readChoice(chooseStack(slices, wish, file.string(), isSamePicture), file.string());
+}
+
+std::vector<std::string> listDicomSeries(const std::filesystem::path& path) {
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error)) return listFolder(path, Subfolders::kYes);
+    if (isDicomDirectory(path)) return listFolder(folderOf(path), Subfolders::kYes);
+    LeftOut left_out;
+    if (slicesOfFile(path, left_out).size() > 1) return listFiles({path}, path, left_out);
+    return listFolder(folderOf(path), Subfolders::kNo);
 }
 
 }  // namespace bonemill

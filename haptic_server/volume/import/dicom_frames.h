@@ -8,12 +8,14 @@
 
 #include "haptic_server/volume/import/dicom_place.h"
 #include "haptic_server/volume/import/dicom_rescale.h"
+#include "haptic_server/volume/import/dicom_traits.h"
 
 namespace bonemill {
 
 struct DicomFrame {
     DicomPlace place;
     std::optional<DicomRescale> rescale;  // nothing: its functional groups do not say it
+    DicomTraits traits;                   // what its functional groups say of it
 };
 
 // There is one of every frame, from the functional groups of an enhanced image (per frame, else shared), and

@@ -17,6 +17,7 @@ constexpr uint32_t kUndefinedLength = 0xffffffff;
 constexpr uint32_t kPixelData = 0x7fe00010;
 constexpr uint32_t kFloatPixelData = 0x7fe00008;
 constexpr uint32_t kDoublePixelData = 0x7fe00009;
+constexpr uint32_t kMediaClassUid = 0x00020002;
 constexpr uint32_t kTransferSyntaxUid = 0x00020010;
 constexpr uint32_t kItem = 0xfffee000;
 constexpr uint32_t kItemEnd = 0xfffee00d;
@@ -46,14 +47,14 @@ class Scanner {
     DicomScan scan() {
         if (!startsLikeDicom()) return {};
         try {
-            if (has_meta_ && !readMeta()) return {DicomKind::kImage, {}};  // deflated: opaque
+            if (has_meta_ && !readMeta()) return {DicomKind::kImage, {}, media_class_};  // deflated: opaque
             while (position_ < size_) skipElement(0);
         } catch (const CutShort& cut) {
-            return {DicomKind::kCutShort, cut.problem};
+            return {DicomKind::kCutShort, cut.problem, media_class_};
         } catch (const Unclear&) {
-            return {DicomKind::kImage, {}};
+            return {DicomKind::kImage, {}, media_class_};
         }
-        return {has_pixels_ ? DicomKind::kImage : DicomKind::kNoImage, {}};
+        return {has_pixels_ ? DicomKind::kImage : DicomKind::kNoImage, {}, media_class_};
     }
 
   private:
@@ -83,6 +84,7 @@ class Scanner {
         while (position_ < size_ && peekGroup() == 0x0002) {
             const Element element = readElementHead();
             checkFits(element);
+            if (element.tag == kMediaClassUid) media_class_ = text(element.length);
             if (element.tag == kTransferSyntaxUid) transfer_syntax = text(element.length);
             position_ += element.length;
         }
@@ -206,6 +208,7 @@ class Scanner {
     bool explicit_vr_ = false;
     bool big_endian_ = false;
     bool has_pixels_ = false;
+    std::string media_class_;
 };
 
 }  // namespace

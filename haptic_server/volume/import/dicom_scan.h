@@ -18,7 +18,8 @@ enum class DicomKind {
 
 struct DicomScan {
     DicomKind kind = DicomKind::kNotDicom;
-    std::string problem;  // for people, with kCutShort
+    std::string problem;      // for people, with kCutShort
+    std::string media_class;  // UID of what the file is, where its first lines say it
 };
 
 // Throws UserError when the file cannot be opened.

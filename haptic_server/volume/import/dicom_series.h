@@ -4,55 +4,43 @@
 // in the files.
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <filesystem>
-#include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "haptic_server/volume/import/dicom_rescale.h"
-#include "haptic_server/volume/import/uneven_stack.h"
+#include "haptic_server/volume/import/dicom_stack.h"
 
 namespace bonemill {
 
-struct DicomSlice {
-    std::filesystem::path path;
+// Which stack is wanted; what is empty leaves it to the rule.
+struct DicomWish {
     std::string series_uid;
-    std::string series_description;
-    std::string modality, kernel, contrast;                    // as the header says; empty: nothing
-    Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();     // centre of the first pixel
-    Eigen::Vector3d row_direction = Eigen::Vector3d::UnitX();  // along increasing column index
-    Eigen::Vector3d column_direction = Eigen::Vector3d::UnitY();
-    Eigen::Vector2d pixel_spacing_mm = Eigen::Vector2d::Ones();  // along the row, along the column
-    double axes_rounding = 0;                                    // of the file's directions (dicom_place.h)
-    std::optional<DicomRescale> rescale;                         // nothing: as the library says
-    int columns = 0;
-    int rows = 0;
-    int frame = 0;  // which image of the file
-    bool isCt() const { return modality == "CT"; }
-
-    Eigen::Vector3d normal() const { return row_direction.cross(column_direction); }
+    std::string acquisition;     // DicomStack::name, or what stands before its "/"
+    std::filesystem::path file;  // the stack that holds it goes before others of the series
 };
 
-struct DicomStack {
-    std::vector<DicomSlice> slices;  // ascending along the normal
-    double slice_spacing_mm = 0;
-    std::vector<SlicePlace> places;  // of the slices, where they are to be resampled; else empty
-    std::string left_out;            // for people: other series in the folder
-    std::string remark;              // for people: what was mended, and how far that may be off; else empty
+struct DicomChoice {
+    DicomStack stack;
+    std::string how_chosen;  // for people: where stacks of the series overlap; else empty
+    std::string left_out;    // for people: other stacks in the folder
 };
-
-// Do two slices at the same place hold the same picture?
-using IsSamePicture = std::function<bool(const DicomSlice&, const DicomSlice&)>;
 
 // Slices of one series with the same orientation, size and pixel spacing as the first of them belong
-// together. Of the groups (of `series_uid` only, when it is not empty) CT goes before all else, then the one
-// with the most slices. Copies of a slice are dropped. Slices that lie as evenly as a scanner rounds, and
-// straight above each other, are taken as they are; those of a gantry tilted by up to 45 degrees, or at other
-// distances, are to be resampled. Throws UserError, naming `folder` and the files and positions at fault.
-DicomStack chooseStack(const std::vector<DicomSlice>& slices, const std::string& series_uid,
-                       const std::string& folder, const IsSamePicture& is_same_picture);
+// together, and of those that overlap the ones of one acquisition or phase (dicom_parts.h). Series
+// come in the order of their UIDs. Stacks of a series that share a name are counted: "1/1", "1/2". There is
+// one slice at least.
+std::vector<DicomStack> stacksOf(const std::vector<DicomSlice>& slices, const IsSamePicture& is_same_picture);
+
+// What tells a stack from all others of the folder: series, and its name where it has one.
+std::string titleOf(const DicomStack& stack);
+
+bool isScout(const DicomStack& stack);  // it is no scan: a localizer, or of too few slices
+
+// Of the stacks that are wished for, proper parts of a series go before others, then CT before all else, then
+// the one with the most slices, then the lowest number of acquisition, originals before what was derived of
+// them, and bone kernels (bone_series.h). Throws UserError, naming `folder` and the files and positions at
+// fault.
+DicomChoice chooseStack(const std::vector<DicomSlice>& slices, const DicomWish& wish,
+                        const std::string& folder, const IsSamePicture& is_same_picture);
 
 }  // namespace bonemill

@@ -1,7 +1,6 @@
 #include "haptic_server/volume/import/guarded_import.h"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -24,6 +23,8 @@
 #include "haptic_server/volume/import/confine_reader.h"
 #include "haptic_server/volume/import/import_limits.h"
 #include "haptic_server/volume/import/memory_cap.h"
+#include "haptic_server/volume/import/printed_text.h"
+#include "haptic_server/volume/import/reader_pipe.h"
 #include "haptic_server/volume/import/shared_name.h"
 
 namespace bonemill {
@@ -31,86 +32,12 @@ namespace {
 
 constexpr rlim_t kMostCpuSeconds = 600;  // The largest volumes take seconds.
 
-class Pipe {
-  public:
-    Pipe() {
-        if (pipe2(ends_, O_CLOEXEC) != 0) throw UserError("cannot make a pipe; too many files are open");
-    }
-    ~Pipe() {
-        closeEnd(0);
-        closeEnd(1);
-    }
-    Pipe(const Pipe&) = delete;
-    Pipe& operator=(const Pipe&) = delete;
+// No enumeration, as no bool: the child may have been made to write anything.
+constexpr uint8_t kError = 0, kVolume = 1, kLines = 2;
 
-    int end(int which) const { return ends_[which]; }
-    void closeEnd(int which) {
-        if (ends_[which] >= 0) close(ends_[which]);
-        ends_[which] = -1;
-    }
-
-  private:
-    int ends_[2];
-};
-
-// It is the parent's end of the pipe. It waits for the child until the clock on the wall says that it
-// is too late.
-class Incoming {
-  public:
-    Incoming(int file, std::chrono::milliseconds most) : file_(file), end_(Clock::now() + most) {}
-
-    // It is false at the end of the stream, on an error, or when it is too late.
-    bool read(void* bytes, size_t count) {
-        char* next = static_cast<char*>(bytes);
-        while (count > 0) {
-            if (!waitForBytes()) return false;
-            const ssize_t done = ::read(file_, next, count);
-            if (done < 0 && errno == EINTR) continue;
-            if (done <= 0) return false;
-            next += done;
-            count -= size_t(done);
-        }
-        return true;
-    }
-    bool isLate() const noexcept { return is_late_; }
-
-  private:
-    using Clock = std::chrono::steady_clock;
-
-    bool waitForBytes() {
-        pollfd wanted{file_, POLLIN, 0};
-        for (;;) {
-            const auto left = std::chrono::ceil<std::chrono::milliseconds>(end_ - Clock::now()).count();
-            const int ready = poll(&wanted, 1, int(std::clamp<int64_t>(left, 0, kLongestPoll_ms)));
-            is_late_ = ready == 0 && left <= kLongestPoll_ms;
-            if (ready > 0 || is_late_) return !is_late_;
-            if (ready < 0 && errno != EINTR) return false;
-        }
-    }
-
-    static constexpr int64_t kLongestPoll_ms = 1'000'000;
-
-    int file_;
-    Clock::time_point end_;
-    bool is_late_ = false;
-};
-
-// It is false when the other end is gone.
-bool writeAll(int file, const void* bytes, size_t count) {
-    const char* next = static_cast<const char*>(bytes);
-    while (count > 0) {
-        const ssize_t done = ::write(file, next, count);
-        if (done < 0 && errno == EINTR) continue;
-        if (done <= 0) return false;
-        next += done;
-        count -= size_t(done);
-    }
-    return true;
-}
-
-// This goes through the pipe first; then the text (description or error), then the values.
+// This goes through the pipe first; then the text (description, lines or error), then the values.
 struct Head {
-    uint8_t is_volume;  // no bool: the child may have been made to write anything
+    uint8_t kind;
     uint8_t is_hounsfield;
     uint8_t lacks_patient_axes;
     int32_t dims[3];
@@ -141,9 +68,10 @@ bool isPlace(const Head& head) {
 
 // The child may have been damaged by what it read, and what it says is checked before memory is asked for.
 // Throws std::length_error.
-void checkHead(const Head& head) {
+void checkHead(const Head& head, uint8_t wanted) {
     if (head.text_bytes > kMostTextBytes) throw std::length_error("text");
-    if (!head.is_volume) return;
+    if (head.kind != kError && head.kind != wanted) throw std::length_error("kind");
+    if (head.kind != kVolume) return;
     uint64_t voxels = 1;
     for (const int32_t n : head.dims) {
         if (n < 1 || (voxels *= uint64_t(n)) > kMaxVoxels) throw std::length_error("dims");
@@ -196,7 +124,7 @@ bool receiveValues(Incoming& from, const Head& head, RawValues& values) {
 
 void sendVolume(int file, RawVolume raw) {
     Head head{};
-    head.is_volume = true;
+    head.kind = kVolume;
     head.is_hounsfield = raw.is_hounsfield;
     head.lacks_patient_axes = raw.lacks_patient_axes;
     std::copy_n(raw.geometry.dims.data(), 3, head.dims);
@@ -210,24 +138,52 @@ void sendVolume(int file, RawVolume raw) {
         sendValues(file, raw.values);
 }
 
-void sendError(int file, const std::string& message) {
+void sendText(int file, uint8_t kind, const std::string& text) {
     Head head{};
-    head.text_bytes = message.size();
-    writeAll(file, &head, sizeof head) && writeAll(file, message.data(), message.size());
+    head.kind = kind;
+    head.text_bytes = text.size();
+    writeAll(file, &head, sizeof head) && writeAll(file, text.data(), text.size());
 }
+
+void sendError(int file, const std::string& message) {
+    sendText(file, kError, message);
+}
+
+void sendLines(int file, const Lines& lines) {
+    std::string text;
+    for (const std::string& line : lines) text += line + '\n';
+    sendText(file, kLines, text);
+}
+
+Lines linesOf(const std::string& text) {
+    Lines lines;
+    for (size_t begin = 0; begin < text.size();) {
+        const size_t end = std::min(text.find('\n', begin), text.size());
+        lines.push_back(printable(text.substr(begin, end - begin)));
+        begin = end + 1;
+    }
+    return lines;
+}
+
+// Of these one is there.
+struct Received {
+    RawVolume volume;
+    Lines lines;
+    std::string error;
+};
 
 // It is false when the child died, or it was too late, before everything was handed over. Throws
 // std::length_error when what comes does not fit together.
-bool receive(Incoming& from, RawVolume& raw, std::string& error) {
+bool receive(Incoming& from, uint8_t wanted, Received& received) {
     Head head;
     if (!from.read(&head, sizeof head)) return false;
-    checkHead(head);
+    checkHead(head, wanted);
     std::string text(head.text_bytes, '\0');
     if (!from.read(text.data(), text.size())) return false;
-    if (!head.is_volume) {
-        error = oneLine(text.substr(0, kMostErrorBytes));
-        return true;
-    }
+    if (head.kind == kError) received.error = oneLine(text.substr(0, kMostErrorBytes));
+    if (head.kind == kLines) received.lines = linesOf(text);
+    if (head.kind != kVolume) return true;
+    RawVolume& raw = received.volume;
     raw.description = oneLine(text);
     raw.is_hounsfield = head.is_hounsfield;
     raw.lacks_patient_axes = head.lacks_patient_axes;
@@ -238,9 +194,8 @@ bool receive(Incoming& from, RawVolume& raw, std::string& error) {
     return receiveValues(from, head, raw.values);
 }
 
-}  // namespace
-
-void readAsChild(int file, const std::filesystem::path& path, const std::function<RawVolume()>& read) {
+[[noreturn]] void sendAsChild(int file, const std::filesystem::path& path,
+                              const std::function<void()>& send) {
     for (const int number : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTERM, SIGINT})
         signal(number, SIG_DFL);
     sigset_t all;
@@ -257,7 +212,7 @@ void readAsChild(int file, const std::filesystem::path& path, const std::functio
     try {
         if (const uint64_t available = availableMemory()) capMemoryForGood(available);
         confineReader();
-        sendVolume(file, read());
+        send();
     } catch (const std::bad_alloc&) {
         sendError(file, path.string() + ": there is not enough memory to read it; crop or resample it");
     } catch (const UserError& error) {
@@ -267,8 +222,6 @@ void readAsChild(int file, const std::filesystem::path& path, const std::functio
     }
     _exit(0);  // no destructor of the parent's objects may run twice
 }
-
-namespace {
 
 std::string secondsText(std::chrono::milliseconds time) {
     char text[32];
@@ -290,32 +243,19 @@ int endOf(pid_t child) {
     return status;
 }
 
-}  // namespace
-
-RawVolume importGuarded(const std::filesystem::path& path, const std::function<RawVolume()>& read,
-                        std::chrono::milliseconds most) {
-    const auto start = [&](int file, int) {
-        std::fflush(nullptr);  // or the child might write what is still buffered a second time
-        const pid_t child = fork();
-        if (child == 0) readAsChild(file, path, read);
-        return child;
-    };
-    return importFrom(path, start, most);
-}
-
-RawVolume importFrom(const std::filesystem::path& path, const StartReader& start,
-                     std::chrono::milliseconds most) {
+Received receiveFrom(const std::filesystem::path& path, const StartReader& start,
+                     std::chrono::milliseconds most, uint8_t wanted) {
     const SharedName name;
     Pipe pipe;
     const pid_t child = start(pipe.end(1), name.file());
     if (child < 0) throw UserError("cannot start a process to read " + path.string() + "; memory is short");
     pipe.closeEnd(1);
     Incoming incoming(pipe.end(0), most);
-    RawVolume raw;
-    std::string error;
+    Received received;
+    std::string& error = received.error;
     bool is_complete = false;
     try {
-        is_complete = receive(incoming, raw, error);
+        is_complete = receive(incoming, wanted, received);
     } catch (const std::bad_alloc&) {
         error = path.string() + ": there is not enough memory to hold it; crop or resample it";
     } catch (const std::length_error&) {
@@ -335,7 +275,48 @@ RawVolume importFrom(const std::filesystem::path& path, const StartReader& start
         throw UserError(nameOfFileBeingRead(path) + ": the library that reads such files gave up (" +
                         (WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "it ended early") +
                         "); the file is damaged");
-    return raw;
+    return received;
+}
+
+// The child is `read` in a copy of this process.
+StartReader forkOf(const std::function<void(int pipe)>& read) {
+    return [&read](int pipe, int) {
+        std::fflush(nullptr);  // or the child might write what is still buffered a second time
+        const pid_t child = fork();
+        if (child == 0) read(pipe);
+        return child;
+    };
+}
+
+}  // namespace
+
+void readAsChild(int file, const std::filesystem::path& path, const std::function<RawVolume()>& read) {
+    sendAsChild(file, path, [&] { sendVolume(file, read()); });
+}
+
+void readLinesAsChild(int file, const std::filesystem::path& path, const std::function<Lines()>& read) {
+    sendAsChild(file, path, [&] { sendLines(file, read()); });
+}
+
+RawVolume importFrom(const std::filesystem::path& path, const StartReader& start,
+                     std::chrono::milliseconds most) {
+    return receiveFrom(path, start, most, kVolume).volume;
+}
+
+Lines linesFrom(const std::filesystem::path& path, const StartReader& start, std::chrono::milliseconds most) {
+    return receiveFrom(path, start, most, kLines).lines;
+}
+
+RawVolume importGuarded(const std::filesystem::path& path, const std::function<RawVolume()>& read,
+                        std::chrono::milliseconds most) {
+    const std::function<void(int)> as_child = [&](int pipe) { readAsChild(pipe, path, read); };
+    return importFrom(path, forkOf(as_child), most);
+}
+
+Lines linesGuarded(const std::filesystem::path& path, const std::function<Lines()>& read,
+                   std::chrono::milliseconds most) {
+    const std::function<void(int)> as_child = [&](int pipe) { readLinesAsChild(pipe, path, read); };
+    return linesFrom(path, forkOf(as_child), most);
 }
 
 }  // namespace bonemill

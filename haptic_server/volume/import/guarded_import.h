@@ -13,6 +13,8 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "haptic_server/volume/raw_volume.h"
 
@@ -36,5 +38,14 @@ RawVolume importFrom(const std::filesystem::path& path, const StartReader& start
 // For the child: hands over what `read` returns, or why not, and ends the process.
 [[noreturn]] void readAsChild(int pipe, const std::filesystem::path& path,
                               const std::function<RawVolume()>& read);
+
+// The same for lines of text instead of a volume. Whatever the reader wrote, they are printable ASCII.
+using Lines = std::vector<std::string>;
+Lines linesGuarded(const std::filesystem::path& path, const std::function<Lines()>& read,
+                   std::chrono::milliseconds most = kMostImportTime);
+Lines linesFrom(const std::filesystem::path& path, const StartReader& start,
+                std::chrono::milliseconds most = kMostImportTime);
+[[noreturn]] void readLinesAsChild(int pipe, const std::filesystem::path& path,
+                                   const std::function<Lines()>& read);
 
 }  // namespace bonemill

@@ -49,13 +49,27 @@ bool hasReaderProgram() {
 }
 
 RawVolume importByProgram(const std::filesystem::path& path, const ImportOptions& options) {
-    std::vector<std::string> words{reader_program, kReadVolumeWord, path.string(), options.series_uid};
+    std::vector<std::string> words{reader_program, kReadVolumeWord, path.string(), options.series_uid,
+                                   options.acquisition};
     return importFrom(path, [&](int pipe, int name) { return spawnReader(words, pipe, name); });
 }
 
-void runReaderProgram(const std::filesystem::path& path, const ImportOptions& options) {
-    shareNameOfFileBeingRead(kName);
-    readAsChild(kPipe, path, [&] { return importVolumeHere(path, options); });
+std::vector<std::string> listByProgram(const std::filesystem::path& path) {
+    std::vector<std::string> words{reader_program, kReadSeriesWord, path.string()};
+    return linesFrom(path, [&](int pipe, int name) { return spawnReader(words, pipe, name); });
+}
+
+// A path may look like an option, so that no parser of options sees it.
+void runReaderIfCalled(int argc, char** argv) {
+    const std::vector<std::string> words(argv, argv + argc);
+    if (argc == 5 && words[1] == kReadVolumeWord) {
+        shareNameOfFileBeingRead(kName);
+        readAsChild(kPipe, words[2], [&] { return importVolumeHere(words[2], {words[3], words[4]}); });
+    }
+    if (argc == 3 && words[1] == kReadSeriesWord) {
+        shareNameOfFileBeingRead(kName);
+        readLinesAsChild(kPipe, words[2], [&] { return listSeriesHere(words[2]); });
+    }
 }
 
 }  // namespace bonemill

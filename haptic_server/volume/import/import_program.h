@@ -5,21 +5,27 @@
 // copies no page table of locked memory for it, which the tick would feel.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "haptic_server/volume/import/import_volume.h"
 
 namespace bonemill {
 
-// The word behind the program's name, and before the path and the series.
-inline constexpr char kReadVolumeWord[] = "read-volume";
+// These words stand behind the program's name, and before the path.
+inline constexpr char kReadVolumeWord[] = "read-volume";  // then the series and the acquisition
+inline constexpr char kReadSeriesWord[] = "read-series";
 
-// From now on importVolume() starts this program as a reader: `haptic_server`'s main says it first of all.
+// Runs the reader's own end if the words of the command line call it, and does not return then.
+void runReaderIfCalled(int argc, char** argv);
+
+// From now on importVolume() and listSeries() start this program as a reader: `haptic_server`'s main says it
+// first of all.
 void setReaderProgram(const std::string& program);
 bool hasReaderProgram();
 
-// Does what importVolume() does. Throws UserError.
+// Do what importVolume() and listSeries() do. Throw UserError.
 RawVolume importByProgram(const std::filesystem::path& path, const ImportOptions& options);
-
-// The reader's own end: hands the volume to the process that has started it, and ends.
-[[noreturn]] void runReaderProgram(const std::filesystem::path& path, const ImportOptions& options);
+std::vector<std::string> listByProgram(const std::filesystem::path& path);
 
 }  // namespace bonemill

@@ -1,6 +1,10 @@
 #include "haptic_server/volume/import/import_volume.h"
 
 #include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <fstream>
+#include <string_view>
 
 #include "common/require_file.h"
 #include "common/user_error.h"
@@ -30,19 +34,52 @@ bool isPhantom(const std::filesystem::path& path) {
     return folder.filename() == "data" && folder.parent_path().filename() == "build";
 }
 
-RawVolume importByType(const std::filesystem::path& path, const ImportOptions& options) {
+void requireThere(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::exists(path, error))
         throw UserError(path.string() + ": no such file or folder; " +
                         (isPhantom(path) ? "deploy/make-phantoms makes it" : "check the path of the volume"));
     requireFile(path);
-    if (std::filesystem::is_directory(path, error)) return importDicomFolder(path, options.series_uid);
+}
+
+bool isFolder(const std::filesystem::path& path) {
+    std::error_code error;
+    return std::filesystem::is_directory(path, error);
+}
+
+bool isZip(const std::filesystem::path& path) {
+    char head[4] = {};
+    std::ifstream(path, std::ios::binary).read(head, sizeof head);
+    return std::string_view(head, sizeof head) == std::string_view("PK\3\4", 4);
+}
+
+// As a shell takes it.
+std::string quoted(const std::string& word) {
+    const auto is_plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("/._-+,:@", c); };
+    if (std::ranges::all_of(word, is_plain)) return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
+void refuseZip(const std::filesystem::path& path, const std::string& name) {
+    if (endsWith(name, ".zip") || isZip(path))
+        throw UserError(path.string() + ": is a zip archive; unpack it first: unzip " +
+                        quoted(path.string()) + " -d DIR, and give DIR");
+}
+
+RawVolume importByType(const std::filesystem::path& path, const ImportOptions& options) {
+    requireThere(path);
+    const DicomWish wish{options.series_uid, options.acquisition, {}};
+    if (isFolder(path)) return importDicomFolder(path, wish);
     const std::string name = lowerCase(path.filename().string());
     if (endsWith(name, ".nrrd") || endsWith(name, ".nhdr")) return importNrrd(path);
     if (endsWith(name, ".nii") || endsWith(name, ".nii.gz")) return importNifti(path);
     if (endsWith(name, ".mha") || endsWith(name, ".mhd")) return importMetaImage(path);
     if (endsWith(name, ".inv3")) return importInv3(path);
-    if (endsWith(name, ".dcm")) return importDicomFile(path);
+    refuseZip(path, name);
+    if (isDicomDirectory(path)) return importDicomDirectory(path, wish);
+    if (endsWith(name, ".dcm") || isDicom(path)) return importDicomFile(path, wish);
     throw UserError(
         path.string() +
         ": is of no known type; give a folder with a DICOM series or a file .nrrd, .nhdr, .nii, .nii.gz, "
@@ -65,6 +102,19 @@ RawVolume importVolumeHere(const std::filesystem::path& path, const ImportOption
     RawVolume raw = importByType(path, options);
     describeNonFinite(raw);
     return raw;
+}
+
+std::vector<std::string> listSeries(const std::filesystem::path& path) {
+    if (hasReaderProgram()) return listByProgram(path);
+    return linesGuarded(path, [&] { return listSeriesHere(path); });
+}
+
+std::vector<std::string> listSeriesHere(const std::filesystem::path& path) {
+    requireThere(path);
+    if (!isFolder(path)) refuseZip(path, lowerCase(path.filename().string()));
+    if (!isFolder(path) && !isDicomDirectory(path) && !isDicom(path))
+        throw UserError(path.string() + ": is no DICOM file; give a folder with DICOM series");
+    return listDicomSeries(path);
 }
 
 }  // namespace bonemill

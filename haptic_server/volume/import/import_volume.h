@@ -5,7 +5,7 @@
 //   .nii .nii.gz          NIfTI-1
 //   .mha .mhd             MetaImage
 //   .inv3                 InVesalius project
-//   .dcm                  one multi-frame DICOM file
+//   .dcm, any DICOM file  a multi-frame file; of a single slice its series, of a DICOMDIR its folder
 //
 // Lengths in m, world frame W = LPS of the file (x to the patient's left, y back, z up). Start-up
 // only: allocates, and starts a process that reads (guarded_import.h, import_program.h); not RT-safe, not for
@@ -14,13 +14,15 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "haptic_server/volume/raw_volume.h"
 
 namespace bonemill {
 
 struct ImportOptions {
-    std::string series_uid;  // which DICOM series of the folder; empty: the one with the most slices
+    std::string series_uid = {};   // which DICOM series of the folder; empty: by rule (dicom_series.h)
+    std::string acquisition = {};  // which of its stacks, as listSeries() names them; empty: by rule
 };
 
 // Throws UserError with one message: what is wrong, in which file, what to do.
@@ -28,5 +30,10 @@ RawVolume importVolume(const std::filesystem::path& path, const ImportOptions& o
 
 // Does the same in this process: for debuggers and sanitizers. A damaged DICOM file may abort it.
 RawVolume importVolumeHere(const std::filesystem::path& path, const ImportOptions& options = {});
+
+// A table of the DICOM stacks in a folder, and which of them to take for bone: printable lines. Throws
+// UserError.
+std::vector<std::string> listSeries(const std::filesystem::path& path);
+std::vector<std::string> listSeriesHere(const std::filesystem::path& path);
 
 }  // namespace bonemill

@@ -4,7 +4,6 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstring>
 
 #include "haptic_server/volume/import/file_being_read.h"
@@ -58,8 +57,14 @@ void noteFileBeingRead(const std::filesystem::path& file) noexcept {
 }
 
 std::string oneLine(std::string text) {
-    std::ranges::replace_if(
-        text, [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
+    for (size_t n = 0; n < text.size(); ++n) {
+        const auto c = static_cast<unsigned char>(text[n]);
+        const unsigned char next = n + 1 < text.size() ? static_cast<unsigned char>(text[n + 1]) : 0;
+        const bool is_control = c < ' ' || c == 0x7f;
+        const bool is_late_control = c == 0xc2 && next >= 0x80 && next < 0xa0;  // U+0080 to U+009F in UTF-8
+        if (is_control || is_late_control) text[n] = ' ';
+        if (is_late_control) text[n + 1] = ' ';
+    }
     return text;
 }
 

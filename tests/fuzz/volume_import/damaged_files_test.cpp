@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <random>
@@ -195,6 +196,28 @@ DicomImage smallSlice(int k) {
 TEST_F(DamagedFiles, dicomSlice) {
     for (int k = 0; k < 3; ++k) writeDicomFile(folder_ / ("slice" + std::to_string(k)), smallSlice(k));
     fuzz(importVolume, "slice1", "", kDicomShare);
+}
+
+TEST_F(DamagedFiles, dicomSliceThatNamesItsSeries) {
+    for (int k = 0; k < 5; ++k) writeDicomFile(folder_ / ("slice" + std::to_string(k)), smallSlice(k));
+    fuzz(importVolume, "slice1", "slice1", 4 * kDicomShare);
+}
+
+RawVolume listOnly(const std::filesystem::path& path, const ImportOptions&) {
+    for (const std::string& line : listSeries(path))
+        EXPECT_TRUE(std::ranges::all_of(line, [](char c) { return c >= ' ' && c <= '~'; })) << line;
+    return {};
+}
+
+TEST_F(DamagedFiles, dicomListed) {
+    for (int k = 0; k < 5; ++k) {
+        DicomImage image = smallSlice(k);
+        image.series_description = "description";
+        image.image_type = "ORIGINAL\\PRIMARY";
+        image.kernel = "B70f";
+        writeDicomFile(folder_ / ("slice" + std::to_string(k)), image);
+    }
+    fuzz(listOnly, "slice1", "", 4 * kDicomShare);
 }
 
 TEST_F(DamagedFiles, dicomMultiFrame) {

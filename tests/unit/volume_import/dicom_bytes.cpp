@@ -1,6 +1,7 @@
 #include "tests/unit/volume_import/dicom_bytes.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "tests/unit/volume_import/volume_files.h"
 
@@ -24,6 +25,17 @@ std::string element(uint32_t tag, const std::string& vr, std::string value) {
 
 std::string shortElement(uint32_t tag, int value) {
     return element(tag, "US", number(uint32_t(value), 2));
+}
+
+// Nothing of an empty text.
+std::string optionalElement(uint32_t tag, const std::string& vr, const std::string& value) {
+    return value.empty() ? "" : element(tag, vr, value);
+}
+
+std::string bytesOf(const std::vector<double>& numbers) {
+    std::string bytes(numbers.size() * sizeof(double), '\0');
+    if (!numbers.empty()) std::memcpy(bytes.data(), numbers.data(), bytes.size());
+    return bytes;
 }
 
 std::string item(const std::string& content) {
@@ -74,8 +86,13 @@ std::string functionalGroups(const DicomImage& image) {
         valueTransformation(image.shared_rescale);
     std::string frames;
     for (size_t f = 0; f < image.frame_positions.size(); ++f)
-        frames += item(element(0x00209113, "SQ", item(element(0x00200032, "DS", image.frame_positions[f]))) +
-                       (image.frame_rescales.empty() ? "" : valueTransformation(image.frame_rescales[f])));
+        frames += item(
+            (image.frame_phases.empty()
+                 ? ""
+                 : element(0x00209111, "SQ",
+                           item(element(0x00209128, "UL", number(uint32_t(image.frame_phases[f]), 4))))) +
+            element(0x00209113, "SQ", item(element(0x00200032, "DS", image.frame_positions[f]))) +
+            (image.frame_rescales.empty() ? "" : valueTransformation(image.frame_rescales[f])));
     return element(0x52009229, "SQ", item(shared)) + element(0x52009230, "SQ", frames);
 }
 
@@ -83,12 +100,19 @@ std::string functionalGroups(const DicomImage& image) {
 
 std::string dicomBytes(const DicomImage& image) {
     const bool is_enhanced = !image.frame_positions.empty();
-    std::string bytes = meta(image) + element(0x00080016, "UI", sopClass(image)) +
-                        element(0x00080018, "UI", image.sop_uid) + element(0x00080060, "CS", image.modality) +
-                        element(0x00100010, "PN", "TEST^FILE") + element(0x0020000d, "UI", "1.2.3") +
-                        element(0x0020000e, "UI", image.series_uid);
+    std::string bytes =
+        meta(image) + optionalElement(0x00080008, "CS", image.image_type) +
+        element(0x00080016, "UI", sopClass(image)) + element(0x00080018, "UI", image.sop_uid) +
+        optionalElement(0x00080032, "TM", image.acquisition_time) +
+        optionalElement(0x00080033, "TM", image.content_time) + element(0x00080060, "CS", image.modality) +
+        optionalElement(0x0008103e, "LO", image.series_description) + element(0x00100010, "PN", "TEST^FILE") +
+        optionalElement(0x00180010, "LO", image.contrast) + optionalElement(0x00181210, "SH", image.kernel) +
+        optionalElement(0x00189087, "FD", bytesOf(image.b_value)) + element(0x0020000d, "UI", "1.2.3") +
+        element(0x0020000e, "UI", image.series_uid) +
+        optionalElement(0x00200012, "IS", image.acquisition_number);
     if (!is_enhanced && !image.position.empty())
         bytes += element(0x00200032, "DS", image.position) + element(0x00200037, "DS", image.orientation);
+    bytes += optionalElement(0x00200100, "IS", image.temporal_position);
     bytes += shortElement(0x00280002, image.samples_per_pixel) + element(0x00280004, "CS", image.photometric);
     if (image.samples_per_pixel > 1) bytes += shortElement(0x00280006, 0);
     if (is_enhanced) bytes += element(0x00280008, "IS", std::to_string(image.frame_positions.size()));

@@ -12,6 +12,10 @@ struct DicomImage {
     std::string series_uid = "1.2.3.4";
     std::string sop_uid = "1.2.3.4.1";
     std::string modality = "CT";
+    // None of these is written when it is empty.
+    std::string series_description, kernel, contrast, image_type;
+    std::string acquisition_number, temporal_position, acquisition_time, content_time;
+    std::vector<double> b_value;       // one
     std::string sop_class;             // empty: CT, Enhanced CT or Secondary Capture, as the rest says
     std::string position = "0\\0\\0";  // empty: no Image Position
     std::string orientation = "1\\0\\0\\0\\1\\0";
@@ -26,6 +30,7 @@ struct DicomImage {
     std::vector<int16_t> pixels;  // stored values; 8-bit files keep their low bytes
     bool has_pixels = true;
     std::vector<std::string> frame_positions;  // not empty: an enhanced multi-frame file
+    std::vector<int> frame_phases;             // temporal position of each frame; empty: none says it
     std::string shared_rescale;                // of all frames, as below
     std::vector<std::string> frame_rescales;   // slope|intercept of each frame; empty: none says its own
 };

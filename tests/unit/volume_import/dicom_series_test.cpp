@@ -24,8 +24,12 @@ std::vector<DicomSlice> stackOf(int count, double step_mm) {
     return slices;
 }
 
+DicomChoice choiceOf(const std::vector<DicomSlice>& slices) {
+    return chooseStack(slices, {}, "f", [](const auto&, const auto&) { return true; });
+}
+
 DicomStack chosen(const std::vector<DicomSlice>& slices) {
-    return chooseStack(slices, "", "f", [](const auto&, const auto&) { return true; });
+    return choiceOf(slices).stack;
 }
 
 TEST(DicomSeries, spacingIsTheMeanDistance) {
@@ -46,9 +50,9 @@ TEST(DicomSeries, scoutOfTheSameSeriesIsLeftOut) {
     scout = slices[1];
     scout.columns = 16;
     slices.push_back(scout);
-    const DicomStack stack = chosen(slices);
-    EXPECT_EQ(stack.slices.size(), 5u);
-    EXPECT_NE(stack.left_out.find("1 slices 16x8"), std::string::npos) << stack.left_out;
+    const DicomChoice choice = choiceOf(slices);
+    EXPECT_EQ(choice.stack.slices.size(), 5u);
+    EXPECT_NE(choice.left_out.find("1 slices 16x8"), std::string::npos) << choice.left_out;
 }
 
 TEST(DicomSeries, PositionsRoundedToATenthAreTakenAsEven) {
@@ -85,9 +89,9 @@ TEST(DicomSeries, CtGoesBeforeALargerSeriesOfAnotherKind) {
         slice.series_uid = "9.9", slice.modality = "MR";
         slices.push_back(slice);
     }
-    const DicomStack stack = chosen(slices);
-    EXPECT_EQ(stack.slices.size(), 6u);
-    EXPECT_NE(stack.left_out.find("30 slices 8x8 of MR series 9.9"), std::string::npos) << stack.left_out;
+    const DicomChoice choice = choiceOf(slices);
+    EXPECT_EQ(choice.stack.slices.size(), 6u);
+    EXPECT_NE(choice.left_out.find("30 slices 8x8 of MR series 9.9"), std::string::npos) << choice.left_out;
 }
 
 // 5.0499 and 5.0501 lie on both sides of where rounding would part them.
@@ -129,6 +133,65 @@ TEST(DicomSeries, sidewaysShiftIsRefused) {
     expectUserError([&] { chosen(slices); }, {"slice3", "sideways"});
 }
 
+TEST(DicomSeries, theShiftedSliceIsNamedWhereverItIs) {
+    for (const size_t shifted : {0u, 3u, 9u}) {
+        auto slices = stackOf(10, 1);
+        slices[shifted].position_mm.x() += 0.5;
+        expectUserError([&] { chosen(slices); }, {"f: slice" + std::to_string(shifted) + " is shifted"});
+    }
+}
+
+void turn(DicomSlice& slice, double angle_deg) {
+    const Eigen::Vector3d middle_mm = slice.middle_mm();
+    const Eigen::Matrix3d R =
+        Eigen::AngleAxisd(angle_deg * M_PI / 180, Eigen::Vector3d::UnitX()).toRotationMatrix();
+    slice.row_direction = R * slice.row_direction;
+    slice.column_direction = R * slice.column_direction;
+    slice.position_mm = middle_mm + R * (slice.position_mm - middle_mm);
+}
+
+TEST(DicomSeries, aRotatedSliceIsNotSaidToBeMissing) {
+    auto slices = stackOf(12, 1);
+    for (DicomSlice& slice : slices) slice.columns = slice.rows = 400;
+    turn(slices[4], 2.5);
+    const DicomStack stack = chosen(slices);
+    EXPECT_EQ(stack.slices.size(), 11u);
+    EXPECT_NE(stack.remark.find("slice4 is rotated by 2.5 degrees"), std::string::npos) << stack.remark;
+    turn(slices[5], 2.5), turn(slices[6], 2.5);
+    try {
+        chosen(slices);
+        ADD_FAILURE() << "no error";
+    } catch (const UserError& error) {
+        const std::string message = error.what();
+        EXPECT_NE(message.find("slice5 is rotated by 2.5 degrees"), std::string::npos) << message;
+        EXPECT_EQ(message.find("missing"), std::string::npos) << message;
+    }
+    slices.erase(slices.begin() + 7);
+    expectUserError([&] { chosen(slices); }, {"slice4 is rotated", "and 1 slices are missing"});
+}
+
+TEST(DicomSeries, ASliceThatIsUpsideDownIsNotSaidToBeMissing) {
+    auto slices = stackOf(12, 1);
+    turn(slices[4], 180);
+    EXPECT_NE(chosen(slices).remark.find("slice4 is rotated by 180 degrees"), std::string::npos)
+        << chosen(slices).remark;
+}
+
+TEST(DicomSeries, ASliceOfAnotherSizeIsNotSaidToBeMissing) {
+    auto slices = stackOf(12, 1);
+    slices[4].columns = 16;
+    EXPECT_NE(chosen(slices).remark.find("slice4 has 16x8 pixels, the others 8x8"), std::string::npos);
+}
+
+TEST(DicomSeries, tiltAndGapAreSaidTogether) {
+    auto slices = stackOf(12, 1);
+    for (size_t s = 0; s < slices.size(); ++s) slices[s].position_mm.y() += 0.2 * double(s);
+    slices.erase(slices.begin() + 4, slices.begin() + 8);
+    expectUserError([&] { chosen(slices); }, {"4 slices are missing", "tilted by 11.31 degrees"});
+    for (DicomSlice& slice : slices) slice.position_mm.y() *= 20;
+    expectUserError([&] { chosen(slices); }, {"4 slices are missing", "degrees off their normal"});
+}
+
 TEST(DicomSeries, framesOfOneFileAreNamed) {
     auto slices = stackOf(4, 1);
     for (int k = 0; k < 4; ++k) {
@@ -136,7 +199,7 @@ TEST(DicomSeries, framesOfOneFileAreNamed) {
         slices[size_t(k)].frame = k;
     }
     slices[3].position_mm = slices[2].position_mm;
-    expectUserError([&] { chooseStack(slices, "", "f", [](const auto&, const auto&) { return false; }); },
+    expectUserError([&] { chooseStack(slices, {}, "f", [](const auto&, const auto&) { return false; }); },
                     {"multi.dcm frame 3", "multi.dcm frame 4", "several acquisitions"});
     EXPECT_EQ(chosen(slices).slices.size(), 3u) << "a copy";
 }

@@ -151,8 +151,15 @@ TEST(GuardedImport, theSharedNameCannotBeShrunkAndIsReadNoFurther) {
 }
 
 TEST(GuardedImport, whatTheReaderSaysStaysOneLine) {
-    expectUserError([] { importGuarded("file", []() -> RawVolume { throw UserError("one\ntwo\x1b[2J"); }); },
-                    {"one two [2J"});
+    expectUserError(
+        [] {
+            importGuarded("file", []() -> RawVolume {
+                throw UserError(
+                    "one\ntwo\x1b[2J\xc2\x9b"
+                    "2J\xc3\xa4");
+            });
+        },
+        {"one two [2J  2J\xc3\xa4"});
     const auto readAndDie = []() -> RawVolume {
         noteFileBeingRead("folder/a\nb");
         std::abort();
