@@ -167,7 +167,8 @@ void addCaseOptions(CLI::App& app, CaseRequest& request) {
     app.add_option("--labels", request.labels, "label map, on any grid");
     app.add_option(
         "--label", request.label_words,
-        "NUMBER=NAME of a structure in it, with :protected or :target behind it, may be given again");
+        "NUMBER=NAME of a structure in it, or the NAME of a segment that its file names, with :protected or "
+        ":target behind it, may be given again");
     app.add_option("--tools", request.tools, "scene text with the tools, as those in deploy/tools")
         ->type_name("FILE");
 }

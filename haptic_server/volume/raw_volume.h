@@ -6,6 +6,7 @@
 
 #include "common/geometry/pose.h"
 #include "haptic_server/volume/raw_values.h"
+#include "haptic_server/volume/segments.h"
 
 namespace bonemill {
 
@@ -25,7 +26,8 @@ struct RawVolume {
     std::string description;     // for people: format, series, what was repaired
     bool is_hounsfield = false;  // values are calibrated HU (CT with rescale, air near -1000)
     bool lacks_patient_axes =
-        false;  // the file does not say how the patient lay: W is LPS by assumption only
+        false;               // the file does not say how the patient lay: W is LPS by assumption only
+    Segments segments = {};  // of a label map whose file names them
 };
 
 }  // namespace bonemill

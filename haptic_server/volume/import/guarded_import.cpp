@@ -24,6 +24,7 @@
 #include "haptic_server/volume/import/confine_reader.h"
 #include "haptic_server/volume/import/import_limits.h"
 #include "haptic_server/volume/import/memory_cap.h"
+#include "haptic_server/volume/import/segment_text.h"
 #include "haptic_server/volume/import/shared_name.h"
 
 namespace bonemill {
@@ -108,7 +109,7 @@ bool writeAll(int file, const void* bytes, size_t count) {
     return true;
 }
 
-// This goes through the pipe first; then the text (description or error), then the values.
+// This goes through the pipe first; then the text (description or error), the segments, the values.
 struct Head {
     uint8_t is_volume;  // no bool: the child may have been made to write anything
     uint8_t is_hounsfield;
@@ -118,6 +119,7 @@ struct Head {
     double position[3];
     double rotation[4];  // Eigen's order
     uint64_t text_bytes;
+    uint64_t segments_bytes;
     uint64_t values;
     uint64_t type;  // RawValues::type()
 };
@@ -142,7 +144,8 @@ bool isPlace(const Head& head) {
 // The child may have been damaged by what it read, and what it says is checked before memory is asked for.
 // Throws std::length_error.
 void checkHead(const Head& head) {
-    if (head.text_bytes > kMostTextBytes) throw std::length_error("text");
+    if (head.text_bytes > kMostTextBytes || head.segments_bytes > kMostTextBytes)
+        throw std::length_error("text");
     if (!head.is_volume) return;
     uint64_t voxels = 1;
     for (const int32_t n : head.dims) {
@@ -203,11 +206,13 @@ void sendVolume(int file, RawVolume raw) {
     std::copy_n(raw.geometry.spacing.data(), 3, head.spacing);
     std::copy_n(raw.geometry.X_WV.position.data(), 3, head.position);
     std::copy_n(raw.geometry.X_WV.rotation.coeffs().data(), 4, head.rotation);
+    const std::string segments = textOfSegments(raw.segments);
     head.text_bytes = raw.description.size();
+    head.segments_bytes = segments.size();
     head.values = raw.values.size();
     head.type = raw.values.type();
     writeAll(file, &head, sizeof head) && writeAll(file, raw.description.data(), raw.description.size()) &&
-        sendValues(file, raw.values);
+        writeAll(file, segments.data(), segments.size()) && sendValues(file, raw.values);
 }
 
 void sendError(int file, const std::string& message) {
@@ -229,6 +234,9 @@ bool receive(Incoming& from, RawVolume& raw, std::string& error) {
         return true;
     }
     raw.description = oneLine(text);
+    text.assign(head.segments_bytes, '\0');
+    if (!from.read(text.data(), text.size())) return false;
+    raw.segments = segmentsFromText(text);
     raw.is_hounsfield = head.is_hounsfield;
     raw.lacks_patient_axes = head.lacks_patient_axes;
     raw.geometry.dims = Eigen::Map<const Eigen::Vector3i>(head.dims);
