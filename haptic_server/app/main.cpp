@@ -21,6 +21,7 @@
 #include "haptic_server/replay/replay_server.h"
 #include "haptic_server/session/forget_person.h"
 #include "haptic_server/session/server.h"
+#include "haptic_server/volume/import/import_options_text.h"
 #include "haptic_server/volume/import/import_program.h"
 
 namespace bonemill {
@@ -225,7 +226,8 @@ int serveLive(const Options& options) {
 
 int serve(int argc, char** argv) {
     // A path may look like an option, so that no parser of options sees it.
-    if (argc == 4 && std::string(argv[1]) == kReadVolumeWord) runReaderProgram(argv[2], {argv[3]});
+    if (argc == 4 && std::string(argv[1]) == kReadVolumeWord)
+        runReaderProgram(argv[2], optionsFromText(argv[3]));
     setReaderProgram("/proc/self/exe");
     CLI::App app("Haptic bone-milling server", "haptic_server");
     Options options;

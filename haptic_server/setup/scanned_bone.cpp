@@ -19,6 +19,13 @@ DensityWindow windowOf(const scene::Volume& volume) {
     return window;
 }
 
+ImportOptions optionsOf(const scene::Volume& volume) {
+    ImportOptions options{volume.series_uid()};
+    if (volume.has_surface_voxel_mm()) options.surface_voxel_mm = volume.surface_voxel_mm();
+    options.surface_value = volume.surface_value();
+    return options;
+}
+
 struct Scan {
     RawVolume raw;
     DensityMapping mapping;
@@ -51,7 +58,7 @@ ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
 
 ScannedBone readBone(const LoadedScene& loaded) {
     const scene::Volume& scene = loaded.scene.volume();
-    Scan scan{importVolume(resolvePath(loaded, scene.path()), {scene.series_uid()}), {}, {}};
+    Scan scan{importVolume(resolvePath(loaded, scene.path()), optionsOf(scene)), {}, {}};
     scan.remarks.push_back(scan.raw.description);
     scan.mapping = chooseMapping(scan.raw, windowOf(scene));
     if (scan.mapping.proposed)

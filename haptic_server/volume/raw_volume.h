@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "common/geometry/pose.h"
@@ -26,8 +27,9 @@ struct RawVolume {
     std::string description;     // for people: format, series, what was repaired
     bool is_hounsfield = false;  // values are calibrated HU (CT with rescale, air near -1000)
     bool lacks_patient_axes =
-        false;               // the file does not say how the patient lay: W is LPS by assumption only
-    Segments segments = {};  // of a label map whose file names them
+        false;  // the file does not say how the patient lay: W is LPS by assumption only
+    std::optional<double> surface_value = {};  // the values were made of a surface, which has this one
+    Segments segments = {};                    // of a label map whose file names them
 };
 
 }  // namespace bonemill

@@ -118,6 +118,8 @@ struct Head {
     double spacing[3];
     double position[3];
     double rotation[4];  // Eigen's order
+    uint8_t has_surface_value;
+    double surface_value;
     uint64_t text_bytes;
     uint64_t segments_bytes;
     uint64_t values;
@@ -153,7 +155,7 @@ void checkHead(const Head& head) {
     }
     if (head.values != voxels || head.type >= std::variant_size_v<RawValues::Samples>)
         throw std::length_error("values");
-    if (!isPlace(head)) throw std::length_error("place");
+    if (!isPlace(head) || !std::isfinite(head.surface_value)) throw std::length_error("place");
 }
 
 constexpr size_t kChunk = size_t(1) << 20;  // values
@@ -206,6 +208,8 @@ void sendVolume(int file, RawVolume raw) {
     std::copy_n(raw.geometry.spacing.data(), 3, head.spacing);
     std::copy_n(raw.geometry.X_WV.position.data(), 3, head.position);
     std::copy_n(raw.geometry.X_WV.rotation.coeffs().data(), 4, head.rotation);
+    head.has_surface_value = raw.surface_value.has_value();
+    head.surface_value = raw.surface_value.value_or(0);
     const std::string segments = textOfSegments(raw.segments);
     head.text_bytes = raw.description.size();
     head.segments_bytes = segments.size();
@@ -239,6 +243,7 @@ bool receive(Incoming& from, RawVolume& raw, std::string& error) {
     raw.segments = segmentsFromText(text);
     raw.is_hounsfield = head.is_hounsfield;
     raw.lacks_patient_axes = head.lacks_patient_axes;
+    if (head.has_surface_value) raw.surface_value = head.surface_value;
     raw.geometry.dims = Eigen::Map<const Eigen::Vector3i>(head.dims);
     raw.geometry.spacing = Eigen::Map<const Eigen::Vector3d>(head.spacing);
     raw.geometry.X_WV.position = Eigen::Map<const Eigen::Vector3d>(head.position);

@@ -8,6 +8,7 @@
 
 #include "common/user_error.h"
 #include "haptic_server/volume/import/guarded_import.h"
+#include "haptic_server/volume/import/import_options_text.h"
 #include "haptic_server/volume/import/shared_name.h"
 
 namespace bonemill {
@@ -49,7 +50,7 @@ bool hasReaderProgram() {
 }
 
 RawVolume importByProgram(const std::filesystem::path& path, const ImportOptions& options) {
-    std::vector<std::string> words{reader_program, kReadVolumeWord, path.string(), options.series_uid};
+    std::vector<std::string> words{reader_program, kReadVolumeWord, path.string(), textOfOptions(options)};
     return importFrom(path, [&](int pipe, int name) { return spawnReader(words, pipe, name); });
 }
 

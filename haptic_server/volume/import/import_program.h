@@ -9,7 +9,7 @@
 
 namespace bonemill {
 
-// The word behind the program's name, and before the path and the series.
+// The word behind the program's name, and before the path and the options (import_options_text.h).
 inline constexpr char kReadVolumeWord[] = "read-volume";
 
 // From now on importVolume() starts this program as a reader: `haptic_server`'s main says it first of all.

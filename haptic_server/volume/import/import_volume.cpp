@@ -8,6 +8,7 @@
 #include "haptic_server/volume/import/guarded_import.h"
 #include "haptic_server/volume/import/import_program.h"
 #include "haptic_server/volume/import/inv3_project.h"
+#include "haptic_server/volume/import/surface_volume.h"
 #include "haptic_server/volume/import/volume_file.h"
 
 namespace bonemill {
@@ -30,6 +31,10 @@ bool isPhantom(const std::filesystem::path& path) {
     return folder.filename() == "data" && folder.parent_path().filename() == "build";
 }
 
+bool isSurface(const std::string& name) {
+    return endsWith(name, ".stl") || endsWith(name, ".ply");
+}
+
 RawVolume importByType(const std::filesystem::path& path, const ImportOptions& options) {
     std::error_code error;
     if (!std::filesystem::exists(path, error))
@@ -43,10 +48,11 @@ RawVolume importByType(const std::filesystem::path& path, const ImportOptions& o
     if (endsWith(name, ".mha") || endsWith(name, ".mhd")) return importMetaImage(path);
     if (endsWith(name, ".inv3")) return importInv3(path);
     if (endsWith(name, ".dcm")) return importDicomFile(path);
+    if (isSurface(name)) return importSurface(path, options.surface_voxel_mm, options.surface_value);
     throw UserError(
         path.string() +
         ": is of no known type; give a folder with a DICOM series or a file .nrrd, .nhdr, .nii, .nii.gz, "
-        ".mha, .mhd, .inv3 or .dcm");
+        ".mha, .mhd, .inv3, .dcm, .stl or .ply");
 }
 
 void describeNonFinite(RawVolume& raw) {

@@ -6,6 +6,7 @@
 //   .mha .mhd             MetaImage
 //   .inv3                 InVesalius project
 //   .dcm                  one multi-frame DICOM file
+//   .stl .ply             closed surface
 //
 // Lengths in m, world frame W = LPS of the file (x to the patient's left, y back, z up). Start-up
 // only: allocates, and starts a process that reads (guarded_import.h, import_program.h); not RT-safe, not for
@@ -13,6 +14,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "haptic_server/volume/raw_volume.h"
@@ -21,6 +23,8 @@ namespace bonemill {
 
 struct ImportOptions {
     std::string series_uid;  // which DICOM series of the folder; empty: the one with the most slices
+    std::optional<double> surface_voxel_mm = {};  // of a surface's voxels; default: its longest edge / 128
+    double surface_value = 1000;                  // of voxels inside of a surface
 };
 
 // Throws UserError with one message: what is wrong, in which file, what to do.

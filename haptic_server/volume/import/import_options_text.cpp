@@ -1,0 +1,24 @@
+#include "haptic_server/volume/import/import_options_text.h"
+
+#include <nlohmann/json.hpp>
+
+namespace bonemill {
+
+using nlohmann::json;
+
+std::string textOfOptions(const ImportOptions& options) {
+    json text = {{"series_uid", options.series_uid}, {"surface_value", options.surface_value}};
+    if (options.surface_voxel_mm) text["surface_voxel_mm"] = *options.surface_voxel_mm;
+    return text.dump(-1, ' ', false, json::error_handler_t::replace);  // no UID has what is replaced
+}
+
+ImportOptions optionsFromText(const std::string& text) {
+    const json from = json::parse(text);
+    ImportOptions options;
+    options.series_uid = from.at("series_uid").get<std::string>();
+    options.surface_value = from.at("surface_value").get<double>();
+    if (from.contains("surface_voxel_mm")) options.surface_voxel_mm = from["surface_voxel_mm"].get<double>();
+    return options;
+}
+
+}  // namespace bonemill
