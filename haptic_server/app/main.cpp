@@ -148,9 +148,12 @@ void addReportOptions(CLI::App& app, AccuracyReportOptions& report) {
 }
 
 void addCaseOptions(CLI::App& app, CaseRequest& request) {
-    app.add_option("scan", request.scan, "folder of a DICOM series, or a file")->required();
+    app.add_option("scan", request.scan, "folder of a DICOM series or of images, or a file")->required();
     app.add_option("--out", request.out, "new folder for the case")->required()->type_name("DIR");
     app.add_option("--series", request.series, "UID of the series; default: the one with the most slices");
+    app.add_option("--spacing-mm", request.spacing_mm,
+                   "edges of the voxels, mm, for images and files that do not say them")
+        ->expected(3);
     app.add_option("--title", request.title, "what people read in the list of scenes");
     app.add_option("--iso", request.iso, "raw value (HU) of the bone's surface; default: proposed");
     app.add_option("--at", request.at_mm,

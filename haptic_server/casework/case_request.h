@@ -20,9 +20,10 @@ struct CaseLabel {
 };
 
 struct CaseRequest {
-    std::string scan;    // file or folder
-    std::string series;  // UID; empty: the one with the most slices
-    std::string out;     // folder that is made
+    std::string scan;                // file or folder
+    std::string series;              // UID; empty: the one with the most slices
+    std::vector<double> spacing_mm;  // of voxels whose file or folder does not say it
+    std::string out;                 // folder that is made
     std::string title;
     std::optional<double> iso;
     std::vector<double> at_mm;  // W: middle of the region; empty: all of the bone is milled

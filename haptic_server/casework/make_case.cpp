@@ -113,6 +113,13 @@ void checkLabels(const CaseRequest& request, const std::vector<CaseLabel>& label
             "segments");
 }
 
+ImportOptions optionsOf(const CaseRequest& request) {
+    ImportOptions options{request.series};
+    if (const auto& mm = request.spacing_mm; !mm.empty())
+        options.spacing_mm = Eigen::Vector3d(mm[0], mm[1], mm[2]);
+    return options;
+}
+
 }  // namespace
 
 void makeCase(const CaseRequest& request, const std::string& version, std::ostream& out) {
@@ -120,7 +127,7 @@ void makeCase(const CaseRequest& request, const std::string& version, std::ostre
     checkLabels(request, labels);
     const std::vector<scene::Tool> tools = toolsOfFile(request.tools);
     CaseFolder folder(request.out);
-    const RawVolume scan = importVolume(request.scan, {request.series});
+    const RawVolume scan = importVolume(request.scan, optionsOf(request));
     out << scan.description << '\n';
     const CasePlan plan = planCase(scan, request);
     for (const std::string& remark : plan.remarks) out << remark << '\n';

@@ -23,6 +23,10 @@ ImportOptions optionsOf(const scene::Volume& volume) {
     ImportOptions options{volume.series_uid()};
     if (volume.has_surface_voxel_mm()) options.surface_voxel_mm = volume.surface_voxel_mm();
     options.surface_value = volume.surface_value();
+    if (volume.has_spacing_mm()) {
+        const scene::Vec3& mm = volume.spacing_mm();
+        options.spacing_mm = Eigen::Vector3d(mm.x(), mm.y(), mm.z());
+    }
     return options;
 }
 

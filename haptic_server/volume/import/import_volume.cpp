@@ -6,6 +6,7 @@
 #include "common/user_error.h"
 #include "haptic_server/volume/import/dicom_folder.h"
 #include "haptic_server/volume/import/guarded_import.h"
+#include "haptic_server/volume/import/image_stack.h"
 #include "haptic_server/volume/import/import_program.h"
 #include "haptic_server/volume/import/inv3_project.h"
 #include "haptic_server/volume/import/surface_volume.h"
@@ -41,18 +42,25 @@ RawVolume importByType(const std::filesystem::path& path, const ImportOptions& o
         throw UserError(path.string() + ": no such file or folder; " +
                         (isPhantom(path) ? "deploy/make-phantoms makes it" : "check the path of the volume"));
     requireFile(path);
-    if (std::filesystem::is_directory(path, error)) return importDicomFolder(path, options.series_uid);
+    const bool is_folder = std::filesystem::is_directory(path, error);
+    if (is_folder && isImageStack(path)) return importImageStack(path, options.spacing_mm);
     const std::string name = lowerCase(path.filename().string());
-    if (endsWith(name, ".nrrd") || endsWith(name, ".nhdr")) return importNrrd(path);
+    if (!is_folder && (endsWith(name, ".nrrd") || endsWith(name, ".nhdr")))
+        return importNrrd(path, options.spacing_mm);
+    if (!is_folder && (endsWith(name, ".mha") || endsWith(name, ".mhd")))
+        return importMetaImage(path, options.spacing_mm);
+    if (options.spacing_mm)
+        throw UserError(path.string() +
+                        ": says the voxels' size itself, or has none; leave volume.spacing_mm out");
+    if (is_folder) return importDicomFolder(path, options.series_uid);
     if (endsWith(name, ".nii") || endsWith(name, ".nii.gz")) return importNifti(path);
-    if (endsWith(name, ".mha") || endsWith(name, ".mhd")) return importMetaImage(path);
     if (endsWith(name, ".inv3")) return importInv3(path);
     if (endsWith(name, ".dcm")) return importDicomFile(path);
     if (isSurface(name)) return importSurface(path, options.surface_voxel_mm, options.surface_value);
-    throw UserError(
-        path.string() +
-        ": is of no known type; give a folder with a DICOM series or a file .nrrd, .nhdr, .nii, .nii.gz, "
-        ".mha, .mhd, .inv3, .dcm, .stl or .ply");
+    throw UserError(path.string() +
+                    ": is of no known type; give a folder with a DICOM series or PNG or TIFF images, or a "
+                    "file .nrrd, .nhdr, .nii, .nii.gz, "
+                    ".mha, .mhd, .inv3, .dcm, .stl or .ply");
 }
 
 void describeNonFinite(RawVolume& raw) {

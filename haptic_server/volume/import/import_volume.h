@@ -6,6 +6,7 @@
 //   .mha .mhd             MetaImage
 //   .inv3                 InVesalius project
 //   .dcm                  one multi-frame DICOM file
+//   folder                PNG or TIFF images, one of each slice
 //   .stl .ply             closed surface
 //
 // Lengths in m, world frame W = LPS of the file (x to the patient's left, y back, z up). Start-up
@@ -23,8 +24,9 @@ namespace bonemill {
 
 struct ImportOptions {
     std::string series_uid;  // which DICOM series of the folder; empty: the one with the most slices
-    std::optional<double> surface_voxel_mm = {};  // of a surface's voxels; default: its longest edge / 128
-    double surface_value = 1000;                  // of voxels inside of a surface
+    std::optional<double> surface_voxel_mm = {};     // of a surface's voxels; default: its longest edge / 128
+    double surface_value = 1000;                     // of voxels inside of a surface
+    std::optional<Eigen::Vector3d> spacing_mm = {};  // of voxels whose file or folder does not say it
 };
 
 // Throws UserError with one message: what is wrong, in which file, what to do.
