@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -74,6 +76,31 @@ void checkBinaryStl(std::string_view bytes, const std::string& name) {
     if (count == 0) throw UserError(name + ": holds no triangles; export the surface as triangles");
 }
 
+// The loader goes on for ever where a header does not end, and believes any number of elements.
+void checkPly(std::string_view bytes, const std::string& name) {
+    constexpr size_t kLongestHeader = 1 << 16;
+    constexpr std::string_view kEnd = "\nend_header";
+    const size_t end = bytes.substr(0, kLongestHeader).find(kEnd);
+    if (!bytes.starts_with("ply") || end == std::string_view::npos)
+        throw UserError(name +
+                        ": not a PLY file, or cut short: its header does not start with \"ply\" and end "
+                        "with \"end_header\"; export it again");
+    std::istringstream lines{std::string(bytes.substr(0, end))};
+    const auto left = double(bytes.size() - end - kEnd.size());
+    double elements = 0;
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::string word, kind, count;
+        if (!(words >> word >> kind >> count) || word != "element") continue;
+        const double number = std::strtod(count.c_str(), nullptr);
+        elements += number >= 0 ? number : left + 1;
+    }
+    if (!(elements <= left))  // a byte each at least
+        throw UserError(name +
+                        ": damaged: its header announces more vertices and faces than the file can hold; "
+                        "export it again");
+}
+
 // Content must not choose one of the library's fifty other loaders.
 void keepOnlyLoader(Assimp::Importer& importer, const std::string& extension) {
     for (size_t i = importer.GetImporterCount(); i-- > 0;) {
@@ -122,6 +149,7 @@ std::vector<Eigen::Vector3d> readMeshFile(const std::filesystem::path& path, con
     const std::string bytes = readBytes(path, kind);
     if (extension == "stl" && !isTextStl(bytes)) checkBinaryStl(bytes, name);
 
+    if (extension == "ply") checkPly(bytes, name);
     Assimp::Importer importer;
     keepOnlyLoader(importer, extension);
     const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, extension.c_str());

@@ -18,11 +18,20 @@ constexpr uint32_t kPixelData = 0x7fe00010;
 constexpr uint32_t kFloatPixelData = 0x7fe00008;
 constexpr uint32_t kDoublePixelData = 0x7fe00009;
 constexpr uint32_t kTransferSyntaxUid = 0x00020010;
+constexpr uint32_t kSopClassUid = 0x00080016;
 constexpr uint32_t kItem = 0xfffee000;
 constexpr uint32_t kItemEnd = 0xfffee00d;
 constexpr uint32_t kSequenceEnd = 0xfffee0dd;
 constexpr int kMaxDepth = 32;
 constexpr std::streamoff kPreambleBytes = 128;
+
+// PS3.4 B.5: segmentation, surface segmentation, label map; RT structure set.
+bool isOfStructures(const std::string& sop_class) {
+    const std::string kStorage = "1.2.840.10008.5.1.4.1.1.";
+    for (const char* const kind : {"66.4", "66.5", "66.7", "481.3"})
+        if (sop_class == kStorage + kind) return true;
+    return false;
+}
 
 struct CutShort {
     std::string problem;
@@ -51,9 +60,9 @@ class Scanner {
         } catch (const CutShort& cut) {
             return {DicomKind::kCutShort, cut.problem};
         } catch (const Unclear&) {
-            return {DicomKind::kImage, {}};
+            return {DicomKind::kImage, {}, holds_structures_};
         }
-        return {has_pixels_ ? DicomKind::kImage : DicomKind::kNoImage, {}};
+        return {has_pixels_ ? DicomKind::kImage : DicomKind::kNoImage, {}, holds_structures_};
     }
 
   private:
@@ -162,6 +171,8 @@ class Scanner {
         if (depth == 0 &&
             (element.tag == kPixelData || element.tag == kFloatPixelData || element.tag == kDoublePixelData))
             has_pixels_ = true;
+        if (depth == 0 && element.tag == kSopClassUid)
+            holds_structures_ = isOfStructures(text(element.length));
         if (element.tag == kItemEnd || element.tag == kSequenceEnd) throw Unclear{};
         checkFits(element);
         if (element.length != kUndefinedLength)
@@ -206,6 +217,7 @@ class Scanner {
     bool explicit_vr_ = false;
     bool big_endian_ = false;
     bool has_pixels_ = false;
+    bool holds_structures_ = false;
 };
 
 }  // namespace

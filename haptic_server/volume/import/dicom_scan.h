@@ -18,7 +18,8 @@ enum class DicomKind {
 
 struct DicomScan {
     DicomKind kind = DicomKind::kNotDicom;
-    std::string problem;  // for people, with kCutShort
+    std::string problem;            // for people, with kCutShort
+    bool holds_structures = false;  // what was drawn on a scan (SEG, RTSTRUCT), and no scan
 };
 
 // Throws UserError when the file cannot be opened.

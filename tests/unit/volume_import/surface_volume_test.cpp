@@ -160,7 +160,10 @@ TEST_F(SurfaceVolume, thatIsNoSolidIsRefused) {
             imported("a.stl", test::binaryStl(test::boxSoup({0, 0, 0}, {3000, 1, 1})));
         },
         {"the bone is 3000 mm large"});
-    expectUserError([&] { imported("a.ply", "ply\n"); }, {"a.ply"});
+    expectUserError([&] { imported("a.ply", "ply\nformat ascii 1."); }, {"a.ply", "cut short"});
+    std::string many = textPly(box, "");
+    many.replace(many.find("vertex 36"), 9, "vertex 36000000");
+    expectUserError([&] { imported("a.ply", many); }, {"a.ply", "announces more"});
 }
 
 }  // namespace
