@@ -25,8 +25,8 @@ void checkName(const scene::Scene& scene, int index, const RefuseField& refuse) 
 void checkWhere(const scene::Scene& scene, int index, const RefuseField& refuse) {
     const scene::Material& material = scene.material(index);
     const bool has_range = material.has_from_value() || material.has_below_value();
-    if (!has_range && material.label_size() == 0)
-        refuse(pathOf(index), "does not say where it is: give it from_value, below_value or label");
+    if (!has_range && material.label_size() == 0 && material.segment_size() == 0)
+        refuse(pathOf(index), "does not say where it is: give it from_value, below_value, label or segment");
     if (material.has_from_value() && material.has_below_value() &&
         material.from_value() >= material.below_value())
         refuse(pathOf(index) + ".from_value",
@@ -34,6 +34,8 @@ void checkWhere(const scene::Scene& scene, int index, const RefuseField& refuse)
                    numberText(material.below_value()) + ": no voxel is of this material");
     if (material.label_size() > 0 && scene.volume().label_path().empty())
         refuse(pathOf(index) + ".label[0]", "needs volume.label_path: name the file with the labels");
+    if (material.segment_size() > 0 && scene.volume().label_path().empty())
+        refuse(pathOf(index) + ".segment[0]", "needs volume.label_path: name the file with the segments");
 }
 
 void checkProtection(const scene::Scene& scene, const RefuseField& refuse) {

@@ -21,6 +21,7 @@
 #include "haptic_server/replay/replay_server.h"
 #include "haptic_server/session/forget_person.h"
 #include "haptic_server/session/server.h"
+#include "haptic_server/volume/import/import_options_text.h"
 #include "haptic_server/volume/import/import_program.h"
 
 namespace bonemill {
@@ -147,11 +148,14 @@ void addReportOptions(CLI::App& app, AccuracyReportOptions& report) {
 }
 
 void addCaseOptions(CLI::App& app, CaseRequest& request) {
-    app.add_option("scan", request.scan, "folder of a DICOM series, or a file")->required();
+    app.add_option("scan", request.scan, "folder of a DICOM series or of images, or a file")->required();
     app.add_option("--out", request.out, "new folder for the case")->required()->type_name("DIR");
     app.add_option("--series", request.series, "UID of the series; default: the one with the most slices");
     app.add_option("--acquisition", request.acquisition,
                    "which of the series' acquisitions, phases or kernels, as list-series names them");
+    app.add_option("--spacing-mm", request.spacing_mm,
+                   "edges of the voxels, mm, for images and files that do not say them")
+        ->expected(3);
     app.add_option("--title", request.title, "what people read in the list of scenes");
     app.add_option("--iso", request.iso, "raw value (HU) of the bone's surface; default: proposed");
     app.add_option("--at", request.at_mm,
@@ -169,7 +173,8 @@ void addCaseOptions(CLI::App& app, CaseRequest& request) {
     app.add_option("--labels", request.labels, "label map, on any grid");
     app.add_option(
         "--label", request.label_words,
-        "NUMBER=NAME of a structure in it, with :protected or :target behind it, may be given again");
+        "NUMBER=NAME of a structure in it, or the NAME of a segment that its file names, with :protected or "
+        ":target behind it, may be given again");
     app.add_option("--tools", request.tools, "scene text with the tools, as those in deploy/tools")
         ->type_name("FILE");
 }

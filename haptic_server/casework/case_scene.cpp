@@ -64,11 +64,12 @@ void describeStructures(const std::vector<CaseLabel>& labels, scene::Scene& scen
     for (const CaseLabel& label : labels) {
         scene::Material& material = *scene.add_material();
         material.set_name(label.name);
-        material.add_label(label.label);
-        const auto& [red, green, blue] = kColours[colour++ % kColours.size()];
-        material.mutable_color()->set_red(red);
-        material.mutable_color()->set_green(green);
-        material.mutable_color()->set_blue(blue);
+        for (const uint32_t number : label.labels) material.add_label(number);
+        const auto& own = kColours[colour++ % kColours.size()];
+        const Eigen::Vector3d rgb = label.color.value_or(Eigen::Vector3d(own[0], own[1], own[2]));
+        material.mutable_color()->set_red(rgb[0]);
+        material.mutable_color()->set_green(rgb[1]);
+        material.mutable_color()->set_blue(rgb[2]);
         material.set_is_protected(label.role == CaseLabel::Role::kProtected);
         if (material.is_protected()) {
             scene.mutable_effects()->mutable_protected_structures()->set_warning_distance_mm(kWarningMm);

@@ -109,22 +109,34 @@ void checkLabels(const CaseRequest& request, const std::vector<CaseLabel>& label
         throw UserError("--label needs a label map: --labels FILE");
     if (!request.labels.empty() && labels.empty())
         throw UserError(
-            "--labels needs at least one --label NUMBER=NAME; which numbers are there depends on the file");
+            "--labels needs at least one --label NUMBER=NAME, or --label NAME where the file names its "
+            "segments");
+}
+
+ImportOptions optionsOf(const CaseRequest& request) {
+    ImportOptions options{request.series, request.acquisition};
+    if (const auto& mm = request.spacing_mm; !mm.empty())
+        options.spacing_mm = Eigen::Vector3d(mm[0], mm[1], mm[2]);
+    return options;
 }
 
 }  // namespace
 
 void makeCase(const CaseRequest& request, const std::string& version, std::ostream& out) {
-    const std::vector<CaseLabel> labels = labelsOf(request.label_words);
+    std::vector<CaseLabel> labels = labelsOf(request.label_words);
     checkLabels(request, labels);
     const std::vector<scene::Tool> tools = toolsOfFile(request.tools);
     CaseFolder folder(request.out);
-    const RawVolume scan = importVolume(request.scan, {request.series, request.acquisition});
+    const RawVolume scan = importVolume(request.scan, optionsOf(request));
     out << scan.description << '\n';
     const CasePlan plan = planCase(scan, request);
     for (const std::string& remark : plan.remarks) out << remark << '\n';
     writeVolume(folder / kScanOfCase, scan);
-    if (!request.labels.empty()) writeVolume(folder / kLabelsOfCase, importVolume(request.labels));
+    if (!request.labels.empty()) {
+        const RawVolume map = importVolume(request.labels);
+        findSegments(map.segments, request.labels, labels);
+        writeVolume(folder / kLabelsOfCase, map);
+    }
     const std::string scene_file = folder.name() + ".textproto";
     writeText(folder / scene_file, textOfScene(sceneOfCase(plan, request, labels, tools, folder.name())));
     writeText(folder / "provenance.json", provenanceOf(scan, plan, folder / kScanOfCase, version));

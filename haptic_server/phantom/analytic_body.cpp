@@ -40,8 +40,7 @@ double signedDistance(const AnalyticBody& body, const Eigen::Vector3d& p_W) noex
 
 double bodyDensity(const AnalyticBody& body, const VolumeGeometry& geometry, const Eigen::Vector3d& p_W,
                    double full) noexcept {
-    const double ramp = kRampVoxels * geometry.spacing.maxCoeff();
-    return full * std::clamp(0.5 - signedDistance(body, p_W) / (2 * ramp), 0.0, 1.0);
+    return full * rampShare(signedDistance(body, p_W), geometry.spacing.maxCoeff());
 }
 
 std::vector<float> sampleBodySlice(const AnalyticBody& body, const VolumeGeometry& geometry, double full,

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "haptic_server/volume/raw_volume.h"
+#include "haptic_server/volume/surface_ramp.h"
 
 namespace bonemill {
 
@@ -29,11 +30,7 @@ struct AnalyticBody {
 // This is the exact distance from a point in W to the surface, negative inside the solid.
 double signedDistance(const AnalyticBody& body, const Eigen::Vector3d& p_W) noexcept;
 
-// The density falls linearly from full to 0 while the signed distance goes from -kRampVoxels to
-// +kRampVoxels voxels (of the largest spacing): wide enough that no corner of a cell with a piece of the
-// surface is clamped.
-inline constexpr double kRampVoxels = 2.0;
-
+// The density falls across the surface as surface_ramp.h says.
 double bodyDensity(const AnalyticBody& body, const VolumeGeometry& geometry, const Eigen::Vector3d& p_W,
                    double full) noexcept;
 

@@ -19,6 +19,17 @@ DensityWindow windowOf(const scene::Volume& volume) {
     return window;
 }
 
+ImportOptions optionsOf(const scene::Volume& volume) {
+    ImportOptions options{volume.series_uid(), volume.acquisition()};
+    if (volume.has_surface_voxel_mm()) options.surface_voxel_mm = volume.surface_voxel_mm();
+    options.surface_value = volume.surface_value();
+    if (volume.has_spacing_mm()) {
+        const scene::Vec3& mm = volume.spacing_mm();
+        options.spacing_mm = Eigen::Vector3d(mm.x(), mm.y(), mm.z());
+    }
+    return options;
+}
+
 struct Scan {
     RawVolume raw;
     DensityMapping mapping;
@@ -51,8 +62,7 @@ ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
 
 ScannedBone readBone(const LoadedScene& loaded) {
     const scene::Volume& scene = loaded.scene.volume();
-    const ImportOptions options{scene.series_uid(), scene.acquisition()};
-    Scan scan{importVolume(resolvePath(loaded, scene.path()), options), {}, {}};
+    Scan scan{importVolume(resolvePath(loaded, scene.path()), optionsOf(scene)), {}, {}};
     scan.remarks.push_back(scan.raw.description);
     scan.mapping = chooseMapping(scan.raw, windowOf(scene));
     if (scan.mapping.proposed)

@@ -12,6 +12,7 @@
 #include "haptic_server/volume/import/material_ids.h"
 #include "haptic_server/volume/import/protected_distance.h"
 #include "haptic_server/volume/import/resample_labels.h"
+#include "haptic_server/volume/import/segment_text.h"
 
 namespace bonemill {
 namespace {
@@ -25,6 +26,36 @@ MaterialRule ruleOf(const scene::Material& material) {
     if (material.has_below_value()) rule.below = material.below_value();
     rule.labels.assign(material.label().begin(), material.label().end());
     return rule;
+}
+
+// Adds the labels of the segments that the materials name.
+void findSegments(const LoadedScene& loaded, const Segments& segments, std::vector<MaterialRule>& rules) {
+    const std::string& file = loaded.scene.volume().label_path();
+    for (int n = 0; n < loaded.scene.material_size(); ++n) {
+        const scene::Material& material = loaded.scene.material(n);
+        const std::string path = "material[" + std::to_string(n) + "]";
+        if (segments.are_layered && material.label_size() > 0)
+            refuseField(loaded, path + ".label[0]",
+                        ": the labels of " + file + " lie in several layers; name its segments instead");
+        for (int s = 0; s < material.segment_size(); ++s) {
+            try {
+                const auto labels = labelsOfSegment(segments, material.segment(s), file);
+                rules[size_t(n)].labels.insert(rules[size_t(n)].labels.end(), labels.begin(), labels.end());
+            } catch (const UserError& error) {
+                refuseField(loaded, path + ".segment[" + std::to_string(s) + "]",
+                            std::string(": ") + error.what());
+            }
+        }
+    }
+}
+
+// Throws UserError that names the field.
+RawVolume importLabels(const LoadedScene& loaded) {
+    try {
+        return importVolume(resolvePath(loaded, loaded.scene.volume().label_path()));
+    } catch (const UserError& error) {
+        refuseField(loaded, "volume.label_path", std::string(": ") + error.what());
+    }
 }
 
 // What is measured near structures (near.force) knows how near the burr was.
@@ -85,8 +116,9 @@ std::vector<MaterialId> materialIdsOf(const LoadedScene& loaded, const RawVolume
     for (const scene::Material& material : loaded.scene.material()) rules.push_back(ruleOf(material));
     const std::string& label_path = loaded.scene.volume().label_path();
     if (label_path.empty()) return materialIds(raw, rules, nullptr);
+    const RawVolume file = importLabels(loaded);
+    findSegments(loaded, file.segments, rules);
     try {
-        const RawVolume file = importVolume(resolvePath(loaded, label_path));
         const ResampledLabels labels = resampleLabels(file, raw.geometry, label_path);
         if (!labels.is_exact) remarks.push_back(textOf(labels, file.geometry, label_path));
         return materialIds(raw, rules, &labels.labels);

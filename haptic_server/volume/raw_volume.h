@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "common/geometry/pose.h"
 #include "haptic_server/volume/raw_values.h"
+#include "haptic_server/volume/segments.h"
 
 namespace bonemill {
 
@@ -26,6 +28,8 @@ struct RawVolume {
     bool is_hounsfield = false;  // values are calibrated HU (CT with rescale, air near -1000)
     bool lacks_patient_axes =
         false;  // the file does not say how the patient lay: W is LPS by assumption only
+    std::optional<double> surface_value = {};  // the values were made of a surface, which has this one
+    Segments segments = {};                    // of a label map whose file names them
 };
 
 }  // namespace bonemill

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -31,17 +33,21 @@ std::string lowerExtension(const std::filesystem::path& path) {
     return extension.empty() ? extension : extension.substr(1);
 }
 
-std::string readBytes(const std::filesystem::path& path) {
+std::string filesOf(const SolidKind& kind) {
+    return std::string("an .") + kind.extension[0] + " or ." + kind.extension[1] + " file";
+}
+
+std::string readBytes(const std::filesystem::path& path, const SolidKind& kind) {
     const std::string name = path.string();
     std::error_code error;
     if (!std::filesystem::exists(path, error))
-        throw UserError(name + ": there is no such mesh file; check tool.mesh_path");
+        throw UserError(name + ": there is no such mesh file; check the path of the " + kind.name);
     if (!std::filesystem::is_regular_file(path, error))
-        throw UserError(name + ": not a file; name an .stl or .obj file");
+        throw UserError(name + ": not a file; name " + filesOf(kind));
     const uintmax_t size = std::filesystem::file_size(path, error);
     if (error || size > kLargestFile)
-        throw UserError(name + ": too large for a tool; simplify the mesh below 512 MiB");
-    if (size == 0) throw UserError(name + ": the file is empty; export the tool's mesh again");
+        throw UserError(name + ": too large for a " + kind.name + "; simplify the mesh below 512 MiB");
+    if (size == 0) throw UserError(name + ": the file is empty; export the " + kind.name + "'s mesh again");
     std::string bytes(size, '\0');
     std::ifstream file(path, std::ios::binary);
     if (!file.read(bytes.data(), std::streamsize(size)))
@@ -67,7 +73,32 @@ void checkBinaryStl(std::string_view bytes, const std::string& name) {
         throw UserError(name + ": damaged or not an STL file: its header announces " + std::to_string(count) +
                         " triangles, which take " + std::to_string(needed) + " bytes, but it has " +
                         std::to_string(bytes.size()) + "; export it again");
-    if (count == 0) throw UserError(name + ": holds no triangles; export the tool's surface as triangles");
+    if (count == 0) throw UserError(name + ": holds no triangles; export the surface as triangles");
+}
+
+// The loader goes on for ever where a header does not end, and believes any number of elements.
+void checkPly(std::string_view bytes, const std::string& name) {
+    constexpr size_t kLongestHeader = 1 << 16;
+    constexpr std::string_view kEnd = "\nend_header";
+    const size_t end = bytes.substr(0, kLongestHeader).find(kEnd);
+    if (!bytes.starts_with("ply") || end == std::string_view::npos)
+        throw UserError(name +
+                        ": not a PLY file, or cut short: its header does not start with \"ply\" and end "
+                        "with \"end_header\"; export it again");
+    std::istringstream lines{std::string(bytes.substr(0, end))};
+    const auto left = double(bytes.size() - end - kEnd.size());
+    double elements = 0;
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::string word, kind, count;
+        if (!(words >> word >> kind >> count) || word != "element") continue;
+        const double number = std::strtod(count.c_str(), nullptr);
+        elements += number >= 0 ? number : left + 1;
+    }
+    if (!(elements <= left))  // a byte each at least
+        throw UserError(name +
+                        ": damaged: its header announces more vertices and faces than the file can hold; "
+                        "export it again");
 }
 
 // Content must not choose one of the library's fifty other loaders.
@@ -88,7 +119,7 @@ void checkFaces(const aiScene& scene, const std::string& name) {
         for (unsigned f = 0; f < scene.mMeshes[m]->mNumFaces; ++f)
             if (const unsigned corners = scene.mMeshes[m]->mFaces[f].mNumIndices; corners > kMostCorners)
                 throw UserError(name + ": has a face of " + std::to_string(corners) + " corners, more than " +
-                                std::to_string(kMostCorners) + "; export the tool's surface as triangles");
+                                std::to_string(kMostCorners) + "; export the surface as triangles");
 }
 
 std::vector<Eigen::Vector3d> cornersOf(const aiScene& scene) {
@@ -109,14 +140,16 @@ std::vector<Eigen::Vector3d> cornersOf(const aiScene& scene) {
 
 }  // namespace
 
-std::vector<Eigen::Vector3d> readMeshFile(const std::filesystem::path& path) {
+std::vector<Eigen::Vector3d> readMeshFile(const std::filesystem::path& path, const SolidKind& kind) {
     const std::string name = path.string();
     const std::string extension = lowerExtension(path);
-    if (extension != "stl" && extension != "obj")
-        throw UserError(name + ": a tool's mesh is an .stl or .obj file; convert it to one of them");
-    const std::string bytes = readBytes(path);
+    if (extension != kind.extension[0] && extension != kind.extension[1])
+        throw UserError(name + ": a " + kind.name + "'s mesh is " + filesOf(kind) +
+                        "; convert it to one of them");
+    const std::string bytes = readBytes(path, kind);
     if (extension == "stl" && !isTextStl(bytes)) checkBinaryStl(bytes, name);
 
+    if (extension == "ply") checkPly(bytes, name);
     Assimp::Importer importer;
     keepOnlyLoader(importer, extension);
     const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, extension.c_str());
@@ -126,7 +159,7 @@ std::vector<Eigen::Vector3d> readMeshFile(const std::filesystem::path& path) {
     }
     if (scene == nullptr)
         throw UserError(name + ": cannot be read as ." + extension + ": " + importer.GetErrorString() +
-                        "; export the tool's mesh again");
+                        "; export the mesh again");
     return cornersOf(*scene);
 }
 

@@ -5,11 +5,14 @@
 #include <vector>
 
 #include "common/geometry/pose.h"
+#include "haptic_server/tool/build/triangle_mesh.h"
 
 namespace bonemill {
 
-// Three corners per triangle in m, from an .stl (binary or text) or .obj file in mm; larger polygons are cut
-// up, lines and points left out. Throws UserError, naming the file and what to do, if it cannot be read.
-std::vector<Eigen::Vector3d> readMeshFile(const std::filesystem::path& path);
+// Three corners per triangle in m, from an .stl (binary or text), .obj or .ply file in mm; larger polygons
+// are cut up, lines and points left out. Throws UserError, naming the file and what to do, if it cannot be
+// read.
+std::vector<Eigen::Vector3d> readMeshFile(const std::filesystem::path& path,
+                                          const SolidKind& kind = kToolSolid);
 
 }  // namespace bonemill

@@ -14,20 +14,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-// These limit the largest side. The smallest burr sold is about 0.5 mm thick, the longest drill about 300 mm
-// long; what lies outside was most likely not saved in millimetres.
-constexpr double kSmallestTool = 0.3e-3;
-constexpr double kLargestTool = 0.5;
-
 std::string inMillimetres(double metres) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4g mm", metres * kPerMillimetre);
     return text;
 }
 
-void checkCorners(const std::vector<Vector3d>& corners, const std::string& file) {
+void checkCorners(const std::vector<Vector3d>& corners, const std::string& file, const SolidKind& kind) {
     if (corners.size() < 3)
-        throw UserError(file + ": holds no triangles; export the tool's surface as triangles (STL or OBJ)");
+        throw UserError(file + ": holds no triangles; export the " + kind.name + "'s surface as triangles");
     const auto bad =
         std::count_if(corners.begin(), corners.end(), [](const Vector3d& p) { return !p.allFinite(); });
     if (bad > 0)
@@ -36,10 +31,10 @@ void checkCorners(const std::vector<Vector3d>& corners, const std::string& file)
     Eigen::AlignedBox3d box;
     for (const Vector3d& p : corners) box.extend(p);
     const double size = box.sizes().maxCoeff();
-    if (size < kSmallestTool || size > kLargestTool)
-        throw UserError(file + ": the tool is " + inMillimetres(size) +
-                        " large; coordinates are read as millimetres, and " + inMillimetres(kSmallestTool) +
-                        " to " + inMillimetres(kLargestTool) + " is accepted. Export it in millimetres");
+    if (size < kind.smallest || size > kind.largest)
+        throw UserError(file + ": the " + kind.name + " is " + inMillimetres(size) +
+                        " large; coordinates are read as millimetres, and " + inMillimetres(kind.smallest) +
+                        " to " + inMillimetres(kind.largest) + " is accepted. Export it in millimetres");
 }
 
 bool before(const Vector3d& a, const Vector3d& b) {
@@ -141,8 +136,9 @@ Eigen::Vector3d TriangleMesh::areaNormal(uint32_t triangle) const {
     return (vertex(triangle, 1) - a).cross(vertex(triangle, 2) - a);
 }
 
-TriangleMesh closedMesh(const std::vector<Vector3d>& corners, const std::string& file) {
-    checkCorners(corners, file);
+TriangleMesh closedMesh(const std::vector<Vector3d>& corners, const std::string& file,
+                        const SolidKind& kind) {
+    checkCorners(corners, file, kind);
     TriangleMesh mesh;
     weld(corners, mesh);
     if (mesh.triangles.empty())

@@ -11,6 +11,19 @@
 
 namespace bonemill {
 
+// What a mesh file is read for.
+struct SolidKind {
+    const char* name;
+    const char* extension[2];  // of its files
+    double smallest, largest;  // m: limits of the longest side
+};
+
+// The smallest burr sold is about 0.5 mm thick, the longest drill about 300 mm long; what lies outside was
+// most likely not saved in millimetres.
+inline constexpr SolidKind kToolSolid{"tool", {"stl", "obj"}, 0.3e-3, 0.5};
+// A stapes is 3 mm long, a man less than 2 m.
+inline constexpr SolidKind kBoneSolid{"bone", {"stl", "ply"}, 1e-3, 2};
+
 struct TriangleMesh {
     using Triangle = std::array<uint32_t, 3>;  // vertices, counter-clockwise seen from outside
 
@@ -27,8 +40,10 @@ struct TriangleMesh {
 };
 
 // Welds identical corners (three per triangle, m), drops triangles that thereby lose a corner, turns an
-// inside-out mesh. Throws UserError, naming `file` and what to do, unless the corners are finite, of a tool's
-// size, and form a closed surface: every edge in exactly two triangles that run it in opposite directions.
-TriangleMesh closedMesh(const std::vector<Eigen::Vector3d>& corners, const std::string& file);
+// inside-out mesh. Throws UserError, naming `file` and what to do, unless the corners are finite, of the
+// kind's size, and form a closed surface: every edge in exactly two triangles that run it in opposite
+// directions.
+TriangleMesh closedMesh(const std::vector<Eigen::Vector3d>& corners, const std::string& file,
+                        const SolidKind& kind = kToolSolid);
 
 }  // namespace bonemill

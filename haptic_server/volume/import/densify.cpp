@@ -47,8 +47,9 @@ DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window) 
     if (!(mapping.low < mapping.high))
         throw UserError("the density window " + window_text +
                         " is empty; window_low must be below window_high");
-    if (!window.iso) mapping.proposed = proposeIso(raw);
-    mapping.iso_value = window.iso ? *window.iso : mapping.proposed->value;
+    const std::optional<double> known = window.iso ? window.iso : raw.surface_value;
+    if (!known) mapping.proposed = proposeIso(raw);
+    mapping.iso_value = known ? *known : mapping.proposed->value;
     mapping.iso = mapping.density(mapping.iso_value);
     if (mapping.iso == 0 || mapping.iso == kMaxDensity)
         throw UserError(std::string("the ") + (mapping.proposed ? "proposed " : "") + "iso-value " +

@@ -15,7 +15,7 @@ namespace bonemill {
 struct DensityWindow {
     std::optional<double> low;           // becomes density 0; absent: lowest finite value of the data
     std::optional<double> high;          // becomes density 255; absent: highest finite value
-    std::optional<double> iso;           // bone surface; absent: proposeIso()
+    std::optional<double> iso;           // bone surface; absent: RawVolume::surface_value, or proposeIso()
     uint32_t smallest_piece_voxels = 0;  // pieces with fewer voxels are removed; 0 and 1 keep everything
 };
 

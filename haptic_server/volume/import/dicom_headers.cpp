@@ -128,6 +128,18 @@ std::string LeftOut::text() const {
     return text;
 }
 
+namespace {
+
+std::vector<DicomSlice> leaveStructuresOut(const std::filesystem::path& path, LeftOut& left_out) {
+    left_out.add(
+        "DICOM segmentations or contours (SEG, RTSTRUCT), which 3D Slicer loads and exports as .seg.nrrd or "
+        "NIfTI",
+        path);
+    return {};
+}
+
+}  // namespace
+
 std::vector<DicomSlice> slicesOfFile(const std::filesystem::path& path, LeftOut& left_out) {
     const DicomScan scan = scanDicomFile(path);
     switch (scan.kind) {
@@ -135,11 +147,13 @@ std::vector<DicomSlice> slicesOfFile(const std::filesystem::path& path, LeftOut&
             left_out.add("files that are not DICOM", path);
             return {};
         case DicomKind::kNoImage:
+            if (scan.holds_structures) return leaveStructuresOut(path, left_out);
             left_out.add("DICOM files without an image", path);
             return {};
         case DicomKind::kCutShort:
             throw UserError(path.string() + ": the DICOM file is cut short or damaged: " + scan.problem);
         case DicomKind::kImage:
+            if (scan.holds_structures) return leaveStructuresOut(path, left_out);
             break;
     }
     return readHeader(path, left_out);

@@ -19,11 +19,20 @@ constexpr uint32_t kFloatPixelData = 0x7fe00008;
 constexpr uint32_t kDoublePixelData = 0x7fe00009;
 constexpr uint32_t kMediaClassUid = 0x00020002;
 constexpr uint32_t kTransferSyntaxUid = 0x00020010;
+constexpr uint32_t kSopClassUid = 0x00080016;
 constexpr uint32_t kItem = 0xfffee000;
 constexpr uint32_t kItemEnd = 0xfffee00d;
 constexpr uint32_t kSequenceEnd = 0xfffee0dd;
 constexpr int kMaxDepth = 32;
 constexpr std::streamoff kPreambleBytes = 128;
+
+// PS3.4 B.5: segmentation, surface segmentation, label map; RT structure set.
+bool isOfStructures(const std::string& sop_class) {
+    const std::string kStorage = "1.2.840.10008.5.1.4.1.1.";
+    for (const char* const kind : {"66.4", "66.5", "66.7", "481.3"})
+        if (sop_class == kStorage + kind) return true;
+    return false;
+}
 
 struct CutShort {
     std::string problem;
@@ -50,11 +59,11 @@ class Scanner {
             if (has_meta_ && !readMeta()) return {DicomKind::kImage, {}, media_class_};  // deflated: opaque
             while (position_ < size_) skipElement(0);
         } catch (const CutShort& cut) {
-            return {DicomKind::kCutShort, cut.problem, media_class_};
+            return {DicomKind::kCutShort, cut.problem, media_class_, holds_structures_};
         } catch (const Unclear&) {
-            return {DicomKind::kImage, {}, media_class_};
+            return {DicomKind::kImage, {}, media_class_, holds_structures_};
         }
-        return {has_pixels_ ? DicomKind::kImage : DicomKind::kNoImage, {}, media_class_};
+        return {has_pixels_ ? DicomKind::kImage : DicomKind::kNoImage, {}, media_class_, holds_structures_};
     }
 
   private:
@@ -164,6 +173,8 @@ class Scanner {
         if (depth == 0 &&
             (element.tag == kPixelData || element.tag == kFloatPixelData || element.tag == kDoublePixelData))
             has_pixels_ = true;
+        if (depth == 0 && element.tag == kSopClassUid)
+            holds_structures_ = isOfStructures(text(element.length));
         if (element.tag == kItemEnd || element.tag == kSequenceEnd) throw Unclear{};
         checkFits(element);
         if (element.length != kUndefinedLength)
@@ -209,6 +220,7 @@ class Scanner {
     bool big_endian_ = false;
     bool has_pixels_ = false;
     std::string media_class_;
+    bool holds_structures_ = false;
 };
 
 }  // namespace

@@ -18,8 +18,9 @@ enum class DicomKind {
 
 struct DicomScan {
     DicomKind kind = DicomKind::kNotDicom;
-    std::string problem;      // for people, with kCutShort
-    std::string media_class;  // UID of what the file is, where its first lines say it
+    std::string problem;            // for people, with kCutShort
+    std::string media_class;        // UID of what the file is, where its first lines say it
+    bool holds_structures = false;  // what was drawn on a scan (SEG, RTSTRUCT), and no scan
 };
 
 // Throws UserError when the file cannot be opened.

@@ -25,6 +25,7 @@
 #include "haptic_server/volume/import/memory_cap.h"
 #include "haptic_server/volume/import/printed_text.h"
 #include "haptic_server/volume/import/reader_pipe.h"
+#include "haptic_server/volume/import/segment_text.h"
 #include "haptic_server/volume/import/shared_name.h"
 
 namespace bonemill {
@@ -35,7 +36,7 @@ constexpr rlim_t kMostCpuSeconds = 600;  // The largest volumes take seconds.
 // No enumeration, as no bool: the child may have been made to write anything.
 constexpr uint8_t kError = 0, kVolume = 1, kLines = 2;
 
-// This goes through the pipe first; then the text (description, lines or error), then the values.
+// This goes through the pipe first; then the text (description, lines or error), the segments, the values.
 struct Head {
     uint8_t kind;
     uint8_t is_hounsfield;
@@ -44,7 +45,10 @@ struct Head {
     double spacing[3];
     double position[3];
     double rotation[4];  // Eigen's order
+    uint8_t has_surface_value;
+    double surface_value;
     uint64_t text_bytes;
+    uint64_t segments_bytes;
     uint64_t values;
     uint64_t type;  // RawValues::type()
 };
@@ -69,7 +73,8 @@ bool isPlace(const Head& head) {
 // The child may have been damaged by what it read, and what it says is checked before memory is asked for.
 // Throws std::length_error.
 void checkHead(const Head& head, uint8_t wanted) {
-    if (head.text_bytes > kMostTextBytes) throw std::length_error("text");
+    if (head.text_bytes > kMostTextBytes || head.segments_bytes > kMostTextBytes)
+        throw std::length_error("text");
     if (head.kind != kError && head.kind != wanted) throw std::length_error("kind");
     if (head.kind != kVolume) return;
     uint64_t voxels = 1;
@@ -78,7 +83,7 @@ void checkHead(const Head& head, uint8_t wanted) {
     }
     if (head.values != voxels || head.type >= std::variant_size_v<RawValues::Samples>)
         throw std::length_error("values");
-    if (!isPlace(head)) throw std::length_error("place");
+    if (!isPlace(head) || !std::isfinite(head.surface_value)) throw std::length_error("place");
 }
 
 constexpr size_t kChunk = size_t(1) << 20;  // values
@@ -131,11 +136,15 @@ void sendVolume(int file, RawVolume raw) {
     std::copy_n(raw.geometry.spacing.data(), 3, head.spacing);
     std::copy_n(raw.geometry.X_WV.position.data(), 3, head.position);
     std::copy_n(raw.geometry.X_WV.rotation.coeffs().data(), 4, head.rotation);
+    head.has_surface_value = raw.surface_value.has_value();
+    head.surface_value = raw.surface_value.value_or(0);
+    const std::string segments = textOfSegments(raw.segments);
     head.text_bytes = raw.description.size();
+    head.segments_bytes = segments.size();
     head.values = raw.values.size();
     head.type = raw.values.type();
     writeAll(file, &head, sizeof head) && writeAll(file, raw.description.data(), raw.description.size()) &&
-        sendValues(file, raw.values);
+        writeAll(file, segments.data(), segments.size()) && sendValues(file, raw.values);
 }
 
 void sendText(int file, uint8_t kind, const std::string& text) {
@@ -185,8 +194,12 @@ bool receive(Incoming& from, uint8_t wanted, Received& received) {
     if (head.kind != kVolume) return true;
     RawVolume& raw = received.volume;
     raw.description = oneLine(text);
+    text.assign(head.segments_bytes, '\0');
+    if (!from.read(text.data(), text.size())) return false;
+    raw.segments = segmentsFromText(text);
     raw.is_hounsfield = head.is_hounsfield;
     raw.lacks_patient_axes = head.lacks_patient_axes;
+    if (head.has_surface_value) raw.surface_value = head.surface_value;
     raw.geometry.dims = Eigen::Map<const Eigen::Vector3i>(head.dims);
     raw.geometry.spacing = Eigen::Map<const Eigen::Vector3d>(head.spacing);
     raw.geometry.X_WV.position = Eigen::Map<const Eigen::Vector3d>(head.position);

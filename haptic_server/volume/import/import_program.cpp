@@ -8,6 +8,7 @@
 
 #include "common/user_error.h"
 #include "haptic_server/volume/import/guarded_import.h"
+#include "haptic_server/volume/import/import_options_text.h"
 #include "haptic_server/volume/import/shared_name.h"
 
 namespace bonemill {
@@ -49,8 +50,7 @@ bool hasReaderProgram() {
 }
 
 RawVolume importByProgram(const std::filesystem::path& path, const ImportOptions& options) {
-    std::vector<std::string> words{reader_program, kReadVolumeWord, path.string(), options.series_uid,
-                                   options.acquisition};
+    std::vector<std::string> words{reader_program, kReadVolumeWord, path.string(), textOfOptions(options)};
     return importFrom(path, [&](int pipe, int name) { return spawnReader(words, pipe, name); });
 }
 
@@ -62,9 +62,9 @@ std::vector<std::string> listByProgram(const std::filesystem::path& path) {
 // A path may look like an option, so that no parser of options sees it.
 void runReaderIfCalled(int argc, char** argv) {
     const std::vector<std::string> words(argv, argv + argc);
-    if (argc == 5 && words[1] == kReadVolumeWord) {
+    if (argc == 4 && words[1] == kReadVolumeWord) {
         shareNameOfFileBeingRead(kName);
-        readAsChild(kPipe, words[2], [&] { return importVolumeHere(words[2], {words[3], words[4]}); });
+        readAsChild(kPipe, words[2], [&] { return importVolumeHere(words[2], optionsFromText(words[3])); });
     }
     if (argc == 3 && words[1] == kReadSeriesWord) {
         shareNameOfFileBeingRead(kName);

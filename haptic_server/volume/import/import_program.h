@@ -13,7 +13,7 @@
 namespace bonemill {
 
 // These words stand behind the program's name, and before the path.
-inline constexpr char kReadVolumeWord[] = "read-volume";  // then the series and the acquisition
+inline constexpr char kReadVolumeWord[] = "read-volume";  // then the options (import_options_text.h)
 inline constexpr char kReadSeriesWord[] = "read-series";
 
 // Runs the reader's own end if the words of the command line call it, and does not return then.

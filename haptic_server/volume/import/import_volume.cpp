@@ -10,8 +10,10 @@
 #include "common/user_error.h"
 #include "haptic_server/volume/import/dicom_folder.h"
 #include "haptic_server/volume/import/guarded_import.h"
+#include "haptic_server/volume/import/image_stack.h"
 #include "haptic_server/volume/import/import_program.h"
 #include "haptic_server/volume/import/inv3_project.h"
+#include "haptic_server/volume/import/surface_volume.h"
 #include "haptic_server/volume/import/volume_file.h"
 
 namespace bonemill {
@@ -32,6 +34,10 @@ bool endsWith(const std::string& text, const std::string& ending) {
 bool isPhantom(const std::filesystem::path& path) {
     const std::filesystem::path folder = path.lexically_normal().parent_path();
     return folder.filename() == "data" && folder.parent_path().filename() == "build";
+}
+
+bool isSurface(const std::string& name) {
+    return endsWith(name, ".stl") || endsWith(name, ".ply");
 }
 
 void requireThere(const std::filesystem::path& path) {
@@ -71,19 +77,27 @@ void refuseZip(const std::filesystem::path& path, const std::string& name) {
 RawVolume importByType(const std::filesystem::path& path, const ImportOptions& options) {
     requireThere(path);
     const DicomWish wish{options.series_uid, options.acquisition, {}};
-    if (isFolder(path)) return importDicomFolder(path, wish);
+    const bool is_folder = isFolder(path);
+    if (is_folder && isImageStack(path)) return importImageStack(path, options.spacing_mm);
     const std::string name = lowerCase(path.filename().string());
-    if (endsWith(name, ".nrrd") || endsWith(name, ".nhdr")) return importNrrd(path);
+    if (!is_folder && (endsWith(name, ".nrrd") || endsWith(name, ".nhdr")))
+        return importNrrd(path, options.spacing_mm);
+    if (!is_folder && (endsWith(name, ".mha") || endsWith(name, ".mhd")))
+        return importMetaImage(path, options.spacing_mm);
+    if (options.spacing_mm)
+        throw UserError(path.string() +
+                        ": says the voxels' size itself, or has none; leave volume.spacing_mm out");
+    if (is_folder) return importDicomFolder(path, wish);
     if (endsWith(name, ".nii") || endsWith(name, ".nii.gz")) return importNifti(path);
-    if (endsWith(name, ".mha") || endsWith(name, ".mhd")) return importMetaImage(path);
     if (endsWith(name, ".inv3")) return importInv3(path);
     refuseZip(path, name);
     if (isDicomDirectory(path)) return importDicomDirectory(path, wish);
     if (endsWith(name, ".dcm") || isDicom(path)) return importDicomFile(path, wish);
+    if (isSurface(name)) return importSurface(path, options.surface_voxel_mm, options.surface_value);
     throw UserError(
         path.string() +
-        ": is of no known type; give a folder with a DICOM series or a file .nrrd, .nhdr, .nii, .nii.gz, "
-        ".mha, .mhd, .inv3 or .dcm");
+        ": is of no known type; give a folder with a DICOM series or PNG or TIFF images, or a file "
+        ".nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd, .inv3, .dcm, .stl or .ply");
 }
 
 void describeNonFinite(RawVolume& raw) {

@@ -6,6 +6,8 @@
 //   .mha .mhd             MetaImage
 //   .inv3                 InVesalius project
 //   .dcm, any DICOM file  a multi-frame file; of a single slice its series, of a DICOMDIR its folder
+//   folder                PNG or TIFF images, one of each slice
+//   .stl .ply             closed surface
 //
 // Lengths in m, world frame W = LPS of the file (x to the patient's left, y back, z up). Start-up
 // only: allocates, and starts a process that reads (guarded_import.h, import_program.h); not RT-safe, not for
@@ -13,6 +15,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +26,9 @@ namespace bonemill {
 struct ImportOptions {
     std::string series_uid = {};   // which DICOM series of the folder; empty: by rule (dicom_series.h)
     std::string acquisition = {};  // which of its stacks, as listSeries() names them; empty: by rule
+    std::optional<double> surface_voxel_mm = {};     // of a surface's voxels; default: its longest edge / 128
+    double surface_value = 1000;                     // of voxels inside of a surface
+    std::optional<Eigen::Vector3d> spacing_mm = {};  // of voxels whose file or folder does not say it
 };
 
 // Throws UserError with one message: what is wrong, in which file, what to do.

@@ -5,6 +5,8 @@
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
+#include <itkPNGImageIO.h>
+#include <itkTIFFImageIO.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -28,6 +30,10 @@ itk::ImageIOBase::Pointer makeReader(ItkFormat format) {
             return itk::NiftiImageIO::New().GetPointer();
         case ItkFormat::kMetaImage:
             return itk::MetaImageIO::New().GetPointer();
+        case ItkFormat::kPng:
+            return itk::PNGImageIO::New().GetPointer();
+        case ItkFormat::kTiff:
+            return itk::TIFFImageIO::New().GetPointer();
         case ItkFormat::kDicom:
             break;
     }

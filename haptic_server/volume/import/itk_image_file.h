@@ -17,7 +17,7 @@
 
 namespace bonemill {
 
-enum class ItkFormat { kNrrd, kNifti, kMetaImage, kDicom };
+enum class ItkFormat { kNrrd, kNifti, kMetaImage, kDicom, kPng, kTiff };
 
 struct ItkImageHeader {
     std::vector<uint64_t> dims;  // all axes of the file

@@ -121,6 +121,7 @@ void takeLine(const std::string& line, const std::filesystem::path& path, NrrdHe
                          units);
     if (line.substr(0, colon) == kNrrdGeometryKey)
         header.exact_geometry = geometryFromText(line.substr(colon + 2));
+    takeSegmentLine(line.substr(0, colon), line.substr(colon + 2), path, header.segments);
 }
 
 }  // namespace

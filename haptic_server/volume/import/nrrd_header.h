@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "haptic_server/volume/import/nrrd_segments.h"
 #include "haptic_server/volume/raw_volume.h"
 
 namespace bonemill {
@@ -18,6 +19,7 @@ struct NrrdHeader {
     bool has_spacing = false;                      // says something of the voxels' size
     bool has_patient_space = false;                // its "space" names the patient's sides
     std::optional<VolumeGeometry> exact_geometry;  // from nrrd_writer.h
+    NrrdSegments segments;                         // of a label map
 };
 
 // Reads at most 1 MiB. Throws UserError when it is no NRRD file, or its units or directions are not lengths,

@@ -12,8 +12,11 @@
 #include "common/user_error.h"
 #include "haptic_server/volume/import/dicom_scan.h"
 #include "haptic_server/volume/import/import_volume.h"
+#include "tests/support/stl_writer.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/volume_import/dicom_bytes.h"
+#include "tests/unit/volume_import/picture_files.h"
+#include "tests/unit/volume_import/seg_nrrd.h"
 #include "tests/unit/volume_import/volume_files.h"
 
 #ifdef __SANITIZE_ADDRESS__
@@ -123,7 +126,7 @@ class DamagedFiles : public ::testing::Test {
         std::cout << "seed " << seed << ", " << rounds << " rounds of " << name << "\n";
         const std::string intact = readBytes(folder_ / name);
         ASSERT_FALSE(intact.empty());
-        ASSERT_NO_THROW(importVolume(folder_ / entry));
+        ASSERT_NO_THROW(import(folder_ / entry, {}));
         for (unsigned round = 0; round < rounds; ++round) {
             SCOPED_TRACE("seed " + std::to_string(seed) + " round " + std::to_string(round));
             Random random(seed + round);
@@ -182,6 +185,51 @@ TEST_F(DamagedFiles, metaImageDetached) {
 TEST_F(DamagedFiles, inv3) {
     writeInv3File(folder_ / "a.inv3", sample_, {});
     fuzz("a.inv3");
+}
+
+TEST_F(DamagedFiles, segments) {
+    const auto label = [](const Eigen::Vector3i& v, int layer) { return v.x() > layer; };
+    writeSegNrrd(folder_ / "a.seg.nrrd",
+                 {.layers = 2,
+                  .segments = segmentLines(0, "nerve", 1, 0) + segmentLines(1, "canal", 1, 1),
+                  .label = label});
+    fuzz("a.seg.nrrd");
+}
+
+// libpng ends the process that reads a damaged file, so that folders of pictures are imported through the
+// guard.
+RawVolume importStack(const std::filesystem::path& path, const ImportOptions& options) {
+    ImportOptions with_spacing = options;
+    with_spacing.spacing_mm = Eigen::Vector3d(1, 1, 1);
+    return importVolume(path, with_spacing);
+}
+
+TEST_F(DamagedFiles, pngSlice) {
+    for (int k = 0; k < 3; ++k) writeBytes(folder_ / ("a" + std::to_string(k) + ".png"), png({}));
+    fuzz(importStack, "a1.png", "", kDicomShare);
+}
+
+TEST_F(DamagedFiles, tiffSlice) {
+    for (int k = 0; k < 3; ++k) writeBytes(folder_ / ("a" + std::to_string(k) + ".tif"), tiff({}));
+    fuzz(importStack, "a1.tif", "", kDicomShare);
+}
+
+// Such a file is damaged in few places that change the surface and leave it closed.
+constexpr unsigned kSurfaceShare = 5;
+
+TEST_F(DamagedFiles, stl) {
+    writeBytes(folder_ / "a.stl", test::textStl(test::boxSoup({0, 0, 0}, {40, 4, 4})));
+    fuzz(importVolumeHere, "a.stl", "a.stl", kSurfaceShare);
+}
+
+// The library's reader of PLY crashes on damaged files.
+TEST_F(DamagedFiles, ply) {
+    writeBytes(
+        folder_ / "a.ply",
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n8 0 0\n0 8 0\n0 0 8\n"
+        "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+    fuzz(importVolume, "a.ply", "a.ply", kSurfaceShare);
 }
 
 // GDCM asserts on damaged files, so DICOM is imported as the programs do it, through the guard; our own scan

@@ -74,12 +74,13 @@ TEST(CaseLabels, AreReadFromWords) {
     ASSERT_EQ(labels.size(), 3u);
     EXPECT_EQ(labels[0].name, "sinus");
     EXPECT_EQ(labels[0].role, CaseLabel::Role::kProtected);
-    EXPECT_EQ(labels[1].label, 7u);
+    EXPECT_EQ(labels[1].labels, std::vector<uint32_t>{7});
     EXPECT_EQ(labels[1].role, CaseLabel::Role::kTarget);
     EXPECT_EQ(labels[2].name, "a=b");
     EXPECT_EQ(labels[2].role, CaseLabel::Role::kPlain);
-    for (const char* const word : {"sinus", "=x", "1=", "1=:protected", "70000=x", "-1=x", "1x=y", ""})
+    for (const char* const word : {"=x", "1=", "1=:protected", "70000=x", "-1=x", "1x=y", ""})
         expectUserError([&] { labelsOf({word}); }, {"--label"});
+    EXPECT_TRUE(labelsOf({"facial nerve:protected"})[0].labels.empty());
     expectUserError([] { labelsOf({"1=x", "1=y"}); }, {"given before"});
     expectUserError([] { labelsOf({"1=x", "2=x:protected"}); }, {"given before"});
 }

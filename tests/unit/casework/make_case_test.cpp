@@ -13,6 +13,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/volume_import/expect_user_error.h"
 #include "tests/unit/volume_import/grid_scan.h"
+#include "tests/unit/volume_import/seg_nrrd.h"
 #include "tests/unit/volume_import/volume_files.h"
 
 namespace bonemill {
@@ -87,6 +88,35 @@ TEST_F(MakeCase, IsASceneThatRunsWithTheSameVoxels) {
                     after = importVolumeHere(folder_ / "case/scan.nrrd");
     EXPECT_TRUE(before.values == after.values);
     EXPECT_TRUE(before.geometry.X_WV.position.isApprox(after.geometry.X_WV.position));
+}
+
+TEST_F(MakeCase, TakesSegmentsByTheirNames) {
+    request_.labels = folder_ / "DOE^JOHN/labels.seg.nrrd";
+    const auto label = [](const Eigen::Vector3i& v, int layer) {
+        return int(v.z() == 20 && (layer == 0 ? v.x() > 28 : v.x() > 30));
+    };
+    writeSegNrrd(request_.labels, {.dims = {40, 40, 40},
+                                   .layers = 2,
+                                   .segments = segmentLines(0, "canal", 1, 0) +
+                                               segmentLines(1, "facial nerve", 1, 1, "1 0.75 0") +
+                                               segmentLines(2, "DOE", 9, 1),
+                                   .label = label});
+    request_.label_words = {"canal", "facial nerve:protected"};
+    make();
+    const LoadedScene loaded = loadScene(folder_ / "case/case.textproto");
+    ASSERT_EQ(loaded.scene.material_size(), 2);
+    EXPECT_EQ(loaded.scene.material(0).label_size(), 2) << "alone, and with the nerve in it";
+    EXPECT_EQ(loaded.scene.material(1).label_size(), 1);
+    EXPECT_EQ(loaded.scene.material(1).color().green(), 0.75);
+    EXPECT_TRUE(makeSimulation(loaded).tick.effects.protected_field);
+    EXPECT_EQ(textOfFile(folder_ / "case/labels.nrrd").find("DOE"), std::string::npos);
+    request_.out = folder_ / "other";
+    request_.label_words = {"nerve"};
+    expectUserError([&] { make(); }, {"no segment \"nerve\"", "canal, facial nerve"});
+    request_.label_words = {"1=nerve"};
+    expectUserError([&] { make(); }, {"several layers"});
+    request_.label_words = {"DOE"};
+    expectUserError([&] { make(); }, {"DOE has no voxel"});
 }
 
 TEST_F(MakeCase, SaysNothingOfThePatient) {

@@ -29,11 +29,13 @@ TEST(MaterialCheck, materialsHaveNamesOfTheirOwn) {
 
 TEST(MaterialCheck, materialsSayWhereTheyAre) {
     EXPECT_EQ(refusal("\nmaterial { name: 'a' }"),
-              "s:3: field `material[0]` does not say where it is: give it from_value, below_value or label");
+              "s:3: field `material[0]` does not say where it is: give it from_value, below_value, label or "
+              "segment");
     EXPECT_EQ(
         refusal("material { name: 'a'\nfrom_value: 5 below_value: 5 }"),
         "s:3: field `material[0].from_value` = 5 is not below below_value = 5: no voxel is of this material");
     EXPECT_EQ(refusal("material { name: 'a' below_value: -5 }"), "accepted");
+    EXPECT_EQ(refusal("material { name: 'a' segment: 'b c' }"), "accepted");
     EXPECT_EQ(refusal("volume { label_path: '' } material { name: 'a'\nlabel: 1 }").find("accepted"),
               std::string::npos);
 }
@@ -49,6 +51,11 @@ TEST(MaterialCheck, labelsNeedTheirVolume) {
             error.what(),
             "s:3: field `material[0].label[0]` needs volume.label_path: name the file with the labels");
     }
+}
+
+TEST(MaterialCheck, segmentsNeedTheirVolume) {
+    EXPECT_EQ(refusal("volume { label_path: '' } material { name: 'a'\nsegment: 'b' }").find("accepted"),
+              std::string::npos);
 }
 
 TEST(MaterialCheck, protectionNeedsSomethingToProtect) {

@@ -10,6 +10,7 @@
 #include "haptic_server/volume/import/nrrd_writer.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/volume_import/expect_user_error.h"
+#include "tests/unit/volume_import/seg_nrrd.h"
 
 namespace bonemill {
 namespace {
@@ -111,6 +112,37 @@ TEST_F(SceneMaterials, LabelsOfAnotherGridAreResampledAndThatIsSaid) {
     }));
     const BoneProperties& properties = *simulation.tick.effects.properties;
     EXPECT_EQ(properties.material({10, 8, 5}), 3);
+}
+
+// The canal is all around the nerve and in it: of overlapping segments the later material wins.
+TEST_F(SceneMaterials, ComeFromSegmentsThatOverlap) {
+    const auto label = [](const Eigen::Vector3i& v, int layer) {
+        return int(layer == 0 ? v.y() >= 6 && v.y() < 12 && v.z() >= 4 && v.z() < 8 : isNerve(v));
+    };
+    writeSegNrrd(folder_ / "a.seg.nrrd",
+                 {.dims = {20, 18, 16},
+                  .voxel_mm = 0.5,
+                  .layers = 2,
+                  .segments = segmentLines(0, "canal", 1, 0) + segmentLines(1, "facial nerve", 1, 1),
+                  .label = label});
+    const std::string kCanal = "material { name: 'c' segment: 'canal' }\n",
+                      kNerve = "material { name: 'n' segment: 'facial nerve' }\n";
+    for (const bool is_nerve_later : {true, false}) {
+        const Simulation simulation =
+            makeSimulation(sceneOf("a.seg.nrrd", is_nerve_later ? kCanal + kNerve : kNerve + kCanal));
+        const BoneProperties& properties = *simulation.tick.effects.properties;
+        forEachIndex({Eigen::Vector3i::Zero(), {19, 17, 15}}, [&](const Eigen::Vector3i& v) {
+            const int expected = !label(v, 0) ? 0 : isNerve(v) || !is_nerve_later ? 2 : 1;
+            ASSERT_EQ(properties.material(v), expected) << v.transpose();
+        });
+    }
+    expectUserError(
+        [&] { makeSimulation(sceneOf("a.seg.nrrd", kCanal + "material { name: 'n'\nsegment: 'dura' }")); },
+        {"s.textproto:5: field `material[1].segment[0]`", "a.seg.nrrd", "canal, facial nerve"});
+    expectUserError([&] { makeSimulation(sceneOf("a.seg.nrrd", "material { name: 'n'\nlabel: 1 }")); },
+                    {"s.textproto:4: field `material[0].label[0]`", "several layers"});
+    expectUserError([&] { makeSimulation(sceneOf("labels.nrrd", kCanal)); },
+                    {"labels.nrrd: names no segments"});
 }
 
 TEST_F(SceneMaterials, LabelsThatAreNotThereAreNamedWithTheirLine) {
