@@ -287,6 +287,7 @@ int serve(int argc, char** argv) {
     }
     if (series_command->parsed()) return printSeries(options.series_folder);
     if (case_command->parsed()) {
+        keepFilesPrivate();
         makeCase(options.request, versionText(), std::cout);
         return 0;
     }

@@ -74,6 +74,24 @@ void describePieces(const BonePieces& pieces, const VolumeGeometry& geometry, ui
     if (listed > 1) remarks.push_back("--drop-piece NUMBER leaves one out: a head holder, a cable");
 }
 
+// Those that are asked for, and noise beside the largest of the others: so many voxels are none.
+std::vector<bool> droppedOf(const BonePieces& pieces, const std::vector<uint32_t>& asked_for,
+                            uint32_t& smallest) {
+    std::vector<bool> is_dropped(pieces.list().size());
+    for (const uint32_t piece : asked_for) {
+        if (piece < 1 || piece > is_dropped.size())
+            throw UserError("--drop-piece " + std::to_string(piece) + ": there are only " +
+                            std::to_string(is_dropped.size()) + " pieces");
+        is_dropped[piece - 1] = true;
+    }
+    const auto largest = size_t(std::ranges::find(is_dropped, false) - is_dropped.begin());
+    if (largest == is_dropped.size()) throw UserError("--drop-piece drops all bone");
+    smallest = uint32_t(kNoiseShare * double(pieces.list()[largest].voxels));
+    for (size_t n = 0; n < is_dropped.size(); ++n)
+        is_dropped[n] = is_dropped[n] || pieces.list()[n].voxels < smallest;
+    return is_dropped;
+}
+
 }  // namespace
 
 CasePlan planCase(const RawVolume& scan, const CaseRequest& request) {
@@ -85,9 +103,11 @@ CasePlan planCase(const RawVolume& scan, const CaseRequest& request) {
     VoxelVolume volume = densify(scan, plan.mapping);
     const BonePieces pieces(volume);
     if (pieces.list().empty()) throw UserError("no voxel of the scan reaches the iso-value; set --iso");
-    const BonePiece& largest = pieces.list().front();
-    plan.smallest_piece_voxels = uint32_t(kNoiseShare * double(largest.voxels));
+    const std::vector<bool> is_dropped = droppedOf(pieces, request.drop_pieces, plan.smallest_piece_voxels);
     describePieces(pieces, scan.geometry, plan.smallest_piece_voxels, plan.remarks);
+    pieces.drop(volume, is_dropped);
+    const BonePiece& largest =
+        pieces.list()[size_t(std::ranges::find(is_dropped, false) - is_dropped.begin())];
     const Eigen::Vector3d middle_of_bone = toWorld(scan.geometry, largest.middle);
     const Eigen::Vector3d middle = pointOf(request.at_mm).value_or(middle_of_bone);
     const ScanBone bone(volume);

@@ -14,7 +14,7 @@
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/casework/case_scene.h"
-#include "haptic_server/setup/scanned_bone.h"
+#include "haptic_server/setup/scene_setup.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/nrrd_stream.h"
 
@@ -59,7 +59,7 @@ class CaseFolder {
 
 void writeVolume(const fs::path& file, const RawVolume& volume) {
     volume.values.visit([&]<class T>(std::span<const T> samples) {
-        NrrdStream<T> stream(file, volume.geometry, NrrdEncoding::kGzip);
+        NrrdStream<T> stream(file, volume.geometry, NrrdEncoding::kGzip, volume.lacks_patient_axes);
         stream.append(samples);
         stream.close();
     });
@@ -140,8 +140,9 @@ void makeCase(const CaseRequest& request, const std::string& version, std::ostre
     const std::string scene_file = folder.name() + ".textproto";
     writeText(folder / scene_file, textOfScene(sceneOfCase(plan, request, labels, tools, folder.name())));
     writeText(folder / "provenance.json", provenanceOf(scan, plan, folder / kScanOfCase, version));
-    const ScannedBone bone = readBone(loadScene(folder / scene_file));  // as a session would
-    for (const std::string& remark : bone.remarks) out << remark << '\n';
+    const Simulation simulation = makeSimulation(loadScene(folder / scene_file));  // as a session would
+    for (const std::string& remark : simulation.remarks) out << remark << '\n';
+    for (const std::string& warning : simulation.warnings) out << "warning: " << warning << '\n';
     folder.finish();
     out << "wrote " << (fs::path(request.out) / scene_file).string() << '\n';
 }

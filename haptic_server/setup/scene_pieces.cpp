@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostListed = 4;
+constexpr size_t kMostRemarked = 4, kMostListed = 100;
 
 std::vector<bool> droppedOf(const LoadedScene& loaded, const BonePieces& pieces, const IndexBox& region) {
     const scene::Volume& scene = loaded.scene.volume();
@@ -49,13 +49,13 @@ std::string textOf(const BonePiece& piece, size_t number, const VolumeGeometry& 
 
 // Those whose is_listed is true: the largest, and how many more.
 std::string list(const BonePieces& pieces, const std::vector<bool>& is_dropped, bool is_listed,
-                 const VolumeGeometry& geometry, const char* separator) {
+                 const VolumeGeometry& geometry, const char* separator, size_t most) {
     std::string text;
     size_t listed = 0, more = 0;
     uint64_t voxels = 0;
     for (size_t n = 0; n < is_dropped.size(); ++n) {
         if (is_dropped[n] != is_listed) continue;
-        if (listed == kMostListed) {
+        if (listed == most) {
             ++more;
             voxels += pieces.list()[n].voxels;
             continue;
@@ -85,15 +85,16 @@ void dropPieces(const LoadedScene& loaded, VoxelVolume& volume, const IndexBox& 
                     pieces.list().empty() ? ": no voxel reaches the iso-value"
                                           : ": all pieces of bone are dropped; the largest is " +
                                                 textOf(pieces.list()[0], 1, volume.geometry()));
-    const std::string dropped = list(pieces, is_dropped, true, volume.geometry(), "; ");
-    remarks.push_back("kept " + list(pieces, is_dropped, false, volume.geometry(), "; ") +
+    const std::string dropped = list(pieces, is_dropped, true, volume.geometry(), "; ", kMostRemarked);
+    remarks.push_back("kept " + list(pieces, is_dropped, false, volume.geometry(), "; ", kMostRemarked) +
                       (dropped.empty() ? "" : "; dropped " + dropped));
     pieces.drop(volume, is_dropped, see);
 }
 
 std::string listPieces(const VoxelVolume& volume) {
     const BonePieces pieces(volume);
-    return list(pieces, std::vector<bool>(pieces.list().size()), false, volume.geometry(), "\n  ");
+    return list(pieces, std::vector<bool>(pieces.list().size()), false, volume.geometry(), "\n  ",
+                kMostListed);
 }
 
 }  // namespace bonemill

@@ -20,7 +20,9 @@
 namespace bonemill {
 namespace {
 
-constexpr double kBurrShare = 0.25;  // docs/volumes.md: voxels of a quarter of the burr's radius
+constexpr double kLargeBurrShare = 0.125;  // what its tick can bear (docs/measurements.md)
+constexpr double kBurrShare = 0.25;        // docs/volumes.md: voxels of a quarter of the burr's radius
+constexpr double kAirHu = -1000, kSurelyAirHu = -500, kDensestHu = 3071;
 constexpr double kProposedVoxels = 1 << 26;
 constexpr double kMostVoxels = 1 << 28;
 constexpr int64_t kMostLookedAt = 1 << 28;  // for thin walls: a second
@@ -34,11 +36,17 @@ Eigen::AlignedBox3d boxOf(const LoadedScene& loaded) {
     return box;
 }
 
-double smallestBurr(const scene::Scene& scene) {
-    double radius = std::numeric_limits<double>::infinity();
-    for (const scene::Tool* tool : toolsOf(scene))
-        radius = std::min(radius, tool->burr_radius_mm() * kMillimetre);
-    return radius;
+struct BurrRadii {
+    double smallest = std::numeric_limits<double>::infinity(), largest = 0;  // m
+};
+
+BurrRadii burrsOf(const scene::Scene& scene) {
+    BurrRadii radii;
+    for (const scene::Tool* tool : toolsOf(scene)) {
+        radii.smallest = std::min(radii.smallest, tool->burr_radius_mm() * kMillimetre);
+        radii.largest = std::max(radii.largest, tool->burr_radius_mm() * kMillimetre);
+    }
+    return radii;
 }
 
 double voxelsOf(const VolumeGeometry& geometry) {
@@ -61,14 +69,18 @@ VoxelChoice chooseVoxel(const LoadedScene& loaded, const VolumeGeometry& scan,
                         const Eigen::AlignedBox3d& box) {
     const scene::Volume::Region& region = loaded.scene.volume().region();
     if (region.has_resample_mm()) return {region.resample_mm() * kMillimetre, "as the scene asks"};
-    const double radius = smallestBurr(loaded.scene);
-    const std::string burr = "the smallest burr's radius of " + rounded(radius * kPerMillimetre) + " mm";
-    const double fine = kBurrShare * radius;
+    const BurrRadii burrs = burrsOf(loaded.scene);
+    const double wanted = kBurrShare * burrs.smallest, least = kLargeBurrShare * burrs.largest;
+    const double fine = std::max(wanted, least);
+    const std::string why =
+        wanted >= least
+            ? "a quarter of the smallest burr's radius of " + rounded(burrs.smallest * kPerMillimetre) + " mm"
+            : "an eighth of the largest burr's radius of " + rounded(burrs.largest * kPerMillimetre) +
+                  " mm, which finer ones would cost too much time";
     const double volume = regionGeometry(scan, box, fine).dims.cast<double>().prod() * fine * fine * fine;
     const double affordable = std::cbrt(volume / kProposedVoxels);
-    if (affordable <= fine) return {fine, "a quarter of " + burr};
-    return {affordable,
-            "more than a quarter of " + burr + ", for 64 million voxels: a smaller region can be finer"};
+    if (affordable <= fine) return {fine, why};
+    return {affordable, "more than " + why + ", for 64 million voxels: a smaller region can be finer"};
 }
 
 // The voxels of the scan that the scene's bone comes from.
@@ -94,6 +106,28 @@ Eigen::AlignedBox3d boneIn(const VoxelVolume& whole, const Pose& X_VS) {
     return box;
 }
 
+// With the voxels around them, which hold a part of them: beside air a rim would become a shell of bone.
+void takeAway(const std::vector<Eigen::Vector3i>& dropped, const VoxelVolume& whole, RawValues& values) {
+    const Eigen::Vector3i& dims = whole.dims();
+    for (const Eigen::Vector3i& voxel : dropped)
+        forEachIndex(
+            IndexBox{voxel, voxel}.grown(1).clamped(Eigen::Vector3i::Zero(), dims.array() - 1),
+            [&](const Eigen::Vector3i& v) {
+                if (whole.at(v.x(), v.y(), v.z()) < whole.iso())
+                    values.setToLowest(size_t(v.x()) +
+                                       size_t(dims.x()) * (size_t(v.y()) + size_t(dims.y()) * size_t(v.z())));
+            });
+}
+
+// A step makes the spline ring by a tenth: padding and metal far beyond bone would make bone of soft tissue.
+ValueRange bandOf(const RawVolume& scan) {
+    ValueRange band = scan.values.range();
+    if (!scan.is_hounsfield && band.low > kSurelyAirHu) return band;
+    band.low = std::max(band.low, kAirHu);
+    band.high = std::min(band.high, kDensestHu);
+    return band;
+}
+
 RawVolume resampled(const LoadedScene& loaded, const RawVolume& scan, std::vector<std::string>& remarks) {
     const Eigen::AlignedBox3d box = boxOf(loaded);
     const VoxelChoice voxel = chooseVoxel(loaded, scan.geometry, box);
@@ -112,7 +146,7 @@ RawVolume resampled(const LoadedScene& loaded, const RawVolume& scan, std::vecto
          << (scan.geometry.spacing * kPerMillimetre).transpose() << " mm by cubic B-spline" << deblurred
          << "; the rest is shown, but neither felt nor milled";
     remarks.push_back(text.str());
-    return resampleRegion(scan, region, deblur_mm * kMillimetre);
+    return resampleRegion(scan, region, bandOf(scan), deblur_mm * kMillimetre);
 }
 
 }  // namespace
@@ -137,11 +171,9 @@ CutScan cutRegion(const LoadedScene& loaded, RawVolume scan, const DensityMappin
     if (used.isEmpty() || (used.max - used.min).minCoeff() < 1)
         refuseField(loaded, "volume.region", kNowhere);
     VoxelVolume whole = densify(std::as_const(scan), mapping);
-    const Eigen::Vector3i& dims = scan.geometry.dims;
-    dropPieces(loaded, whole, used, remarks, [&](const Eigen::Vector3i& v) {
-        scan.values.setToLowest(size_t(v.x()) +
-                                size_t(dims.x()) * (size_t(v.y()) + size_t(dims.y()) * size_t(v.z())));
-    });
+    std::vector<Eigen::Vector3i> dropped;
+    dropPieces(loaded, whole, used, remarks, [&](const Eigen::Vector3i& v) { dropped.push_back(v); });
+    takeAway(dropped, whole, scan.values);
     clearFarFromBone(whole);
     RawVolume region = resampled(loaded, scan, remarks);
     const VolumeGeometry& fine = region.geometry;

@@ -177,9 +177,10 @@ std::vector<double> forceErrors(const std::vector<Vector3d>& found, const std::v
 void measure(const NamedBody& named, const Options& options) {
     const RawVolume scan = scanned(named.body, options.blur_mm * kMillimetre);
     const Eigen::AlignedBox3d all(Vector3d::Constant(-kHalf), Vector3d::Constant(kHalf));
-    const RawVolume fine =
-        resampleRegion(scan, regionGeometry(scan.geometry, all, options.voxel_mm * kMillimetre));
-    const RawVolume sharp = resampleRegion(scan, fine.geometry, options.blur_mm * kMillimetre);
+    const RawVolume fine = resampleRegion(
+        scan, regionGeometry(scan.geometry, all, options.voxel_mm * kMillimetre), scan.values.range());
+    const RawVolume sharp =
+        resampleRegion(scan, fine.geometry, scan.values.range(), options.blur_mm * kMillimetre);
     const VoxelVolume before = dense(scan), after = dense(fine), deblurred = dense(sharp);
     const VoxelVolume truth = [&] {
         RawVolume exact = sampleBody(named.body, gridOf(Vector3d::Constant(0.1e-3)), 65535);

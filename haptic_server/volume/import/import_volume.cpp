@@ -13,6 +13,7 @@
 #include "haptic_server/volume/import/image_stack.h"
 #include "haptic_server/volume/import/import_program.h"
 #include "haptic_server/volume/import/inv3_project.h"
+#include "haptic_server/volume/import/printed_text.h"
 #include "haptic_server/volume/import/surface_volume.h"
 #include "haptic_server/volume/import/volume_file.h"
 
@@ -57,15 +58,6 @@ bool isZip(const std::filesystem::path& path) {
     char head[4] = {};
     std::ifstream(path, std::ios::binary).read(head, sizeof head);
     return std::string_view(head, sizeof head) == std::string_view("PK\3\4", 4);
-}
-
-// As a shell takes it.
-std::string quoted(const std::string& word) {
-    const auto is_plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("/._-+,:@", c); };
-    if (std::ranges::all_of(word, is_plain)) return word;
-    std::string text = "'";
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
 }
 
 void refuseZip(const std::filesystem::path& path, const std::string& name) {

@@ -24,11 +24,13 @@ std::string vectorText(const Eigen::Vector3d& v) {
     return text;
 }
 
-std::string headerText(const VolumeGeometry& geometry, const char* type, NrrdEncoding encoding) {
+std::string headerText(const VolumeGeometry& geometry, const char* type, NrrdEncoding encoding,
+                       bool lacks_patient_axes) {
     const Eigen::Matrix3d R_WV = geometry.X_WV.rotation.toRotationMatrix();
     const Eigen::Vector3d spacing_mm = geometry.spacing * kPerMillimetre;
     std::string text = "NRRD0004\n";
-    text += std::string("type: ") + type + "\ndimension: 3\nspace: left-posterior-superior\nsizes:";
+    text += std::string("type: ") + type + "\ndimension: 3\n";
+    text += lacks_patient_axes ? "space dimension: 3\nsizes:" : "space: left-posterior-superior\nsizes:";
     for (int a = 0; a < 3; ++a) text += ' ' + std::to_string(geometry.dims[a]);
     text += "\nspace directions:";
     for (int a = 0; a < 3; ++a) text += ' ' + vectorText(R_WV.col(a) * spacing_mm[a]);
@@ -83,8 +85,9 @@ class NrrdStream<T>::File {
 
 template <class T>
 NrrdStream<T>::NrrdStream(const std::filesystem::path& path, const VolumeGeometry& geometry,
-                          NrrdEncoding encoding)
-    : file_(std::make_unique<File>(path, headerText(geometry, typeName<T>(), encoding), encoding)),
+                          NrrdEncoding encoding, bool lacks_patient_axes)
+    : file_(std::make_unique<File>(path, headerText(geometry, typeName<T>(), encoding, lacks_patient_axes),
+                                   encoding)),
       missing_(geometry.voxelCount()) {}
 
 template <class T>

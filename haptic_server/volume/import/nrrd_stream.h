@@ -16,7 +16,8 @@ enum class NrrdEncoding { kRaw, kGzip };
 template <class T>
 class NrrdStream {
   public:
-    NrrdStream(const std::filesystem::path& path, const VolumeGeometry& geometry, NrrdEncoding encoding);
+    NrrdStream(const std::filesystem::path& path, const VolumeGeometry& geometry, NrrdEncoding encoding,
+               bool lacks_patient_axes = false);
     ~NrrdStream();
     NrrdStream(const NrrdStream&) = delete;
     NrrdStream& operator=(const NrrdStream&) = delete;

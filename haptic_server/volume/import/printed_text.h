@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
+#include <cstring>
 #include <string>
 
 namespace bonemill {
@@ -19,6 +21,22 @@ inline std::string printable(std::string text) {
     std::ranges::replace_if(
         text, [](unsigned char c) { return c < ' ' || c > '~'; }, '?');
     return text;
+}
+
+// As one word for a shell.
+inline std::string quoted(const std::string& word) {
+    const auto is_plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("/._-+,:@", c); };
+    if (!word.empty() && std::ranges::all_of(word, is_plain)) return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
+// As a scene's text, in the quotes that it needs.
+inline std::string sceneText(const std::string& word) {
+    std::string text = "\"";
+    for (const char c : word) text += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+    return text + "\"";
 }
 
 }  // namespace bonemill

@@ -15,11 +15,11 @@ namespace {
 class SplineCoefficients {
   public:
     SplineCoefficients(const RawVolume& scan, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
-                       double blur)
+                       const ValueRange& band, double blur)
         : first_((low.array().floor().cast<int>() - kSplineReach).max(0)),
           dims_(((high.array().ceil().cast<int>() + kSplineReach + 1).min(scan.geometry.dims.array()) -
                  first_.array())) {
-        read(scan);
+        read(scan, band);
         if (blur > 0) takeBack(blur, scan.geometry.spacing);
         for (int axis = 0; axis < 3; ++axis) filter(axis);
     }
@@ -31,8 +31,7 @@ class SplineCoefficients {
     }
 
   private:
-    void read(const RawVolume& scan) {
-        const ValueRange range = scan.values.range();
+    void read(const RawVolume& scan, const ValueRange& range) {
         const Eigen::Vector3i& dims = scan.geometry.dims;
         values_.reserve(size_t(dims_.x()) * size_t(dims_.y()) * size_t(dims_.z()));
         scan.values.visit([&](auto samples) {
@@ -165,11 +164,12 @@ VolumeGeometry regionGeometry(const VolumeGeometry& scan, const Eigen::AlignedBo
     return region;
 }
 
-RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region, double blur) {
+RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region, const ValueRange& band,
+                         double blur) {
     const Eigen::Affine3d map = indexMap(region, scan.geometry);
     const Eigen::Vector3d low = map.translation(), step = map.linear().diagonal();
     const Eigen::Vector3d high = low + step.cwiseProduct((region.dims.array() - 1).matrix().cast<double>());
-    const SplineCoefficients spline(scan, low, high, blur);
+    const SplineCoefficients spline(scan, low, high, band, blur);
     SliceMaker slices(spline, region.dims, low, step);
     RawVolume out;
     out.geometry = region;
@@ -177,13 +177,12 @@ RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region, do
     out.is_hounsfield = scan.is_hounsfield;
     out.lacks_patient_axes = scan.lacks_patient_axes;
     out.values.reserve(region.voxelCount());
-    const ValueRange& range = scan.values.range();
     std::vector<float> slice;
     for (int k = 0; k < region.dims.z(); ++k) {
         slices.make(k, slice);
         for (float& value : slice) {
-            if (blur <= 0) value = std::clamp(value, float(range.low), float(range.high));
-            if (range.are_integers) value = std::nearbyint(value);
+            if (blur <= 0) value = std::clamp(value, float(band.low), float(band.high));
+            if (band.are_integers) value = std::nearbyint(value);
         }
         out.values.append(std::span<const float>(slice));
     }

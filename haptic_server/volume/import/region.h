@@ -20,10 +20,11 @@ namespace bonemill {
 // do not meet.
 VolumeGeometry regionGeometry(const VolumeGeometry& scan, const Eigen::AlignedBox3d& box_W, double voxel);
 
-// The value at each voxel of the region. Values stay within the scan's range, unless a blur is taken back,
-// and whole numbers whole. What is not finite counts as the nearer end of that range, NaN as the lower one.
-// `blur` (m) is the standard deviation of the scanner's blur: it is taken back to first order before, which
-// raises the noise; 0: it stays.
-RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region, double blur = 0);
+// The value at each voxel of the region. The scan's values are taken within the band, and stay there unless a
+// blur is taken back; whole numbers stay whole. NaN counts as the band's lower end. `blur` (m) is the
+// standard deviation of the scanner's blur: it is taken back to first order before, which raises the noise;
+// 0: it stays.
+RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region, const ValueRange& band,
+                         double blur = 0);
 
 }  // namespace bonemill

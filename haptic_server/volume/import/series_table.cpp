@@ -82,9 +82,9 @@ void recommend(const std::vector<DicomStack>& stacks, std::vector<std::string>& 
     }
     const std::string &uid = best.stack->slices.front().series_uid, &name = best.stack->name;
     lines.push_back("recommended for bone: " + titleOf(*best.stack) + ": " + best.why);
-    lines.push_back("to take it: volume { series_uid: \"" + uid + "\"" +
-                    (name.empty() ? "" : " acquisition: \"" + name + "\"") + " } in a scene, --series " +
-                    uid + (name.empty() ? "" : " --acquisition \"" + name + "\"") + " for make-case");
+    lines.push_back("to take it: volume { series_uid: " + sceneText(uid) +
+                    (name.empty() ? "" : " acquisition: " + sceneText(name)) + " } in a scene, --series " +
+                    quoted(uid) + (name.empty() ? "" : " --acquisition " + quoted(name)) + " for make-case");
 }
 
 }  // namespace

@@ -58,6 +58,20 @@ TEST(CasePlan, WithoutAPlaceIsOfAllBone) {
     EXPECT_NE(plan.remarks[0].find("piece 1 of bone: 3.3"), std::string::npos) << plan.remarks[0];
 }
 
+TEST(CasePlan, LooksAtNoPieceThatIsDropped) {
+    CaseRequest request = requestAt({});
+    request.drop_pieces = {1};
+    const CasePlan plan = planCase(ballInAir(), request);
+    EXPECT_LT((plan.start - Eigen::Vector3d(90e-3, 100e-3, 84e-3)).norm(), 1.5e-3) << "on the small ball";
+    request.drop_pieces = {1, 2};
+    expectUserError([&] { planCase(ballInAir(), request); }, {"drops all bone"});
+    request.drop_pieces = {9};
+    expectUserError([&] { planCase(ballInAir(), request); }, {"--drop-piece 9", "only 2 pieces"});
+    request = requestAt({90, 100, 80});
+    request.drop_pieces = {2};
+    expectUserError([&] { planCase(ballInAir(), request); }, {"no bone at --at"});
+}
+
 TEST(CasePlan, RefusesAPlaceWithoutBone) {
     expectUserError(
         [] {

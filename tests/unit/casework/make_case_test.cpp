@@ -81,7 +81,7 @@ TEST_F(MakeCase, IsASceneThatRunsWithTheSameVoxels) {
     EXPECT_TRUE(simulation.surroundings);
     EXPECT_EQ(simulation.tools[0].name, "3 mm");
     EXPECT_TRUE(simulation.tick.effects.protected_field);
-    EXPECT_TRUE(simulation.X_WD.position.isApprox(Eigen::Vector3d(32e-3, 20e-3, 20e-3), 0.05));
+    EXPECT_LT((simulation.X_WD.position - Eigen::Vector3d(32e-3, 20e-3, 20e-3)).norm(), 0.6e-3);
     EXPECT_TRUE(
         (simulation.X_WD.rotation * Eigen::Vector3d::UnitY()).isApprox(Eigen::Vector3d::UnitX(), 1e-6));
     const RawVolume before = importVolumeHere(request_.scan),
@@ -138,6 +138,21 @@ TEST_F(MakeCase, SaysWhereItComesFrom) {
     EXPECT_EQ(json["scan"]["voxels"], (nlohmann::json{40, 40, 40}));
     EXPECT_EQ(json["scan"]["sha256"].get<std::string>().size(), 64u);
     EXPECT_TRUE(json.contains("iso_value_proposed"));
+}
+
+TEST_F(MakeCase, MakesNoneThatNoSessionCouldStart) {
+    request_.at_mm = {12, 20, 20};  // the nerve is elsewhere
+    expectUserError([&] { make(); }, {"finds nothing to protect"});
+    EXPECT_FALSE(fs::exists(folder_ / "case"));
+}
+
+TEST_F(MakeCase, KnowsThatTheSidesAreNotKnown) {
+    std::string bytes = textOfFile(request_.scan);
+    const std::string space = "space: left-posterior-superior\n";
+    bytes.replace(bytes.find(space), space.size(), "space dimension: 3\n");
+    writeBytes(request_.scan, bytes);
+    make();
+    EXPECT_TRUE(importVolumeHere(folder_ / "case/scan.nrrd").lacks_patient_axes);
 }
 
 TEST_F(MakeCase, TouchesNoFolderThatIsThere) {

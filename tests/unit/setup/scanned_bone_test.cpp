@@ -127,11 +127,15 @@ TEST_F(ScannedBoneOfAScene, ARegionsSurfaceIsWhereTheBodysIs) {
     EXPECT_GT(worst, 0);
 }
 
-TEST_F(ScannedBoneOfAScene, ARegionsVoxelsAreAQuarterOfTheSmallestBurr) {
-    const ScannedBone bone =
-        boneOf(kAroundSmall + "}", "tool { burr_radius_mm: 3 }\ntool { burr_radius_mm: 1.2 }");
-    EXPECT_TRUE(bone.volume.spacing().isConstant(0.3 * kMm, 1e-9));
-    EXPECT_TRUE(says(bone, "a quarter of the smallest burr's radius of 1.2 mm"));
+TEST_F(ScannedBoneOfAScene, ARegionsVoxelsSuitItsBurrs) {
+    const ScannedBone alike =
+        boneOf(kAroundSmall + "}", "tool { burr_radius_mm: 2 }\ntool { burr_radius_mm: 1.2 }");
+    EXPECT_TRUE(alike.volume.spacing().isConstant(0.3 * kMm, 1e-9));
+    EXPECT_TRUE(says(alike, "a quarter of the smallest burr's radius of 1.2 mm"));
+    const ScannedBone apart =
+        boneOf(kAroundSmall + "}", "tool { burr_radius_mm: 3 }\ntool { burr_radius_mm: 0.5 }");
+    EXPECT_TRUE(apart.volume.spacing().isConstant(0.375 * kMm, 1e-9));
+    EXPECT_TRUE(says(apart, "an eighth of the largest burr's radius of 3 mm"));
 }
 
 TEST_F(ScannedBoneOfAScene, APieceIsDroppedFromRegionAndSurroundings) {
@@ -143,6 +147,24 @@ TEST_F(ScannedBoneOfAScene, APieceIsDroppedFromRegionAndSurroundings) {
     EXPECT_FALSE(is_any) << "ringing beside what was dropped";
     EXPECT_TRUE(isBoneAt(bone.surroundings->volume, large_));
     EXPECT_FALSE(isBoneAt(bone.surroundings->volume, small_));
+}
+
+// The rim of a piece in soft tissue, which it fills in part, stays no shell of bone.
+TEST_F(ScannedBoneOfAScene, APieceThatIsDroppedFromTissueLeavesNoShell) {
+    std::vector<float> values;
+    forEachIndex({Eigen::Vector3i::Zero(), geometry_.dims.array() - 1}, [&](const Eigen::Vector3i& v) {
+        const Eigen::Vector3d p = geometry_.spacing.cwiseProduct(v.cast<double>());
+        const double of_large = (p - large_).norm() - 8 * kMm, of_small = (p - small_).norm() - 4 * kMm;
+        values.push_back(of_large < 0 || of_small < 0 ? 1500.0f : of_small < 0.8 * kMm ? 280.0f : 40.0f);
+    });
+    values[0] = -1024;
+    writeNrrd(folder_ / "scan.nrrd", geometry_, values);
+    const ScannedBone bone = boneOf(kAroundSmall + "resample_mm: 0.5 } drop_piece: 2");
+    bool is_any = false;
+    forEachIndex({Eigen::Vector3i::Zero(), bone.volume.dims().array() - 1}, [&](const Eigen::Vector3i& v) {
+        is_any = is_any || bone.volume.at(v.x(), v.y(), v.z()) >= bone.volume.iso();
+    });
+    EXPECT_FALSE(is_any);
 }
 
 TEST_F(ScannedBoneOfAScene, PiecesThatTouchTheRegionAreKept) {
