@@ -106,7 +106,7 @@ TEST(Region, StaysWithinTheScansRange) {
 TEST(Region, MakesNoBoneOfPaddingBesideTissue) {
     const VolumeGeometry grid = coarseGrid();
     const RawVolume scan = scanOf(grid, [&](const Eigen::Vector3d& p) {
-        return (grid.X_WV.inverse() * p).x() > 20 * kMm ? 40.0 : -3024.0;
+        return (grid.X_WV.inverse() * p).x() > 20.5 * kMm ? 40.0 : -3024.0;
     });
     ValueRange band = scan.values.range();
     const VolumeGeometry region = regionGeometry(grid, boxInMiddle(grid, 6 * kMm), 0.25 * kMm);
