@@ -23,7 +23,7 @@ constexpr double kBorderVoxels = 8;      // of the plane's volume around the con
 constexpr double kStartHeight = 0.1e-3;  // m
 constexpr int kPressTicks = 100, kRestTicks = 60, kMeanTicks = 20;
 constexpr Density kIso = 32768;
-constexpr double kRampVoxels = 8;  // over which the density falls from full to none
+constexpr double kProbedRampVoxels = 8;  // over which the density falls from full to none
 
 double depthOfWidth(double radius, double width) {
     return radius - std::sqrt(radius * radius - width * width / 4);
@@ -59,7 +59,7 @@ VoxelVolume halfSpace(double half_edge, double spacing, std::mt19937& random) {
         for (int j = 0; j < geometry.dims.y(); ++j)
             for (int i = 0; i < geometry.dims.x(); ++i) {
                 const double height = (geometry.X_WV * (spacing * Vector3d(i, j, k))).z();
-                const double density = kIso - height / (kRampVoxels * spacing) * kMaxDensity;
+                const double density = kIso - height / (kProbedRampVoxels * spacing) * kMaxDensity;
                 volume.set(i, j, k, Density(std::lround(std::clamp(density, 0.0, double(kMaxDensity)))));
             }
     return volume;

@@ -26,8 +26,8 @@ void feed(const Surroundings& surroundings, uint32_t first_leaf, MeshOutbox& out
 
 }  // namespace
 
-SurroundingsFeed::SurroundingsFeed(std::shared_ptr<const Surroundings> surroundings, uint32_t first_leaf,
-                                   MeshOutbox& outbox) {
+SurroundingsFeed::SurroundingsFeed(const std::shared_ptr<const Surroundings>& surroundings,
+                                   uint32_t first_leaf, MeshOutbox& outbox) {
     if (!surroundings) {
         is_done_ = true;
         return;

@@ -15,7 +15,7 @@ class SurroundingsFeed {
   public:
     // Begins at once; there is nothing to do without surroundings (null). Nodes are numbered from first_leaf
     // on. The outbox must outlive this object, whose end ends the work.
-    SurroundingsFeed(std::shared_ptr<const Surroundings> surroundings, uint32_t first_leaf,
+    SurroundingsFeed(const std::shared_ptr<const Surroundings>& surroundings, uint32_t first_leaf,
                      MeshOutbox& outbox);
 
     // Any thread: all that there is has been put.

@@ -75,8 +75,9 @@ std::pair<double, double> extentOf(const DicomStack& stack) {
 // Ranges that only touch make one volume together.
 bool allOverlap(const std::vector<DicomStack>& stacks) {
     constexpr double kShare = 0.5;  // of the shorter
-    const auto [low, high] = extentOf(stacks.front());
-    return std::ranges::all_of(stacks, [low, high](const DicomStack& stack) {
+    const std::pair<double, double> first = extentOf(stacks.front());
+    return std::ranges::all_of(stacks, [&first](const DicomStack& stack) {
+        const auto [low, high] = first;
         const auto [from, to] = extentOf(stack);
         return std::min(high, to) - std::max(low, from) > kShare * std::min(high - low, to - from);
     });

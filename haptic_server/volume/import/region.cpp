@@ -51,7 +51,8 @@ class SplineCoefficients {
     template <class Change>
     void forEachLine(int axis, Change&& change) {
         const std::array<size_t, 3> stride = {1, size_t(dims_.x()), size_t(dims_.x()) * size_t(dims_.y())};
-        std::vector<double> line(size_t(dims_[axis]));
+        const auto length = size_t(dims_[axis]);
+        std::vector<double> line(length);
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
         for (int b = 0; b < dims_[v]; ++b)
             for (int a = 0; a < dims_[u]; ++a) {
