@@ -97,6 +97,15 @@ void checkSpacings(const std::string& text, const std::filesystem::path& path) {
                             ") are no lengths; write the voxels' size into the NRRD header");
 }
 
+// The library counts some of them with 32 bit, and would take 2^32 + 1 for 1.
+void checkSizes(const std::string& text, const std::filesystem::path& path) {
+    constexpr double kMostSize = double(uint64_t(1) << 31);
+    std::istringstream words(text);
+    for (std::string word; words >> word;)
+        if (!(std::strtod(word.c_str(), nullptr) <= kMostSize))
+            throw UserError(path.string() + ": its sizes (" + text + ") are absurd; the header is damaged");
+}
+
 struct Units {
     std::string of_space, of_axes;
 };
@@ -108,6 +117,7 @@ void takeField(const std::string& name, const std::string& value, const std::fil
     if (name == "datafile") header.data_file = value;
     if (name == "spacedirections") checkDirections(value, path);
     if (name == "spacings") checkSpacings(value, path);
+    if (name == "sizes") checkSizes(value, path);
     header.has_spacing = header.has_spacing || name == "spacedirections" || name == "spacings";
     if (name == "spaceunits") units.of_space = value;
     if (name == "units") units.of_axes = value;

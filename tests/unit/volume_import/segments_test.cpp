@@ -8,6 +8,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/volume_import/expect_user_error.h"
 #include "tests/unit/volume_import/seg_nrrd.h"
+#include "tests/unit/volume_import/volume_files.h"
 
 namespace bonemill {
 namespace {
@@ -44,6 +45,16 @@ TEST_F(SegNrrd, hasTheNamesAndColoursOfItsLabels) {
     expectUserError([&] { labelsOfSegment(raw.segments, "dura", "f"); },
                     {"f: has no segment \"dura\"", "facial nerve, sinus"});
     expectUserError([] { labelsOfSegment({}, "dura", "f"); }, {"f: names no segments", ".seg.nrrd"});
+}
+
+// The library counts layers with 32 bit: it would take these for one, and ask for memory for all of them.
+TEST_F(SegNrrd, absurdSizesAreRefused) {
+    imported({.layers = 2, .segments = segmentLines(0, "a", 1, 0), .label = ofColumn});
+    std::string bytes = readBytes(folder_ / "a.seg.nrrd");
+    const size_t sizes = bytes.find("sizes: 2 ");
+    ASSERT_NE(sizes, std::string::npos);
+    writeBytes(folder_ / "a.seg.nrrd", bytes.replace(sizes, 9, "sizes: 4294967297 "));
+    expectUserError([&] { importVolume(folder_ / "a.seg.nrrd"); }, {"a.seg.nrrd", "absurd"});
 }
 
 // In the first layer a is 1 and b 2, in the second c is 1; c overlaps both.
