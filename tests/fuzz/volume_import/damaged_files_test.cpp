@@ -20,8 +20,8 @@
 #include "tests/unit/volume_import/volume_files.h"
 
 #ifdef __SANITIZE_ADDRESS__
-// ITK's readers and assimp lose what they hold when they refuse a file; the programs read in a child process that
-// ends then.
+// ITK's readers and assimp lose what they hold when they refuse a file; the programs read in a child process
+// that ends then.
 extern "C" const char* __lsan_default_suppressions() {
     return "leak:libITK\nleak:libz.so\nleak:libassimp\n";
 }
