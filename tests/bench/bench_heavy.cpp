@@ -30,7 +30,7 @@ constexpr double kWideSpeedRpm = 60000;
 
 struct HeavyOptions {
     int rounds = 5;
-    std::string only, json;
+    std::string only, scene, json;
 };
 
 std::string shipped(const std::string& name) {
@@ -107,8 +107,8 @@ class HeavyCase {
 };
 
 // The scene's own hand holds the tool without giving way.
-HeavyCase shippedCase(const std::string& name) {
-    const LoadedScene loaded = loadScene(shipped(name));
+HeavyCase sceneCase(const std::string& name, const std::string& file) {
+    const LoadedScene loaded = loadScene(file);
     const OperatorPath hand = scenarioOf(loaded.scene).path;
     Simulation simulation = makeSimulation(loaded);
     const FixedTickConfig config = simulation.fixedTick();
@@ -120,6 +120,10 @@ HeavyCase shippedCase(const std::string& name) {
         path[n].buttons = target.buttons;
     }
     return {name, std::move(simulation), config, std::move(path)};
+}
+
+HeavyCase shippedCase(const std::string& name) {
+    return sceneCase(name, shipped(name));
 }
 
 enum class WideEffects { kNone, kEnergyRemoval, kAllOfMastoid };
@@ -206,12 +210,16 @@ void print(const nlohmann::json& medians, const std::vector<HeavyCase>& cases) {
 }
 
 // The first is what the others are measured by.
-std::vector<HeavyCase> casesWith(const std::string& only) {
+std::vector<HeavyCase> casesWith(const HeavyOptions& o) {
     std::vector<HeavyCase> cases;
     const auto add = [&](const std::string& name, auto&& make) {
-        if (cases.empty() || name.find(only) != std::string::npos) cases.push_back(make(name));
+        if (cases.empty() || name.find(o.only) != std::string::npos) cases.push_back(make(name));
     };
     add("tooth_corridor", shippedCase);
+    if (!o.scene.empty()) {
+        cases.push_back(sceneCase(o.scene, o.scene));
+        return cases;
+    }
     add("pedicle", shippedCase);
     for (const double voxel_mm : {0.2, 0.125})
         for (const Wide& wide : kWide)
@@ -221,7 +229,7 @@ std::vector<HeavyCase> casesWith(const std::string& only) {
 }
 
 void measure(const HeavyOptions& o) {
-    std::vector<HeavyCase> cases = casesWith(o.only);
+    std::vector<HeavyCase> cases = casesWith(o);
     for (HeavyCase& one : cases) one.run();  // opens the bricks that milling needs
     std::vector<nlohmann::json> runs;
     for (int round = 0; round < o.rounds; ++round) {
@@ -246,6 +254,7 @@ void addHeavyCommand(CLI::App& app) {
         "heavy", "scenes with many effects and wide burrs, in multiples of the tooth's corridor");
     command->add_option("--rounds", o->rounds, "of all cases in turn")->check(CLI::Range(1, 999));
     command->add_option("--only", o->only, "beside the corridor only cases with this in their name");
+    command->add_option("--scene", o->scene, "beside the corridor only this scene, with its own hand");
     addJsonOption(*command, o->json);
     command->callback([o] { measure(*o); });
 }
