@@ -159,11 +159,8 @@ void SurfaceShift::findPatches(const BoneModel& bone) noexcept {
     });
 }
 
-// Calls visit(voxel, weight) with the hat's weights, > 0, of the voxels that can be written. `at` is
-// in voxel steps.
-template <class Visit>
-void SurfaceShift::forEachVoxelAround(const BoneModel& bone, const Vector3f& at,
-                                      Visit&& visit) const noexcept {
+// Returns those that can be written where the hat around `at`, in voxel steps, is > 0.
+IndexBox SurfaceShift::voxelsAround(const BoneModel& bone, const Vector3f& at) const noexcept {
     const auto width = float(blockOf(bone));
     const Vector3i room_low = first_.array() + 1, room_high = (first_ + size_).array() - 2;
     const Vector3i low =
@@ -172,11 +169,20 @@ void SurfaceShift::forEachVoxelAround(const BoneModel& bone, const Vector3f& at,
                               .matrix()
                               .cwiseMin(room_high)
                               .cwiseMin((bone.volume.dims().array() - 1).matrix());
+    return {low, high};
+}
+
+// Calls visit(voxel, weight) with the hat's weights, for voxelsAround(at).
+template <class Visit>
+void SurfaceShift::forEachVoxelIn(const BoneModel& bone, const IndexBox& voxels, const Vector3f& at,
+                                  Visit&& visit) const noexcept {
+    const auto width = float(blockOf(bone));
     const auto hat = [&](int voxel, float place) { return width - std::abs(float(voxel) - place); };
-    for (int k = low.z(); k <= high.z(); ++k)
-        for (int j = low.y(); j <= high.y(); ++j) {
+    for (int k = voxels.min.z(); k <= voxels.max.z(); ++k)
+        for (int j = voxels.min.y(); j <= voxels.max.y(); ++j) {
             const float off_row = hat(k, at.z()) * hat(j, at.y());
-            for (int i = low.x(); i <= high.x(); ++i) visit(Vector3i(i, j, k), off_row * hat(i, at.x()));
+            for (int i = voxels.min.x(); i <= voxels.max.x(); ++i)
+                visit(Vector3i(i, j, k), off_row * hat(i, at.x()));
         }
 }
 
@@ -210,6 +216,24 @@ void SurfaceShift::touch(const Vector3i& voxel) noexcept {
     touched_.include(voxel);
 }
 
+// Nothing is asked of this voxel any more.
+void SurfaceShift::forgetVoxel(const Vector3i& voxel) noexcept {
+    const int i = voxel.x() - first_.x();
+    asked_[row(voxel.y(), voxel.z()) + size_t(i / kRowBits)] &= ~(RowBits(1) << (i % kRowBits));
+    Node& node = nodes_[index(voxel)];
+    node.drop = node.weight = 0;
+}
+
+bool SurfaceShift::isAnyTouched(const IndexBox& voxels) const noexcept {
+    const IndexBox box = voxels.clamped(touched_.min, touched_.max);
+    for (int k = box.min.z(); k <= box.max.z(); ++k)
+        for (int j = box.min.y(); j <= box.max.y(); ++j) {
+            const Span span = touchedIn(row(j, k), box.min.x(), box.max.x());
+            if (span.low <= span.high) return true;
+        }
+    return false;
+}
+
 // The span reaches from the first to the last of the row's touched voxels within low .. high.
 SurfaceShift::Span SurfaceShift::touchedIn(size_t row, int low, int high) const noexcept {
     const auto isTouched = [&](int voxel) {
@@ -232,7 +256,7 @@ void SurfaceShift::spreadWishes(const BoneModel& bone, const SpecificEnergy& u, 
         const double wanted = share * double(node.energy) / (u.ofCell(cell) * double(area));
         is_too_fast_ |= wanted > most;
         const Wish wish = wishOf(bone.volume, patch.at, std::min({wanted, double(node.depth), most}));
-        forEachVoxelAround(bone, wish.at, [&](const Vector3i& voxel, float hat) {
+        forEachVoxelIn(bone, voxelsAround(bone, wish.at), wish.at, [&](const Vector3i& voxel, float hat) {
             touch(voxel);
             Node& to = nodes_[index(voxel)];
             to.drop += hat * area * wish.drop;
@@ -246,7 +270,10 @@ void SurfaceShift::spreadRest(const BoneModel& bone) noexcept {
     const Vector3f inverse = bone.volume.spacing().cwiseInverse().cast<float>();
     for (const NearPatch& patch : std::span(near_).first(near_count_)) {
         if (nodes_[patch.node].energy > 0) continue;
-        forEachVoxelAround(bone, patch.at.cwiseProduct(inverse), [&](const Vector3i& voxel, float hat) {
+        const Vector3f at = patch.at.cwiseProduct(inverse);
+        const IndexBox voxels = voxelsAround(bone, at);
+        if (!isAnyTouched(voxels)) continue;
+        forEachVoxelIn(bone, voxels, at, [&](const Vector3i& voxel, float hat) {
             Node& to = nodes_[index(voxel)];
             if (to.weight > 0) to.weight += hat * patch.area;
         });
@@ -289,11 +316,11 @@ double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double shar
     result.is_cut_short |= is_too_fast_;
     if (touched_.isEmpty()) return 0;
     spreadRest(bone);
+    collect(bone, result);
+    if (collector_.isEmpty()) return 0;
     forEachCell(bone, [&](const Vector3i& cell, Node& node) {
         node.fill = float(fill_(readCorners(bone.volume, cell)));
     });
-    collect(bone, result);
-    if (collector_.isEmpty()) return 0;
     result.shell_is_complete &= collector_.write(bone.volume, bone.lattice, bone.shell, -1);
     double spent = 0;
     forEachCell(bone, [&](const Vector3i& cell, const Node& node) {
@@ -326,6 +353,7 @@ bool SurfaceShift::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, Mill
     return of_part.changed.isEmpty() || collector_.takePart(volume, 0, of_part, of_leaf);
 }
 
+// Forgets the voxels that stay as they are, so that nobody looks at the cells around them.
 void SurfaceShift::collectRow(const VoxelVolume& volume, const Vector3i& first, int count, ChangedRuns& rows,
                               MillingResult& of_part) noexcept {
     volume.readRow(first, count, old_.data());
@@ -333,13 +361,14 @@ void SurfaceShift::collectRow(const VoxelVolume& volume, const Vector3i& first, 
     bool is_changed = false;
     for (int i = 0; i < count; ++i) {
         const Density old = old_[size_t(i)];
-        fresh_[size_t(i)] = old;
-        if (!(node[i].drop > 0) || old == 0) continue;
-        const double left = double(old) - double(node[i].drop) / double(node[i].weight);
-        const auto density = Density(std::floor(std::max(left, 0.0) + rounding_));
-        fresh_[size_t(i)] = std::min(old, density);
-        is_changed |= density < old;
-        of_part.removed_voxels += old >= volume.iso() && density < volume.iso();
+        Density& fresh = fresh_[size_t(i)] = old;
+        if (node[i].drop > 0) {
+            const double left = double(old) - double(node[i].drop) / double(node[i].weight);
+            fresh = std::min(old, Density(std::floor(std::max(left, 0.0) + rounding_)));
+        }
+        if (fresh == old) forgetVoxel(first + Vector3i(i, 0, 0));
+        is_changed |= fresh < old;
+        of_part.removed_voxels += old >= volume.iso() && fresh < volume.iso();
     }
     if (is_changed) rows.add(first, count, old_.data(), fresh_.data(), of_part.changed);
 }

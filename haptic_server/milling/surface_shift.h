@@ -82,14 +82,18 @@ class SurfaceShift {
     static int blockOf(const BoneModel& bone) noexcept;
 
     void findPatches(const BoneModel& bone) noexcept;
+    IndexBox voxelsAround(const BoneModel& bone, const Eigen::Vector3f& at) const noexcept;
     template <class Visit>
-    void forEachVoxelAround(const BoneModel& bone, const Eigen::Vector3f& at, Visit&& visit) const noexcept;
+    void forEachVoxelIn(const BoneModel& bone, const IndexBox& voxels, const Eigen::Vector3f& at,
+                        Visit&& visit) const noexcept;
     template <class Visit>
     void forEachCell(const BoneModel& bone, Visit&& visit) noexcept;
     Wish wishOf(const VoxelVolume& volume, const Eigen::Vector3f& point, double recession) const noexcept;
     void spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share, double most) noexcept;
     void spreadRest(const BoneModel& bone) noexcept;
     void touch(const Eigen::Vector3i& voxel) noexcept;
+    void forgetVoxel(const Eigen::Vector3i& voxel) noexcept;
+    bool isAnyTouched(const IndexBox& voxels) const noexcept;
     Span touchedIn(size_t row, int low, int high) const noexcept;
     template <class Visit>
     void forEachBit(int word, RowBits bits, Visit&& visit) const noexcept;
