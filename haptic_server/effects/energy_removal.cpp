@@ -33,7 +33,22 @@ void EnergyRemoval::begin(EffectTick& tick) noexcept {
 void EnergyRemoval::takeTurn(const EffectTick& tick) noexcept {
     if (++turn_ < turns_) return;
     turn_ = 0;
+    leaf_turns_.clear();
     turns_ = tick.contacts.size() / most_contacts_ + 1;
+}
+
+// The contacts of a patch follow each other.
+void EnergyRemoval::shareLeaves(const EffectTick& tick) noexcept {
+    PatchId last;
+    bool is_first = true;
+    for (size_t n = 0; n < tick.contacts.size(); ++n) {
+        if (!tick.is_on_burr[n]) continue;
+        const PatchId patch = tick.candidates->patch[tick.contacts[n].candidate];
+        if (is_first || patch != last) leaf_turns_.count(patch.leaf, 1);
+        is_first = false;
+        last = patch;
+    }
+    leaf_turns_.share(turns_);
 }
 
 double EnergyRemoval::scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,
@@ -126,6 +141,7 @@ double EnergyRemoval::spendContacts(const EffectTick& tick, const BoneModel& bon
     const Eigen::Vector3d axis = tick.X_VT.rotation * Eigen::Vector3d::UnitY();
     shift_.begin(bone, tick.X_VT.position);
     if (config_.threshold_pressure > 0) weighRegions(tick);
+    if (turns_ > 1 && turn_ == 0) shareLeaves(tick);
     double energy = 0;
     for (size_t n = 0; n < tick.contacts.size(); ++n) {
         if (!tick.is_on_burr[n]) continue;
@@ -137,7 +153,7 @@ double EnergyRemoval::spendContacts(const EffectTick& tick, const BoneModel& bon
         const double of_contact = burr.friction * speed * above * tick.dt;
         energy += of_contact;
         const PatchId patch = tick.candidates->patch[contact.candidate];
-        if (patch.leaf % turns_ != turn_) continue;
+        if (turns_ > 1 && leaf_turns_.turnOf(patch.leaf, turns_) != turn_) continue;
         shift_.add(bone, patch, of_contact * double(turns_), double(contact.depth));
     }
     removal_power_ = energy / tick.dt;

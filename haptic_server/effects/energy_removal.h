@@ -16,8 +16,8 @@
 // if hardly.
 //
 // Bone under a large burr takes turns: with more contacts than a tick has time for, the leaves mill in
-// `turns` groups, each in every turns-th tick and for as many ticks at once (the weights, too, then know
-// that dt).
+// `turns` groups with about as many patches each (leaf_turns.h), each in every turns-th tick and for as many
+// ticks at once (the weights, too, then know that dt).
 //
 // The cut surface is the burr's only within some micrometres, which is as much as the contact is deep: on
 // coarse voxels, and with a stiff contact (a short tick), few places carry what many should, at pressures far
@@ -35,6 +35,7 @@
 
 #include "haptic_server/effects/effect_configs.h"
 #include "haptic_server/effects/haptic_effect.h"
+#include "haptic_server/effects/leaf_turns.h"
 #include "haptic_server/milling/surface_shift.h"
 
 namespace bonemill {
@@ -51,7 +52,9 @@ class EnergyRemoval final : public HapticEffect {
     // The bone's properties and materials are taken from `all`.
     EnergyRemoval(const EnergyRemovalConfig& config, const EffectConfigs& all, const BoneModel& bone,
                   const EffectRoom& room);
-    void restart(Restart) noexcept override { account_ = to_repay_ = 0, turn_ = 0, turns_ = 1; }
+    void restart(Restart) noexcept override {
+        account_ = to_repay_ = 0, turn_ = 0, turns_ = 1, leaf_turns_.clear();
+    }
     void begin(EffectTick& tick) noexcept override;
     double scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,
                  const ToolField& tool, const Pose& X_VT) noexcept override;
@@ -74,6 +77,7 @@ class EnergyRemoval final : public HapticEffect {
     double specificEnergyAt(const Eigen::Vector3d& p_V) noexcept;
     double spendContacts(const EffectTick& tick, const BoneModel& bone) noexcept;
     void takeTurn(const EffectTick& tick) noexcept;
+    void shareLeaves(const EffectTick& tick) noexcept;
 
     EnergyRemovalConfig config_;
     SpecificEnergy specific_energy_;
@@ -84,6 +88,7 @@ class EnergyRemoval final : public HapticEffect {
     SurfaceShift shift_;
     size_t most_contacts_;
     size_t turn_ = 0, turns_ = 1;
+    LeafTurns leaf_turns_;
     bool is_cutting_ = false;
     double account_ = 0;   // J not yet spent; negative: too much was
     double to_repay_ = 0;  // J: the account when the turns began
