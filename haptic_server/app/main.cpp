@@ -157,6 +157,9 @@ void addCaseOptions(CLI::App& app, CaseRequest& request) {
                    "edges of the voxels, mm, for images and files that do not say them")
         ->expected(3);
     app.add_option("--title", request.title, "what people read in the list of scenes");
+    app.add_option("--task", request.task, "what the trainee is to do");
+    app.add_option("--credit", request.credit,
+                   "who is to be named for the scan, and its licence; stands behind the task");
     app.add_option("--iso", request.iso, "raw value (HU) of the bone's surface; default: proposed");
     app.add_option("--at", request.at_mm,
                    "middle of the part that is milled, in W (docs/frames.md), mm; default: all is")

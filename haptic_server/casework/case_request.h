@@ -26,6 +26,8 @@ struct CaseRequest {
     std::vector<double> spacing_mm;  // of voxels whose file or folder does not say it
     std::string out;                 // folder that is made
     std::string title;
+    std::string task;    // what the trainee is told to do
+    std::string credit;  // of the scan: who is to be named, and its licence
     std::optional<double> iso;
     std::vector<double> at_mm;  // W: middle of the region; empty: all of the bone is milled
     double size_mm = 40;        // edge of the region

@@ -36,6 +36,11 @@ void describeVolume(const CasePlan& plan, const CaseRequest& request, bool has_l
     if (request.voxel_mm) volume->mutable_region()->set_resample_mm(*request.voxel_mm);
 }
 
+std::string taskOf(const CaseRequest& request) {
+    if (request.credit.empty()) return request.task;
+    return request.task + (request.task.empty() ? "" : " ") + "Scan: " + request.credit;
+}
+
 // Its neutral pose holds the burr on the bone, the shaft towards the hand.
 void describeHand(const CasePlan& plan, scene::Device* device) {
     assign(plan.start, device->mutable_p_wd_mm());
@@ -110,6 +115,7 @@ scene::Scene sceneOfCase(const CasePlan& plan, const CaseRequest& request,
     scene::Scene scene;
     scene.set_name(name);
     if (!request.title.empty()) scene.set_title(request.title);
+    if (const std::string task = taskOf(request); !task.empty()) scene.set_task(task);
     describeVolume(plan, request, !request.labels.empty(), scene.mutable_volume());
     for (const scene::Tool& tool : tools) *scene.add_tool() = tool;
     describeEffects(tools, scene.mutable_effects());

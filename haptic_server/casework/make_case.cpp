@@ -84,8 +84,8 @@ std::vector<scene::Tool> toolsOfFile(const std::string& file) {
     return {scene.tool().begin(), scene.tool().end()};
 }
 
-std::string provenanceOf(const RawVolume& scan, const CasePlan& plan, const fs::path& file,
-                         const std::string& version) {
+std::string provenanceOf(const RawVolume& scan, const CasePlan& plan, const CaseRequest& request,
+                         const fs::path& file, const std::string& version) {
     const std::time_t now = std::time(nullptr);
     char day[16];
     std::strftime(day, sizeof day, "%Y-%m-%d", std::gmtime(&now));
@@ -100,6 +100,7 @@ std::string provenanceOf(const RawVolume& scan, const CasePlan& plan, const fs::
                     {"sha256", sha256OfFile(file)}};
     json["iso_value"] = plan.mapping.iso_value;
     if (plan.mapping.proposed) json["iso_value_proposed"] = textOf(*plan.mapping.proposed);
+    if (!request.credit.empty()) json["credit"] = request.credit;
     json["left_out"] = "name, dates, identifiers and all other text of the scan's file";
     return json.dump(2) + "\n";
 }
@@ -139,7 +140,7 @@ void makeCase(const CaseRequest& request, const std::string& version, std::ostre
     }
     const std::string scene_file = folder.name() + ".textproto";
     writeText(folder / scene_file, textOfScene(sceneOfCase(plan, request, labels, tools, folder.name())));
-    writeText(folder / "provenance.json", provenanceOf(scan, plan, folder / kScanOfCase, version));
+    writeText(folder / "provenance.json", provenanceOf(scan, plan, request, folder / kScanOfCase, version));
     const Simulation simulation = makeSimulation(loadScene(folder / scene_file));  // as a session would
     for (const std::string& remark : simulation.remarks) out << remark << '\n';
     for (const std::string& warning : simulation.warnings) out << "warning: " << warning << '\n';

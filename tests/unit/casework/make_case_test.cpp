@@ -140,6 +140,16 @@ TEST_F(MakeCase, SaysWhereItComesFrom) {
     EXPECT_TRUE(json.contains("iso_value_proposed"));
 }
 
+TEST_F(MakeCase, NamesThoseWhoAskForIt) {
+    request_.task = "Drill.";
+    request_.credit = "Archive of Scans, CC BY 3.0";
+    make();
+    EXPECT_EQ(loadScene(folder_ / "case/case.textproto").scene.task(),
+              "Drill. Scan: Archive of Scans, CC BY 3.0");
+    const auto json = nlohmann::json::parse(textOfFile(folder_ / "case/provenance.json"));
+    EXPECT_EQ(json["credit"], request_.credit);
+}
+
 TEST_F(MakeCase, MakesNoneThatNoSessionCouldStart) {
     request_.at_mm = {12, 20, 20};  // the nerve is elsewhere
     expectUserError([&] { make(); }, {"finds nothing to protect"});
