@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "haptic_server/setup/kept_tissue.h"
 #include "haptic_server/setup/scene_materials.h"
 #include "haptic_server/setup/scene_pieces.h"
 #include "haptic_server/setup/scene_region.h"
@@ -41,7 +42,7 @@ ScannedBone wholeBone(const LoadedScene& loaded, Scan scan) {
     std::vector<MaterialId> ids = materialIdsOf(loaded, scan.raw, scan.remarks);
     VoxelVolume volume = densify(std::move(scan.raw), scan.mapping);
     dropPieces(loaded, volume, {}, scan.remarks);
-    clearFarFromBone(volume);
+    clearFarFromBone(volume, keptTissueOf(loaded, ids, volume.geometry()));
     return {std::move(volume), scan.mapping, std::move(ids), nullptr, lacks_axes, std::move(scan.remarks)};
 }
 
@@ -52,7 +53,7 @@ ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
     std::vector<MaterialId> ids = materialIdsOf(loaded, cut.region, scan.remarks);
     VoxelVolume volume = densify(std::move(cut.region), scan.mapping);
     removeSpecks(volume, whole);
-    clearFarFromBone(volume);
+    clearFarFromBone(volume, keptTissueOf(loaded, ids, volume.geometry()));
     return {std::move(volume), scan.mapping,
             std::move(ids),    std::make_shared<const Surroundings>(std::move(cut.surroundings)),
             lacks_axes,        std::move(scan.remarks)};
