@@ -239,10 +239,10 @@ TEST_F(ScannedBoneOfAScene, LabelsOfARegionMayLieOnTheScansGrid) {
     const ScannedBone bone =
         boneOf(kAroundSmall + "resample_mm: 0.5 } label_path: 'labels.nrrd'",
                "material { name: 'left' label: 1 }\nmaterial { name: 'right' label: 2 }\n");
-    ASSERT_EQ(bone.material_ids.size(), bone.volume.geometry().voxelCount());
-    EXPECT_EQ(bone.material_ids[0], 1);
-    EXPECT_EQ(bone.material_ids[12], 1);  // x = 28 mm
-    EXPECT_EQ(bone.material_ids[14], 2);
+    ASSERT_EQ(bone.materials.ids.size(), bone.volume.geometry().voxelCount());
+    EXPECT_EQ(bone.materials.ids[0], 1);
+    EXPECT_EQ(bone.materials.ids[12], 1);  // x = 28 mm
+    EXPECT_EQ(bone.materials.ids[14], 2);
 }
 
 }  // namespace
