@@ -120,7 +120,7 @@ class ReplayServer {
     }
 
     void meshUntil(const std::stop_token& stop) {
-        const bool are_wanted = wantsVertexMaterials(scene_.scene);
+        const bool are_wanted = wantsVertexMaterials(shownSceneOf(scene_.scene, simulation_.segment_colors));
         MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_,
                           are_wanted ? simulation_.tick.effects.properties.get() : nullptr);
         const auto put = [this](NodeGroup&& group) { outbox_.put(std::move(group), monotonicNowNs()); };

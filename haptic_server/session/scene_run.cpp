@@ -234,7 +234,7 @@ void SceneRun::publishRound() {
 }
 
 void SceneRun::meshUntil(const std::stop_token& stop) {
-    const bool are_wanted = wantsVertexMaterials(loaded_.scene);
+    const bool are_wanted = wantsVertexMaterials(shownSceneOf(loaded_.scene, simulation_.segment_colors));
     MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_,
                       are_wanted ? simulation_.tick.effects.properties.get() : nullptr);
     const auto put = [this](NodeGroup&& group) { outbox_.put(std::move(group), monotonicNowNs()); };

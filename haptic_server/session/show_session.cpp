@@ -80,8 +80,9 @@ Eigen::AlignedBox3d boneBox(const BoneModel& bone) {
 
 // Viewers show materials by their colours only.
 const BoneProperties* shownProperties(const scene::Scene& scene, const Simulation& simulation) {
+    const scene::Scene shown = shownSceneOf(scene, simulation.segment_colors);
     const bool has_colours =
-        std::ranges::any_of(scene.material(), [](const scene::Material& m) { return m.has_color(); });
+        std::ranges::any_of(shown.material(), [](const scene::Material& m) { return m.has_color(); });
     return has_colours ? simulation.tick.effects.properties.get() : nullptr;
 }
 
@@ -104,7 +105,7 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
     info.set_lacks_patient_axes(simulation.lacks_patient_axes);
     for (const SceneTool& tool : simulation.tools) info.add_tool_names(tool.name);
     fillCamera(scene.camera(), info.mutable_camera());
-    describeToViewers(scene, info);
+    describeToViewers(shownSceneOf(scene, simulation.segment_colors), info);
     describeZones(scene, info);
     info.set_leaf_count(simulation.bone->lattice.leafCount());
     if (simulation.surroundings)  // their nodes are numbered behind those of the bone

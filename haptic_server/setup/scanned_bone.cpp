@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "haptic_server/setup/scene_materials.h"
+#include "haptic_server/setup/kept_tissue.h"
 #include "haptic_server/setup/scene_pieces.h"
 #include "haptic_server/setup/scene_region.h"
 #include "haptic_server/volume/import/far_air.h"
@@ -38,24 +38,25 @@ struct Scan {
 
 ScannedBone wholeBone(const LoadedScene& loaded, Scan scan) {
     const bool lacks_axes = scan.raw.lacks_patient_axes;
-    std::vector<MaterialId> ids = materialIdsOf(loaded, scan.raw, scan.remarks);
+    ScannedMaterials materials = scannedMaterialsOf(loaded, scan.raw, scan.remarks);
     VoxelVolume volume = densify(std::move(scan.raw), scan.mapping);
     dropPieces(loaded, volume, {}, scan.remarks);
-    clearFarFromBone(volume);
-    return {std::move(volume), scan.mapping, std::move(ids), nullptr, lacks_axes, std::move(scan.remarks)};
+    clearFarFromBone(volume, keptTissueOf(loaded, materials.ids, volume.geometry()));
+    return {std::move(volume), scan.mapping, std::move(materials),
+            nullptr,           lacks_axes,   std::move(scan.remarks)};
 }
 
 ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
     const VolumeGeometry whole = scan.raw.geometry;
     CutScan cut = cutRegion(loaded, std::move(scan.raw), scan.mapping, scan.remarks);
     const bool lacks_axes = cut.region.lacks_patient_axes;
-    std::vector<MaterialId> ids = materialIdsOf(loaded, cut.region, scan.remarks);
+    ScannedMaterials materials = scannedMaterialsOf(loaded, cut.region, scan.remarks);
     VoxelVolume volume = densify(std::move(cut.region), scan.mapping);
     removeSpecks(volume, whole);
-    clearFarFromBone(volume);
-    return {std::move(volume), scan.mapping,
-            std::move(ids),    std::make_shared<const Surroundings>(std::move(cut.surroundings)),
-            lacks_axes,        std::move(scan.remarks)};
+    clearFarFromBone(volume, keptTissueOf(loaded, materials.ids, volume.geometry()));
+    return {std::move(volume),    scan.mapping,
+            std::move(materials), std::make_shared<const Surroundings>(std::move(cut.surroundings)),
+            lacks_axes,           std::move(scan.remarks)};
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/config/scene_file.h"
+#include "haptic_server/setup/scene_materials.h"
 #include "haptic_server/volume/import/densify.h"
-#include "haptic_server/volume/material_properties.h"
 #include "haptic_server/volume/surroundings.h"
 
 namespace bonemill {
@@ -16,7 +16,7 @@ namespace bonemill {
 struct ScannedBone {
     VoxelVolume volume;
     DensityMapping mapping;
-    std::vector<MaterialId> material_ids;              // of each voxel, x fastest; empty: the scene has none
+    ScannedMaterials materials;
     std::shared_ptr<const Surroundings> surroundings;  // null: all of the scan is in the volume
     bool lacks_patient_axes;                           // RawVolume
     std::vector<std::string> remarks;                  // for people: what was read, proposed, left out

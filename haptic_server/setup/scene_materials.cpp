@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 #include "common/config/scene_tools.h"
 #include "common/units.h"
@@ -26,6 +27,13 @@ MaterialRule ruleOf(const scene::Material& material) {
     if (material.has_below_value()) rule.below = material.below_value();
     rule.labels.assign(material.label().begin(), material.label().end());
     return rule;
+}
+
+std::optional<Eigen::Vector3d> colorOfSegment(const Segments& segments, const scene::Material& material) {
+    for (const std::string& name : material.segment())
+        for (const Segment& segment : segments.list)
+            if (segment.name == name && segment.color) return segment.color;
+    return std::nullopt;
 }
 
 // Adds the labels of the segments that the materials name.
@@ -109,22 +117,38 @@ bool wantsProperties(const scene::Scene& scene) {
            (effects.has_energy_removal() && effects.energy_removal().density_exponent() > 0);
 }
 
-std::vector<MaterialId> materialIdsOf(const LoadedScene& loaded, const RawVolume& raw,
-                                      std::vector<std::string>& remarks) {
+ScannedMaterials scannedMaterialsOf(const LoadedScene& loaded, const RawVolume& raw,
+                                    std::vector<std::string>& remarks) {
     if (loaded.scene.material_size() == 0) return {};
     std::vector<MaterialRule> rules;
     for (const scene::Material& material : loaded.scene.material()) rules.push_back(ruleOf(material));
     const std::string& label_path = loaded.scene.volume().label_path();
-    if (label_path.empty()) return materialIds(raw, rules, nullptr);
+    if (label_path.empty()) return {materialIds(raw, rules), {}};
     const RawVolume file = importLabels(loaded);
     findSegments(loaded, file.segments, rules);
+    ScannedMaterials materials;
+    for (const scene::Material& material : loaded.scene.material())
+        materials.segment_colors.push_back(colorOfSegment(file.segments, material));
     try {
-        const ResampledLabels labels = resampleLabels(file, raw.geometry, label_path);
+        ResampledLabels labels = resampleLabels(file, rules, raw.geometry, label_path);
         if (!labels.is_exact) remarks.push_back(textOf(labels, file.geometry, label_path));
-        return materialIds(raw, rules, &labels.labels);
+        materials.ids = materialIds(raw, rules, std::move(labels.ids));
+        return materials;
     } catch (const UserError& error) {
         refuseField(loaded, "volume.label_path", std::string(": ") + error.what());
     }
+}
+
+scene::Scene shownSceneOf(const scene::Scene& scene, const SegmentColors& colors) {
+    scene::Scene shown = scene;
+    for (size_t n = 0; n < colors.size(); ++n) {
+        scene::Material& material = *shown.mutable_material(int(n));
+        if (material.has_color() || !colors[n]) continue;
+        material.mutable_color()->set_red(colors[n]->x());
+        material.mutable_color()->set_green(colors[n]->y());
+        material.mutable_color()->set_blue(colors[n]->z());
+    }
+    return shown;
 }
 
 std::shared_ptr<const DistanceField> protectedFieldOf(const LoadedScene& loaded,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,10 +23,20 @@ bool wantsVertexMaterials(const scene::Scene& scene);
 // Does anything in the scene ask what the scanned bone was made of?
 bool wantsProperties(const scene::Scene& scene);
 
-// There is one of each raw voxel, x fastest, or none if the scene has no materials. Imports
-// volume.label_path, and says it if its grid is another one. Throws UserError.
-std::vector<MaterialId> materialIdsOf(const LoadedScene& loaded, const RawVolume& raw,
-                                      std::vector<std::string>& remarks);
+// One of each material; nothing where the label map has no colour for it.
+using SegmentColors = std::vector<std::optional<Eigen::Vector3d>>;  // red, green, blue, 0 .. 1
+
+struct ScannedMaterials {
+    std::vector<MaterialId> ids;  // of each raw voxel, x fastest; empty: the scene has no materials
+    SegmentColors segment_colors;
+};
+
+// Imports volume.label_path, and says it if its grid is another one. Throws UserError.
+ScannedMaterials scannedMaterialsOf(const LoadedScene& loaded, const RawVolume& raw,
+                                    std::vector<std::string>& remarks);
+
+// As viewers show it: materials without a colour of their own have their segment's.
+scene::Scene shownSceneOf(const scene::Scene& scene, const SegmentColors& colors);
 
 // The field is null if no effect asks for it. Throws UserError if no voxel is of a protected material.
 std::shared_ptr<const DistanceField> protectedFieldOf(const LoadedScene& loaded,

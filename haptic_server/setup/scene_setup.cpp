@@ -255,6 +255,7 @@ Simulation makeSimulation(const LoadedScene& loaded) {
                           .accuracy = accuracyOf(scene),
                           .bone = nullptr,
                           .mapping = {},
+                          .segment_colors = {},
                           .tools = buildTools(loaded),
                           .X_WD = poseOf(scene.device()),
                           .remarks = {},
@@ -263,11 +264,12 @@ Simulation makeSimulation(const LoadedScene& loaded) {
     simulation.remarks = std::move(scanned.remarks);
     simulation.lacks_patient_axes = scanned.lacks_patient_axes;
     simulation.mapping = scanned.mapping;
+    simulation.segment_colors = std::move(scanned.materials.segment_colors);
     simulation.surroundings = std::move(scanned.surroundings);
     const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), scanned.volume.geometry());
     simulation.tick = tickConfigOf(scene);
     mapRawValues(simulation.tick.effects, loaded, simulation.mapping);
-    addProperties(simulation, loaded, scanned.volume, scanned.material_ids);
+    addProperties(simulation, loaded, scanned.volume, scanned.materials.ids);
     simulation.bone =
         std::make_unique<BoneModel>(std::move(scanned.volume), leaf_cells, shellConfigOf(scene));
     simulation.task = judgedTaskOf(loaded, simulation.bone->volume, simulation.tick.effects.properties);

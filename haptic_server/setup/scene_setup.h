@@ -11,6 +11,7 @@
 #include "haptic_server/assessment/product/breach_watch.h"
 #include "haptic_server/bone/bone_model.h"
 #include "haptic_server/setup/scene_accuracy.h"
+#include "haptic_server/setup/scene_materials.h"
 #include "haptic_server/tick/tick_config.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "haptic_server/volume/import/densify.h"
@@ -33,6 +34,7 @@ struct Simulation {
     std::unique_ptr<BoneModel> bone;
     std::shared_ptr<const Surroundings> surroundings = nullptr;  // null: the bone is all there is
     DensityMapping mapping;
+    SegmentColors segment_colors;                      // for shownSceneOf()
     std::vector<SceneTool> tools;                      // at least one
     std::shared_ptr<const JudgedTask> task = nullptr;  // null: the scene has none
     bool lacks_patient_axes = false;                   // RawVolume

@@ -50,11 +50,7 @@ class TaskReader {
     }
 
     std::vector<uint8_t> inside(const ZoneShapes& shapes, const std::string& path) const {
-        try {
-            return voxelsInside(shapes, scanned_.geometry(), path);
-        } catch (const UserError& error) {
-            throw UserError(placeOf(loaded_.file.string(), loaded_.lines, path) + error.what());
-        }
+        return voxelsInside(loaded_, shapes, scanned_.geometry(), path);
     }
 
     template <class Visit>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/user_error.h"
 #include "haptic_server/setup/scene_shapes.h"
 #include "haptic_server/tool/build/check_shape.h"
 
@@ -50,10 +51,19 @@ void mark(const IndexBox& box, const VolumeGeometry& geometry, std::vector<uint8
     });
 }
 
+void checkSolid(const LoadedScene& loaded, const ToolShape& shape, const std::string& path, int number) {
+    try {
+        checkShape(shape, path + ".shape[" + std::to_string(number) + "]");
+    } catch (const UserError& error) {
+        throw UserError(placeOf(loaded.file.string(), loaded.lines, path) + error.what());
+    }
+}
+
 }  // namespace
 
-std::vector<uint8_t> voxelsInside(const google::protobuf::RepeatedPtrField<scene::Task::Shape>& shapes,
-                                  const VolumeGeometry& geometry, const std::string& place) {
+std::vector<uint8_t> voxelsInside(const LoadedScene& loaded,
+                                  const google::protobuf::RepeatedPtrField<scene::Task::Shape>& shapes,
+                                  const VolumeGeometry& geometry, const std::string& path) {
     std::vector<uint8_t> marks(geometry.voxelCount());
     for (int n = 0; n < shapes.size(); ++n) {
         if (shapes[n].has_box()) {
@@ -65,7 +75,7 @@ std::vector<uint8_t> voxelsInside(const google::protobuf::RepeatedPtrField<scene
             continue;
         }
         const ToolShape shape = toolShapeOf(shapes[n]);
-        checkShape(shape, place + ".shape[" + std::to_string(n) + "]");
+        checkSolid(loaded, shape, path, n);
         mark(voxelsAround(boundingBox(shape), geometry), geometry, marks,
              [&](const Eigen::Vector3d& p_W) { return signedDistance(shape, p_W) <= 0; });
     }

@@ -4,15 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "common/config/scene_file.h"
 #include "haptic_server/volume/index_box.h"
 #include "haptic_server/volume/raw_volume.h"
-#include "proto/scene.pb.h"
 
 namespace bonemill {
 
-// One byte per voxel of the volume, x fastest: 1 where its centre is inside one of the shapes. `place` names
-// them in messages. Throws UserError for a shape that is no solid.
-std::vector<uint8_t> voxelsInside(const google::protobuf::RepeatedPtrField<scene::Task::Shape>& shapes,
-                                  const VolumeGeometry& geometry, const std::string& place);
+// One byte per voxel of the volume, x fastest: 1 where its centre is inside one of the shapes. `path` is
+// their field in the scene. Throws UserError for a shape that is no solid.
+std::vector<uint8_t> voxelsInside(const LoadedScene& loaded,
+                                  const google::protobuf::RepeatedPtrField<scene::Task::Shape>& shapes,
+                                  const VolumeGeometry& geometry, const std::string& path);
 
 }  // namespace bonemill

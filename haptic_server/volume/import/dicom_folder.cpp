@@ -6,6 +6,7 @@
 #include "common/user_error.h"
 #include "haptic_server/volume/import/dicom_headers.h"
 #include "haptic_server/volume/import/dicom_scan.h"
+#include "haptic_server/volume/import/dicom_segments.h"
 #include "haptic_server/volume/import/import_limits.h"
 #include "haptic_server/volume/import/itk_image_file.h"
 #include "haptic_server/volume/import/physical_frame.h"
@@ -188,6 +189,9 @@ RawVolume importDicomDirectory(const std::filesystem::path& file, const DicomWis
 }
 
 RawVolume importDicomFile(const std::filesystem::path& file, const DicomWish& wish) {
+    const DicomScan scan = scanDicomFile(file);
+    if (scan.drawing == DicomDrawing::kSegmentation && scan.kind != DicomKind::kCutShort)
+        return importDicomSegments(file);
     LeftOut left_out;
     const auto slices = slicesOfFile(file, left_out);
     if (slices.empty()) throw UserError(file.string() + ": cannot be used: " + left_out.text());

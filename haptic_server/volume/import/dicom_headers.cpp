@@ -130,11 +130,14 @@ std::string LeftOut::text() const {
 
 namespace {
 
-std::vector<DicomSlice> leaveStructuresOut(const std::filesystem::path& path, LeftOut& left_out) {
-    left_out.add(
-        "DICOM segmentations or contours (SEG, RTSTRUCT), which 3D Slicer loads and exports as .seg.nrrd or "
-        "NIfTI",
-        path);
+std::vector<DicomSlice> leaveDrawingOut(DicomDrawing drawing, const std::filesystem::path& path,
+                                        LeftOut& left_out) {
+    left_out.add(drawing == DicomDrawing::kSegmentation
+                     ? "DICOM segmentations (SEG), each of which is a label map: give its file by name "
+                       "(volume.label_path, make-case --labels)"
+                     : "DICOM contours, surfaces or label maps (RTSTRUCT and others), which 3D Slicer loads "
+                       "and exports as .seg.nrrd or NIfTI",
+                 path);
     return {};
 }
 
@@ -147,13 +150,13 @@ std::vector<DicomSlice> slicesOfFile(const std::filesystem::path& path, LeftOut&
             left_out.add("files that are not DICOM", path);
             return {};
         case DicomKind::kNoImage:
-            if (scan.holds_structures) return leaveStructuresOut(path, left_out);
+            if (scan.drawing != DicomDrawing::kNone) return leaveDrawingOut(scan.drawing, path, left_out);
             left_out.add("DICOM files without an image", path);
             return {};
         case DicomKind::kCutShort:
             throw UserError(path.string() + ": the DICOM file is cut short or damaged: " + scan.problem);
         case DicomKind::kImage:
-            if (scan.holds_structures) return leaveStructuresOut(path, left_out);
+            if (scan.drawing != DicomDrawing::kNone) return leaveDrawingOut(scan.drawing, path, left_out);
             break;
     }
     return readHeader(path, left_out);

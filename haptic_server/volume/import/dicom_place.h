@@ -20,6 +20,8 @@ struct DicomPlaceTexts {
     std::string position;       // Image Position (Patient) (0020,0032)
     std::string orientation;    // Image Orientation (Patient) (0020,0037)
     std::string pixel_spacing;  // Pixel Spacing (0028,0030)
+
+    bool areComplete() const { return !position.empty() && !orientation.empty() && !pixel_spacing.empty(); }
 };
 
 // So far a number of the orientation may be from what is meant.

@@ -27,11 +27,12 @@ constexpr int kMaxDepth = 32;
 constexpr std::streamoff kPreambleBytes = 128;
 
 // PS3.4 B.5: segmentation, surface segmentation, label map; RT structure set.
-bool isOfStructures(const std::string& sop_class) {
+DicomDrawing drawingOf(const std::string& sop_class) {
     const std::string kStorage = "1.2.840.10008.5.1.4.1.1.";
-    for (const char* const kind : {"66.4", "66.5", "66.7", "481.3"})
-        if (sop_class == kStorage + kind) return true;
-    return false;
+    if (sop_class == kStorage + "66.4") return DicomDrawing::kSegmentation;
+    for (const char* const kind : {"66.5", "66.7", "481.3"})
+        if (sop_class == kStorage + kind) return DicomDrawing::kOther;
+    return DicomDrawing::kNone;
 }
 
 struct CutShort {
@@ -56,14 +57,15 @@ class Scanner {
     DicomScan scan() {
         if (!startsLikeDicom()) return {};
         try {
-            if (has_meta_ && !readMeta()) return {DicomKind::kImage, {}, media_class_};  // deflated: opaque
+            if (has_meta_ && !readMeta())  // deflated: opaque
+                return {DicomKind::kImage, {}, media_class_, drawingOf(media_class_)};
             while (position_ < size_) skipElement(0);
         } catch (const CutShort& cut) {
-            return {DicomKind::kCutShort, cut.problem, media_class_, holds_structures_};
+            return {DicomKind::kCutShort, cut.problem, media_class_, drawing_};
         } catch (const Unclear&) {
-            return {DicomKind::kImage, {}, media_class_, holds_structures_};
+            return {DicomKind::kImage, {}, media_class_, drawing_};
         }
-        return {has_pixels_ ? DicomKind::kImage : DicomKind::kNoImage, {}, media_class_, holds_structures_};
+        return {has_pixels_ ? DicomKind::kImage : DicomKind::kNoImage, {}, media_class_, drawing_};
     }
 
   private:
@@ -173,8 +175,7 @@ class Scanner {
         if (depth == 0 &&
             (element.tag == kPixelData || element.tag == kFloatPixelData || element.tag == kDoublePixelData))
             has_pixels_ = true;
-        if (depth == 0 && element.tag == kSopClassUid)
-            holds_structures_ = isOfStructures(text(element.length));
+        if (depth == 0 && element.tag == kSopClassUid) drawing_ = drawingOf(text(element.length));
         if (element.tag == kItemEnd || element.tag == kSequenceEnd) throw Unclear{};
         checkFits(element);
         if (element.length != kUndefinedLength)
@@ -220,7 +221,7 @@ class Scanner {
     bool big_endian_ = false;
     bool has_pixels_ = false;
     std::string media_class_;
-    bool holds_structures_ = false;
+    DicomDrawing drawing_ = DicomDrawing::kNone;
 };
 
 }  // namespace

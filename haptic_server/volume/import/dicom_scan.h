@@ -16,11 +16,18 @@ enum class DicomKind {
     kCutShort,  // an element claims more bytes than the file has left
 };
 
+// What was drawn on a scan is no scan.
+enum class DicomDrawing {
+    kNone,
+    kSegmentation,  // SEG, which dicom_segments.h reads
+    kOther          // surfaces, label maps of frames, contours (RTSTRUCT)
+};
+
 struct DicomScan {
     DicomKind kind = DicomKind::kNotDicom;
-    std::string problem;            // for people, with kCutShort
-    std::string media_class;        // UID of what the file is, where its first lines say it
-    bool holds_structures = false;  // what was drawn on a scan (SEG, RTSTRUCT), and no scan
+    std::string problem;      // for people, with kCutShort
+    std::string media_class;  // UID of what the file is, where its first lines say it
+    DicomDrawing drawing = DicomDrawing::kNone;
 };
 
 // Throws UserError when the file cannot be opened.

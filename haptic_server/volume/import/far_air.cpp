@@ -26,13 +26,26 @@ bool isFar(const BrickStore& bricks, const Bricks& has_bone, const Eigen::Vector
     return is_far;
 }
 
-// Clears them in every brick that holds them.
-void clearVoxels(VoxelVolume& volume, const Eigen::Vector3i& brick) {
-    const Density air[kBrickCells] = {};
+// Those that no other brick owns.
+IndexBox voxelsOf(const VoxelVolume& volume, const Eigen::Vector3i& brick) {
     const Eigen::Vector3i first = brick.array() * kBrickCells - 1;
-    const IndexBox owned = IndexBox{first, first.array() + (kBrickCells - 1)}.clamped(
-        Eigen::Vector3i::Zero(), volume.dims().array() - 1);
-    if (owned.isEmpty()) return;
+    return IndexBox{first, first.array() + (kBrickCells - 1)}.clamped(Eigen::Vector3i::Zero(),
+                                                                      volume.dims().array() - 1);
+}
+
+bool holdsAny(const Eigen::Vector3i& dims, const IndexBox& voxels,
+              const std::function<bool(size_t)>& is_kept) {
+    bool holds = false;
+    forEachIndex(voxels, [&](const Eigen::Vector3i& v) {
+        holds = holds || is_kept(size_t(v.x()) +
+                                 size_t(dims.x()) * (size_t(v.y()) + size_t(dims.y()) * size_t(v.z())));
+    });
+    return holds;
+}
+
+// Clears them in every brick that holds them.
+void clearVoxels(VoxelVolume& volume, const IndexBox& owned) {
+    const Density air[kBrickCells] = {};
     const IndexBox rows{owned.min, {owned.min.x(), owned.max.y(), owned.max.z()}};
     forEachIndex(rows, [&](const Eigen::Vector3i& row) {
         volume.writeRow(row, owned.max.x() - owned.min.x() + 1, air);
@@ -41,10 +54,12 @@ void clearVoxels(VoxelVolume& volume, const Eigen::Vector3i& brick) {
 
 }  // namespace
 
-void clearFarFromBone(VoxelVolume& volume) {
+void clearFarFromBone(VoxelVolume& volume, const std::function<bool(size_t)>& is_kept) {
     const Bricks has_bone = bricksWithBone(volume);
     forEachIndex(volume.bricks().allBricks(), [&](const Eigen::Vector3i& brick) {
-        if (isFar(volume.bricks(), has_bone, brick)) clearVoxels(volume, brick);
+        const IndexBox owned = voxelsOf(volume, brick);
+        if (owned.isEmpty() || !isFar(volume.bricks(), has_bone, brick)) return;
+        if (!is_kept || !holdsAny(volume.dims(), owned, is_kept)) clearVoxels(volume, owned);
     });
     volume.shareUniformBricks();
 }

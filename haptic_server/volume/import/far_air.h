@@ -3,13 +3,16 @@
 // It is not RT-safe (it allocates) and has no shared state.
 #pragma once
 
+#include <functional>
+
 #include "haptic_server/volume/voxel_volume.h"
 
 namespace bonemill {
 
 // Densities in bricks that hold no bone, and whose neighbours hold none, become air: soft tissue and noise at
 // least 16 voxels away from all bone, which no surface and no gradient ever sees. A burr that adds bone there
-// starts from air. Their memory is given back.
-void clearFarFromBone(VoxelVolume& volume);
+// starts from air. Their memory is given back. Bricks with a voxel that is_kept(index, x fastest) stay as
+// they are; by default there is none.
+void clearFarFromBone(VoxelVolume& volume, const std::function<bool(size_t)>& is_kept = {});
 
 }  // namespace bonemill

@@ -1,4 +1,4 @@
-// Finds the material that a scanned voxel is of: by its raw value or by a volume of labels on the same grid.
+// Finds the material that a scanned voxel is of: by its raw value or by its label.
 //
 // It is not RT-safe (it allocates) and has no shared state.
 #pragma once
@@ -21,8 +21,8 @@ struct MaterialRule {
 inline constexpr uint32_t kMostLabel = 65535;
 
 // There is one of each voxel, x fastest; of several rules that fit the last one wins. Values that are not
-// finite fit no range. `labels` may be null; they are whole numbers on the same voxels (resample_labels.h).
+// finite fit no range. `of_labels` are those that voxels have by their labels (resample_labels.h), or none.
 std::vector<MaterialId> materialIds(const RawVolume& raw, std::span<const MaterialRule> rules,
-                                    const RawVolume* labels);
+                                    std::vector<MaterialId> of_labels = {});
 
 }  // namespace bonemill

@@ -1,7 +1,6 @@
 #include "haptic_server/volume/import/nrrd_segments.h"
 
 #include <algorithm>
-#include <bitset>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -11,6 +10,7 @@
 #include "common/user_error.h"
 #include "haptic_server/volume/import/header_text.h"
 #include "haptic_server/volume/import/material_ids.h"
+#include "haptic_server/volume/import/segment_codes.h"
 #include "haptic_server/volume/import/segment_text.h"
 
 namespace bonemill {
@@ -57,53 +57,32 @@ void completePlaces(NrrdSegments& segments, uint32_t layers, const std::string& 
     }
 }
 
-using Members = std::bitset<kMostSegments>;  // numbers in Segments::list
-
 class LayerJoiner {
   public:
     LayerJoiner(const NrrdSegments& segments, uint32_t layers, const std::string& file)
-        : file_(file), members_(layers) {
+        : members_(layers), codes_(file) {
         size_t n = 0;
         for (const auto& [number, segment] : segments) members_[*segment.layer][*segment.value].set(n++);
-        codes_[{}] = 0;
     }
 
     template <class T>
     uint16_t codeOf(std::span<const T> labels) {
-        Members members;
+        SegmentMembers members;
         for (size_t layer = 0; layer < labels.size(); ++layer) members |= membersOf(layer, labels[layer]);
-        const auto [found, is_new] = codes_.try_emplace(members, codes_.size());
-        if (is_new && found->second > kMostCombinations) refuse();
-        return uint16_t(found->second);
+        return codes_.codeOf(members);
     }
-    void listCodes(Segments& segments) const {
-        for (const auto& [members, code] : codes_)
-            for (size_t n = 0; n < segments.list.size(); ++n)
-                if (members[n]) segments.list[n].labels.push_back(uint32_t(code));
-        size_t memberships = 0;
-        for (const Segment& segment : segments.list) memberships += segment.labels.size();
-        if (memberships > kMostMemberships) refuse();
-        for (Segment& segment : segments.list) std::ranges::sort(segment.labels);
-    }
+    void listCodes(Segments& segments) const { codes_.listIn(segments); }
 
   private:
     template <class T>
-    Members membersOf(size_t layer, T label) const {
+    SegmentMembers membersOf(size_t layer, T label) const {
         if (!(label > 0 && double(label) <= kMostLabel)) return {};
         const auto found = members_[layer].find(uint32_t(label));
-        return found == members_[layer].end() ? Members() : found->second;
+        return found == members_[layer].end() ? SegmentMembers() : found->second;
     }
 
-    [[noreturn]] void refuse() const {
-        throw UserError(file_ + ": its segments overlap in too many ways; export fewer of them");
-    }
-
-    // Of a few structures there are dozens.
-    static constexpr size_t kMostCombinations = 4096, kMostMemberships = 100'000;
-
-    std::string file_;
-    std::vector<std::unordered_map<uint32_t, Members>> members_;  // of each layer, by label
-    std::unordered_map<Members, size_t> codes_;
+    std::vector<std::unordered_map<uint32_t, SegmentMembers>> members_;  // of each layer, by label
+    SegmentCodes codes_;
 };
 
 RawValues joinedValues(const RawValues& values, uint32_t layers, LayerJoiner& joiner) {

@@ -1,22 +1,26 @@
-// Brings labels onto the voxels of a scan, whatever grid they were drawn on.
+// Finds the materials of a scan's voxels by labels, whatever grid these were drawn on.
 #pragma once
 
+#include <span>
 #include <string>
+#include <vector>
 
+#include "haptic_server/volume/import/material_ids.h"
 #include "haptic_server/volume/raw_volume.h"
 
 namespace bonemill {
 
 struct ResampledLabels {
-    RawVolume labels;       // on the grid asked for
-    double covered = 0;     // share of its voxels that the labels' file says something of; the others are 0
-    bool is_exact = false;  // each voxel is one of the file
+    std::vector<MaterialId> ids;  // of each voxel of the grid asked for, x fastest
+    double covered = 0;           // share of its voxels that the labels' file says something of; others are 0
+    bool is_exact = false;        // each voxel is one of the file
 };
 
-// A voxel gets the label that has the largest share of the eight around it, by trilinear weights; of two
-// alike the larger one. Start-up only: allocates the result. Throws UserError, beginning with `label_file`,
-// if they have no voxel in the grid or are no whole numbers.
-ResampledLabels resampleLabels(const RawVolume& labels, const VolumeGeometry& grid,
-                               const std::string& label_file);
+// A voxel is of the last rule whose labels have more than half of the eight around it, by trilinear weights,
+// so that structures that overlap keep their shape each; where none has so much, of the rule of the label
+// with the largest share, of two alike the larger label. Start-up only: allocates the result. Throws
+// UserError, beginning with `label_file`, if they have no voxel in the grid or are no whole numbers.
+ResampledLabels resampleLabels(const RawVolume& labels, std::span<const MaterialRule> rules,
+                               const VolumeGeometry& grid, const std::string& label_file);
 
 }  // namespace bonemill

@@ -85,7 +85,7 @@ Segments segmentsFromText(const std::string& text) {
 std::vector<uint32_t> labelsOfSegment(const Segments& segments, const std::string& name,
                                       const std::string& file) {
     if (segments.list.empty())
-        throw UserError(file + ": names no segments; give label numbers, or a .seg.nrrd of 3D Slicer");
+        throw UserError(file + ": names no segments; give label numbers, or a .seg.nrrd or DICOM SEG");
     std::vector<uint32_t> labels;
     bool is_there = false;
     for (const Segment& segment : segments.list) {

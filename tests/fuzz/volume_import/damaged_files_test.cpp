@@ -15,6 +15,7 @@
 #include "tests/support/stl_writer.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/volume_import/dicom_bytes.h"
+#include "tests/unit/volume_import/dicom_seg_bytes.h"
 #include "tests/unit/volume_import/picture_files.h"
 #include "tests/unit/volume_import/seg_nrrd.h"
 #include "tests/unit/volume_import/volume_files.h"
@@ -275,6 +276,33 @@ TEST_F(DamagedFiles, dicomMultiFrame) {
     image.frame_rescales = {"1|-1024", "2|0", "0.5|-1024"};
     writeDicomFile(folder_ / "a.dcm", image);
     fuzz(importVolume, "a.dcm", "a.dcm", kDicomShare);
+}
+
+// Two segments that overlap, on three slices.
+DicomSegmentation smallSegmentation(const std::string& type) {
+    DicomSegmentation file{.type = type,
+                           .character_set = "ISO_IR 100",
+                           .spacing_between = "1",
+                           .thickness = "1",
+                           .most_fraction = 2,
+                           .segments = {{1, "nerve", {40000, 30000, 20000}}, {2, "canal"}},
+                           .frames = {}};
+    for (int k = 0; k < 3; ++k)
+        for (const int segment : {1, 2})
+            file.frames.push_back({segment,
+                                   "0\\0\\" + std::to_string(k),
+                                   {1, 0, 1, 1, 0, 1, uint8_t(segment == 2), 0, 1, 1, 0, 0}});
+    return file;
+}
+
+TEST_F(DamagedFiles, dicomSegBinary) {
+    writeDicomSeg(folder_ / "a.dcm", smallSegmentation("BINARY"));
+    fuzz(importVolume, "a.dcm", "a.dcm", kDicomShare);
+}
+
+TEST_F(DamagedFiles, dicomSegFractional) {
+    writeDicomSeg(folder_ / "a.dcm", smallSegmentation("FRACTIONAL"));
+    fuzz(importVolume, "a.dcm", "a.dcm", 4 * kDicomShare);
 }
 
 }  // namespace

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "common/units.h"
 #include "haptic_server/offline/run_path.h"
 #include "haptic_server/offline/task_run.h"
+#include "haptic_server/volume/import/nrrd_writer.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/scene_path.h"
@@ -82,6 +84,46 @@ TEST_F(TaskGates, ThePediclesHandPassesAndOneThatBreaksIntoTheCanalFailsByTheBre
     const auto names = broken(medial);
     EXPECT_NE(std::ranges::find(names, "breach.grade"), names.end());
     EXPECT_GE(findFigure(medial.figures, "breach.depth")->value, 2);
+}
+
+// A nerve of soft tissue in soft tissue, 13 mm below all bone, in a region with fine voxels.
+void writeNerveScene(const test::TemporaryFolder& folder) {
+    VolumeGeometry scan;
+    scan.dims = {24, 24, 30};
+    scan.spacing.setConstant(1e-3);
+    std::vector<float> values;
+    std::vector<uint8_t> labels;
+    forEachIndex({Eigen::Vector3i::Zero(), scan.dims.array() - 1}, [&](const Eigen::Vector3i& v) {
+        values.push_back(v.z() >= 22 ? 1500.0f : 40.0f);
+        labels.push_back((v - Eigen::Vector3i(12, 12, 6)).cast<double>().norm() < 3 ? 1 : 0);
+    });
+    writeNrrd(folder / "scan.nrrd", scan, values);
+    writeNrrd(folder / "labels.nrrd", scan, labels);
+    std::ofstream(folder / "nerve.textproto")
+        << "volume { path: 'scan.nrrd' label_path: 'labels.nrrd' iso_value: 500 window_low: -1000\n"
+           "  region { min_mm { x: 4 y: 4 z: 1 } max_mm { x: 20 y: 20 z: 26 } resample_mm: 0.25 } }\n"
+           "tool { burr_radius_mm: 1 }\n"
+           "material { name: 'nerve' label: 1 is_protected: true }\n"
+           "effects { time_removal {} }\n"
+           "assessment { gate { figure: 'structure.lost_volume:nerve' at_most: 0 } }\n";
+}
+
+TEST(SoftNerveFarFromBone, IsLostWhereTheBurrGoesThroughIt) {
+    const test::TemporaryFolder folder;
+    writeNerveScene(folder);
+    const LoadedScene loaded = loadScene(folder / "nerve.textproto");
+    Simulation simulation = makeSimulation(loaded);
+    const VoxelVolume scanned = simulation.bone->volume.withoutSpareBricks();
+    TaskRun task(loaded.scene, simulation);
+    std::vector<Pose> path;
+    for (int n = 0; n <= 2000; ++n) path.emplace_back().position = {12e-3, 12e-3, 12e-3 - 12e-3 * n / 2000};
+    for (const TickRecord& record :
+         runPath(simulation.fixedTick(), *simulation.bone, inputsOf(path, simulation.tick.dt, kButtonRemove)))
+        task.add(record);
+    const Assessment judged = task.judgeBone(scanned, simulation.bone->volume).assessment;
+    // A canal as thick as the burr goes right through a ball of 6 mm.
+    EXPECT_NEAR(findFigure(judged.figures, "structure.lost_volume:nerve")->value, 18, 5);
+    EXPECT_FALSE(judged.hasPassed());
 }
 
 }  // namespace

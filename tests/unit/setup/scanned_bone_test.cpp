@@ -182,6 +182,55 @@ TEST_F(ScannedBoneOfAScene, RefusesARegionThatIsNone) {
                     {"volume.region.resample_mm", "million"});
 }
 
+// A nerve of soft tissue lies 10 mm from all bone: of the tissue around it nothing is kept.
+class SoftStructure : public ScannedBoneOfAScene {
+  protected:
+    SoftStructure() {
+        std::vector<float> values;
+        std::vector<uint8_t> labels;
+        forEachIndex({Eigen::Vector3i::Zero(), geometry_.dims.array() - 1}, [&](const Eigen::Vector3i& v) {
+            const Eigen::Vector3d p = geometry_.spacing.cwiseProduct(v.cast<double>());
+            values.push_back(p.x() < 6 * kMm ? 1500.0f : 40.0f);
+            labels.push_back((p - nerve_).norm() < 2 * kMm ? 7 : 0);
+        });
+        writeNrrd(folder_ / "scan.nrrd", geometry_, values);
+        writeNrrd(folder_ / "labels.nrrd", geometry_, labels);
+    }
+    Density densityAt(const Eigen::Vector3d& p_W, const std::string& of_volume,
+                      const std::string& more) const {
+        const VoxelVolume volume = boneOf(of_volume + "label_path: 'labels.nrrd' ", more).volume;
+        const Eigen::Vector3d place =
+            (volume.geometry().X_WV.inverse() * p_W).cwiseQuotient(volume.spacing());
+        const Eigen::Vector3i v = place.array().round().cast<int>();
+        return volume.at(v.x(), v.y(), v.z());
+    }
+
+    const Eigen::Vector3d nerve_ = Eigen::Vector3d(18, 15, 15) * kMm,
+                          aside_ = Eigen::Vector3d(18, 4, 26) * kMm;
+    const std::string region_ =
+        "region { min_mm { x: 2 y: 2 z: 2 } max_mm { x: 28 y: 26 z: 27 } resample_mm: 0.25 } ";
+    const std::string nerve_label_ = "material { name: 'nerve' label: 7 is_protected: true }\n";
+    const std::string plain_label_ = "material { name: 'nerve' label: 7 }\n";
+};
+
+TEST_F(SoftStructure, IsKeptHoweverFarFromBone) {
+    EXPECT_GT(densityAt(nerve_, region_, nerve_label_), 0);
+    EXPECT_EQ(densityAt(aside_, region_, nerve_label_), 0);
+    EXPECT_EQ(densityAt(nerve_, region_, plain_label_), 0) << "nobody asks about it";
+}
+
+TEST_F(SoftStructure, IsKeptWhereItIsAZone) {
+    const std::string bone = "zone { name: 'bone' role: TARGET material: 'bone' } ",
+                      materials = plain_label_ + "material { name: 'bone' from_value: 500 }\n",
+                      ball = "shape { sphere { center_mm { x: 18 y: 15 z: 15 } radius_mm: 2 } }";
+    const auto zone = [&](const std::string& text) {
+        return materials + "assessment { " + bone + "zone { name: 'z' " + text + " } }";
+    };
+    EXPECT_GT(densityAt(nerve_, region_, zone("role: TARGET material: 'nerve'")), 0);
+    EXPECT_GT(densityAt(nerve_, region_, zone("role: PROTECTED " + ball)), 0);
+    EXPECT_EQ(densityAt(nerve_, region_, zone("role: CONTEXT " + ball)), 0);
+}
+
 TEST_F(ScannedBoneOfAScene, LabelsOfARegionMayLieOnTheScansGrid) {
     std::vector<uint8_t> labels;
     forEachIndex({Eigen::Vector3i::Zero(), geometry_.dims.array() - 1},
@@ -190,10 +239,10 @@ TEST_F(ScannedBoneOfAScene, LabelsOfARegionMayLieOnTheScansGrid) {
     const ScannedBone bone =
         boneOf(kAroundSmall + "resample_mm: 0.5 } label_path: 'labels.nrrd'",
                "material { name: 'left' label: 1 }\nmaterial { name: 'right' label: 2 }\n");
-    ASSERT_EQ(bone.material_ids.size(), bone.volume.geometry().voxelCount());
-    EXPECT_EQ(bone.material_ids[0], 1);
-    EXPECT_EQ(bone.material_ids[12], 1);  // x = 28 mm
-    EXPECT_EQ(bone.material_ids[14], 2);
+    ASSERT_EQ(bone.materials.ids.size(), bone.volume.geometry().voxelCount());
+    EXPECT_EQ(bone.materials.ids[0], 1);
+    EXPECT_EQ(bone.materials.ids[12], 1);  // x = 28 mm
+    EXPECT_EQ(bone.materials.ids[14], 2);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "haptic_server/setup/scene_setup.h"
 #include "haptic_server/volume/import/nrrd_writer.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/unit/volume_import/dicom_seg_bytes.h"
 #include "tests/unit/volume_import/expect_user_error.h"
 #include "tests/unit/volume_import/seg_nrrd.h"
 
@@ -143,6 +144,39 @@ TEST_F(SceneMaterials, ComeFromSegmentsThatOverlap) {
                     {"s.textproto:4: field `material[0].label[0]`", "several layers"});
     expectUserError([&] { makeSimulation(sceneOf("labels.nrrd", kCanal)); },
                     {"labels.nrrd: names no segments"});
+}
+
+// A DICOM segmentation on pixels of 0.25 mm and slices of 0.75 mm: resampled, it is where it was drawn.
+TEST_F(SceneMaterials, ComeFromADicomSegmentationOnAGridOfItsOwn) {
+    DicomSegmentation drawn{
+        .rows = 36,
+        .columns = 40,
+        .pixel_spacing = "0.25\\0.25",
+        .spacing_between = "0.75",
+        .segments = {{7, "nerve", {32768, 32768, 32768}}, {9, "beside", {65535, 32768, 32768}}},
+        .frames = {}};
+    for (int k = 0; k < 10; ++k)
+        for (const int segment : {7, 9}) {
+            DicomSegmentation::Frame frame{segment, "0\\0\\" + std::to_string(0.75 * k), {}};
+            for (int n = 0; n < 36 * 40; ++n) frame.values.push_back((n / 40 < 18) == (segment == 7));
+            drawn.frames.push_back(frame);
+        }
+    writeDicomSeg(folder_ / "a.dcm", drawn);
+    const LoadedScene loaded = sceneOf("a.dcm",
+                                       "material { name: 'n' segment: 'nerve' is_protected: true }\n"
+                                       "material { name: 'b' segment: 'beside' color { red: 0.25 } }\n"
+                                       "material { name: 'none' label: 1 }\n");
+    const Simulation simulation = makeSimulation(loaded);
+    const BoneProperties& properties = *simulation.tick.effects.properties;
+    forEachIndex({Eigen::Vector3i::Zero(), {19, 17, 13}}, [&](const Eigen::Vector3i& v) {
+        ASSERT_EQ(properties.material(v), v.y() < 9 ? 1 : 2) << v.transpose();
+    });
+    const scene::Scene shown = shownSceneOf(loaded.scene, simulation.segment_colors);
+    EXPECT_NEAR(shown.material(0).color().green(), 0.466, 0.005) << "its segment's";
+    EXPECT_EQ(shown.material(1).color().red(), 0.25) << "its own";
+    EXPECT_FALSE(shown.material(2).has_color());
+    EXPECT_TRUE(wantsVertexMaterials(shown));
+    EXPECT_FALSE(loaded.scene.material(0).has_color()) << "the scene is what its file says";
 }
 
 TEST_F(SceneMaterials, LabelsThatAreNotThereAreNamedWithTheirLine) {

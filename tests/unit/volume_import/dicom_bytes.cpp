@@ -1,31 +1,14 @@
 #include "tests/unit/volume_import/dicom_bytes.h"
 
-#include <algorithm>
 #include <cstring>
 
+#include "tests/unit/volume_import/dicom_elements.h"
 #include "tests/unit/volume_import/volume_files.h"
 
 namespace bonemill {
 namespace {
 
-std::string number(uint32_t value, int bytes) {
-    std::string text;
-    for (int b = 0; b < bytes; ++b) text += char(value >> (8 * b) & 0xff);
-    return text;
-}
-
-std::string element(uint32_t tag, const std::string& vr, std::string value) {
-    const bool is_long = vr == "OB" || vr == "OW" || vr == "SQ" || vr == "UN";
-    if (value.size() % 2) value += vr == "UI" || vr == "OB" ? '\0' : ' ';
-    std::string bytes = number(tag >> 16, 2) + number(tag & 0xffff, 2) + vr;
-    bytes += is_long ? std::string(2, '\0') + number(uint32_t(value.size()), 4)
-                     : number(uint32_t(value.size()), 2);
-    return bytes + value;
-}
-
-std::string shortElement(uint32_t tag, int value) {
-    return element(tag, "US", number(uint32_t(value), 2));
-}
+using namespace dicom;
 
 // Nothing of an empty text.
 std::string optionalElement(uint32_t tag, const std::string& vr, const std::string& value) {
@@ -38,10 +21,6 @@ std::string bytesOf(const std::vector<double>& numbers) {
     return bytes;
 }
 
-std::string item(const std::string& content) {
-    return number(0xe000fffe, 4) + number(uint32_t(content.size()), 4) + content;
-}
-
 std::string decimal(double value) {
     std::string text = std::to_string(value);
     return text.substr(0, 16);
@@ -51,15 +30,6 @@ std::string sopClass(const DicomImage& image) {
     if (!image.sop_class.empty()) return image.sop_class;
     if (!image.frame_positions.empty()) return "1.2.840.10008.5.1.4.1.1.2.1";  // Enhanced CT
     return image.samples_per_pixel == 1 ? "1.2.840.10008.5.1.4.1.1.2" : "1.2.840.10008.5.1.4.1.1.7";
-}
-
-std::string meta(const DicomImage& image) {
-    const std::string content =
-        element(0x00020001, "OB", std::string("\0\1", 2)) + element(0x00020002, "UI", sopClass(image)) +
-        element(0x00020003, "UI", image.sop_uid) + element(0x00020010, "UI", "1.2.840.10008.1.2.1") +
-        element(0x00020012, "UI", "1.2.3.4.5");
-    return std::string(128, '\0') + "DICM" + element(0x00020000, "UL", number(uint32_t(content.size()), 4)) +
-           content;
 }
 
 std::string pixelBytes(const DicomImage& image) {
@@ -101,9 +71,9 @@ std::string functionalGroups(const DicomImage& image) {
 std::string dicomBytes(const DicomImage& image) {
     const bool is_enhanced = !image.frame_positions.empty();
     std::string bytes =
-        meta(image) + optionalElement(0x00080008, "CS", image.image_type) +
-        element(0x00080016, "UI", sopClass(image)) + element(0x00080018, "UI", image.sop_uid) +
-        optionalElement(0x00080032, "TM", image.acquisition_time) +
+        metaHeader(sopClass(image), image.sop_uid, "1.2.840.10008.1.2.1") +
+        optionalElement(0x00080008, "CS", image.image_type) + element(0x00080016, "UI", sopClass(image)) +
+        element(0x00080018, "UI", image.sop_uid) + optionalElement(0x00080032, "TM", image.acquisition_time) +
         optionalElement(0x00080033, "TM", image.content_time) + element(0x00080060, "CS", image.modality) +
         optionalElement(0x0008103e, "LO", image.series_description) + element(0x00100010, "PN", "TEST^FILE") +
         optionalElement(0x00180010, "LO", image.contrast) + optionalElement(0x00181210, "SH", image.kernel) +

@@ -60,6 +60,16 @@ TEST(FarAir, TheSurfaceIsTheSameBitForBit) {
     }
 }
 
+TEST(FarAir, StaysInBricksWithAVoxelThatIsKept) {
+    const VoxelVolume before = boneInTissue();
+    VoxelVolume after = before;
+    const auto index = [](int i, int j, int k) { return size_t(i + 100 * (j + 90 * k)); };
+    clearFarFromBone(after, [&](size_t at) { return at == index(90, 80, 70); });
+    for (const int i : {80, 90, 94}) EXPECT_EQ(after.at(i, 80, 70), before.at(i, 80, 70)) << i;
+    EXPECT_EQ(after.at(78, 80, 70), 0) << "the brick beside it";
+    EXPECT_EQ(after.at(20, 18, 79), 0);
+}
+
 TEST(FarAir, WithoutAnyBoneAllIsAir) {
     VoxelVolume volume(test::boxGeometry({40, 40, 40}), kIso);
     volume.fill([](int i, int, int) { return Density(i); });

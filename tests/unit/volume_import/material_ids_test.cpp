@@ -22,17 +22,16 @@ TEST(MaterialIds, rangesIncludeTheirLowerEndOnlyAndTheLaterOneWins) {
     const std::vector<MaterialRule> rules = {
         {.has_range = true, .from = 0.0, .below = {}, .labels = {}},
         {.has_range = true, .from = 100.0, .below = 200.0, .labels = {}}};
-    EXPECT_EQ(materialIds(raw, rules, nullptr), (Ids{0, 1, 1, 2, 2, 1, 0}));
+    EXPECT_EQ(materialIds(raw, rules), (Ids{0, 1, 1, 2, 2, 1, 0}));
     const std::vector<MaterialRule> low = {{.has_range = true, .from = {}, .below = 0.0, .labels = {}}};
-    EXPECT_EQ(materialIds(raw, low, nullptr), (Ids{1, 0, 0, 0, 0, 0, 0}));
+    EXPECT_EQ(materialIds(raw, low), (Ids{1, 0, 0, 0, 0, 0, 0}));
 }
 
 TEST(MaterialIds, labelsAndRangesMix) {
     const RawVolume raw = rawOf({6, 1, 1}, {0, 500, 500, 0, 900, 0});
-    const RawVolume labels = rawOf({6, 1, 1}, {7, 7, 0, 9, 9, 3});
     const std::vector<MaterialRule> rules = {
         {.labels = {9}}, {.has_range = true, .from = 400.0, .below = {}, .labels = {}}, {.labels = {3, 7}}};
-    EXPECT_EQ(materialIds(raw, rules, &labels), (Ids{3, 3, 2, 1, 2, 3}));
+    EXPECT_EQ(materialIds(raw, rules, {3, 3, 0, 1, 1, 3}), (Ids{3, 3, 2, 1, 2, 3}));
 }
 
 }  // namespace

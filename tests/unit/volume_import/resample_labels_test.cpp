@@ -26,10 +26,23 @@ RawVolume numbered(const VolumeGeometry& grid) {
     return raw;
 }
 
+// Material n is that of label n.
+std::vector<MaterialRule> oneOfEach(uint32_t labels) {
+    std::vector<MaterialRule> rules;
+    for (uint32_t label = 1; label <= labels; ++label) rules.push_back({.labels = {label}});
+    return rules;
+}
+
+bool areValuesOf(const std::vector<MaterialId>& ids, const RawVolume& raw) {
+    for (size_t n = 0; n < ids.size(); ++n)
+        if (ids[n] != raw.values[n]) return false;
+    return ids.size() == raw.values.size();
+}
+
 TEST(ResampledLabels, OfTheSameVoxelsAreTheSame) {
     const RawVolume labels = numbered(gridOf({4, 3, 2}, {1e-3, 2e-3, 3e-3}));
-    const ResampledLabels same = resampleLabels(labels, labels.geometry, "l.nrrd");
-    EXPECT_TRUE(same.labels.values == labels.values);
+    const ResampledLabels same = resampleLabels(labels, oneOfEach(24), labels.geometry, "l.nrrd");
+    EXPECT_TRUE(areValuesOf(same.ids, labels));
     EXPECT_TRUE(same.is_exact);
     EXPECT_EQ(same.covered, 1);
 }
@@ -49,8 +62,8 @@ TEST(ResampledLabels, MayBeStoredAnotherWayRound) {
             for (int i = 0; i < 4; ++i)
                 turned[size_t((2 - j) + 3 * (i + 4 * k))] = scan.values[size_t(i + 4 * (j + 3 * k))];
     labels.values.append(std::span<const float>(turned));
-    const ResampledLabels back = resampleLabels(labels, scan.geometry, "l.nrrd");
-    EXPECT_TRUE(back.labels.values == scan.values);
+    const ResampledLabels back = resampleLabels(labels, oneOfEach(24), scan.geometry, "l.nrrd");
+    EXPECT_TRUE(areValuesOf(back.ids, scan));
     EXPECT_TRUE(back.is_exact);
 }
 
@@ -64,14 +77,37 @@ TEST(ResampledLabels, AreRightButForAVoxelAtTheBorder) {
     const double at = normal.dot(placeOfVoxel(scan, scan.dims / 2));
     const RawVolume labels =
         scanOf(grid, [&](const Eigen::Vector3d& p) { return normal.dot(p) > at ? 7.0 : 3.0; });
-    const ResampledLabels out = resampleLabels(labels, scan, "labels.nrrd");
+    const ResampledLabels out = resampleLabels(labels, oneOfEach(7), scan, "labels.nrrd");
     EXPECT_FALSE(out.is_exact);
     EXPECT_EQ(out.covered, 1);
     forEachIndex({Eigen::Vector3i::Zero(), scan.dims.array() - 1}, [&](const Eigen::Vector3i& v) {
         const double beyond = normal.dot(placeOfVoxel(scan, v)) - at;
         if (std::abs(beyond) < 0.6e-3) return;  // either may be right
-        ASSERT_EQ(out.labels.values[indexOf(scan, v)], beyond > 0 ? 7 : 3) << v.transpose();
+        ASSERT_EQ(out.ids[indexOf(scan, v)], beyond > 0 ? 7 : 3) << v.transpose();
     });
+}
+
+// A nerve (labels 1 and 2) and a canal (2, 3 and 5) overlap in 2.
+TEST(ResampledLabels, ThatOverlapKeepTheirShapeEach) {
+    const VolumeGeometry file = gridOf({2, 2, 2}, Eigen::Vector3d::Constant(1e-3));
+    VolumeGeometry middle = file;
+    middle.dims = {1, 1, 1};
+    middle.X_WV.position.setConstant(0.5e-3);
+    const auto idOf = [&](const std::vector<uint8_t>& corners, const std::vector<MaterialRule>& rules) {
+        RawVolume labels;
+        labels.geometry = file;
+        labels.values.append(std::span<const uint8_t>(corners));
+        return int(resampleLabels(labels, rules, middle, "l").ids[0]);
+    };
+    const std::vector<MaterialRule> nerve_first = {{.labels = {1, 2}}, {.labels = {2, 3, 5}}};
+    EXPECT_EQ(idOf({1, 1, 1, 2, 3, 3, 5, 5}, nerve_first), 2)
+        << "five of eight are canal, though no label has as many as the nerve's own";
+    EXPECT_EQ(idOf({1, 1, 1, 2, 2, 3, 0, 0}, nerve_first), 1) << "five of eight are nerve";
+    EXPECT_EQ(idOf({1, 1, 2, 2, 2, 3, 3, 0}, nerve_first), 2) << "both have five: the later wins";
+    EXPECT_EQ(idOf({1, 1, 1, 1, 2, 2, 2, 0}, {{.labels = {4}}, {.labels = {2, 1}}}), 2)
+        << "one structure of two labels";
+    EXPECT_EQ(idOf({1, 1, 1, 3, 3, 0, 0, 4}, oneOfEach(4)), 1) << "none has half: the largest share";
+    EXPECT_EQ(idOf({1, 1, 1, 1, 3, 3, 3, 3}, oneOfEach(4)), 3) << "of two alike the larger label";
 }
 
 TEST(ResampledLabels, AreNoneWhereTheirFileEnds) {
@@ -80,8 +116,8 @@ TEST(ResampledLabels, AreNoneWhereTheirFileEnds) {
     part.dims.x() = 4;
     part.X_WV.position.x() = 3e-3;
     const RawVolume labels = scanOf(part, [](const Eigen::Vector3d&) { return 5.0; });
-    const ResampledLabels out = resampleLabels(labels, scan, "part.nrrd");
-    for (int i = 0; i < 10; ++i) EXPECT_EQ(out.labels.values[size_t(i)], i >= 3 && i < 7 ? 5 : 0) << i;
+    const ResampledLabels out = resampleLabels(labels, oneOfEach(5), scan, "part.nrrd");
+    for (int i = 0; i < 10; ++i) EXPECT_EQ(out.ids[size_t(i)], i >= 3 && i < 7 ? 5 : 0) << i;
     EXPECT_DOUBLE_EQ(out.covered, 0.4);
     EXPECT_FALSE(out.is_exact);
 }
@@ -90,10 +126,10 @@ TEST(ResampledLabels, MustMeetTheScanAndBeWholeNumbers) {
     const VolumeGeometry scan = gridOf({4, 3, 2}, {1e-3, 2e-3, 3e-3});
     RawVolume aside = numbered(scan);
     aside.geometry.X_WV.position.x() = 20e-3;
-    expectUserError([&] { resampleLabels(aside, scan, "labels.nrrd"); },
+    expectUserError([&] { resampleLabels(aside, {}, scan, "labels.nrrd"); },
                     {"labels.nrrd", "lies beside the volume"});
     const RawVolume halves = scanOf(scan, [](const Eigen::Vector3d&) { return 1.5; });
-    expectUserError([&] { resampleLabels(halves, scan, "labels.nrrd"); },
+    expectUserError([&] { resampleLabels(halves, {}, scan, "labels.nrrd"); },
                     {"labels.nrrd", "no whole numbers"});
 }
 
