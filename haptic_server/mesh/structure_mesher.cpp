@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <unordered_map>
 
 #include "haptic_server/volume/marching_cubes_table.h"
@@ -13,8 +14,10 @@ namespace {
 
 constexpr int64_t kMostSamples = int64_t(1)
                                  << 25;  // of a structure's box; a larger one is looked at coarsely
-constexpr float kMostMoved = 0.5f;       // voxels per axis, by smoothing
-constexpr float kSimplified = 0.06f;     // voxels that the surface may move by fewer triangles
+constexpr float kMostMoved = 0.5f;       // voxels of the labels per axis, by smoothing
+constexpr float kNearestToSample = 0.1f;
+constexpr double kSamplesPerLabel = 2;  // per axis, of labels on coarser voxels: structures of one voxel stay
+constexpr float kSimplified = 0.06f;    // voxels that the surface may move by fewer triangles
 // A pass shrinks by the first factor and grows by the second: what bends slower than 1/kShrink + 1/kGrow
 // tells stays as it is.
 constexpr int kPasses = 60;
@@ -39,19 +42,23 @@ std::array<IndexBox, kMostMaterials + 1> boxesOf(const BoneProperties& propertie
     return boxes;
 }
 
-// Finds the surface between samples, every so many voxels, of one material and all others.
+// Finds the surface between samples, each of a cube of voxels, of one material and all others.
 class StructureSurface {
   public:
     StructureSurface(const BoneProperties& properties, MaterialId material, const IndexBox& box,
-                     const Eigen::Vector3d& spacing)
-        : stride_(strideOf(box)),
+                     const Eigen::Vector3d& spacing, int least_stride)
+        : stride_(strideOf(box, least_stride)),
           first_(box.min.array() - stride_),
           size_((box.max - box.min) / stride_ + Eigen::Vector3i::Constant(4)),
           step_((spacing * stride_).cast<float>()),
-          inside_(size_t(size_.cast<int64_t>().prod())) {
+          share_(size_t(size_.cast<int64_t>().prod())) {
         size_t at = 0;
         forEachIndex({Eigen::Vector3i::Zero(), size_.array() - 1}, [&](const Eigen::Vector3i& sample) {
-            inside_[at++] = properties.material(first_ + stride_ * sample) == material;
+            const Eigen::Vector3i low = first_ + stride_ * sample;
+            int count = 0;
+            forEachIndex({low, low.array() + (stride_ - 1)},
+                         [&](const Eigen::Vector3i& v) { count += properties.material(v) == material; });
+            share_[at++] = float(count) / float(stride_ * stride_ * stride_);
         });
     }
 
@@ -62,7 +69,7 @@ class StructureSurface {
             int config = 0;
             const size_t low = indexOf(cell);
             for (int corner = 0; corner < 8; ++corner)
-                config |= int(inside_[low + cornerOffset(corner)]) << corner;
+                config |= int(isInside(low + cornerOffset(corner))) << corner;
             if (config == 0 || config == 255) return;
             const CubeTriangles& triangles = cubeTriangles()[size_t(config)];
             for (int t = 0; t < triangles.count; ++t)
@@ -73,11 +80,12 @@ class StructureSurface {
     }
 
   private:
-    static int strideOf(const IndexBox& box) {
-        int stride = 1;
+    static int strideOf(const IndexBox& box, int least) {
+        int stride = least;
         while (box.count() / (int64_t(stride) * stride * stride) > kMostSamples) ++stride;
         return stride;
     }
+    bool isInside(size_t sample) const { return share_[sample] > 0.5f; }
     size_t indexOf(const Eigen::Vector3i& at) const {
         return size_t(at.x()) + size_t(size_.x()) * (size_t(at.y()) + size_t(size_.y()) * size_t(at.z()));
     }
@@ -89,8 +97,13 @@ class StructureSurface {
         if (is_new) {
             const int c = edge.low_corner;
             Eigen::Vector3f sample = (cell + Eigen::Vector3i(c & 1, c >> 1 & 1, c >> 2 & 1)).cast<float>();
-            sample[edge.axis] += 0.5f;
-            const Eigen::Vector3f origin = first_.cast<float>().cwiseProduct(step_ / float(stride_));
+            const float low = share_[place], high = share_[place + cornerOffset(1 << edge.axis)];
+            sample[edge.axis] +=
+                std::clamp((0.5f - low) / (high - low), kNearestToSample, 1 - kNearestToSample);
+            // The samples are in the middle of their voxels.
+            const Eigen::Vector3f origin = (first_.cast<float>().array() + 0.5f * float(stride_ - 1))
+                                               .matrix()
+                                               .cwiseProduct(step_ / float(stride_));
             surface_.positions.push_back(origin + sample.cwiseProduct(step_));
         }
         return found->second;
@@ -99,7 +112,7 @@ class StructureSurface {
     int stride_;
     Eigen::Vector3i first_, size_;
     Eigen::Vector3f step_;
-    std::vector<bool> inside_;
+    std::vector<float> share_;  // of each sample's voxels that are of the material
     std::unordered_map<size_t, uint32_t> vertex_of_edge_;
     Surface surface_;
 };
@@ -119,12 +132,15 @@ struct Neighbours {
     }
 };
 
-void smooth(Surface& surface, const Eigen::Vector3f& step) {
+// The labels' voxels are `grain`, and the triangles as long as `step`.
+void smooth(Surface& surface, const Eigen::Vector3f& step, const Eigen::Vector3f& grain) {
     const Neighbours around(surface);
     const std::vector<Eigen::Vector3f> start = surface.positions;
     std::vector<Eigen::Vector3f> moved(start.size());
-    const Eigen::Array3f most = kMostMoved * step.array();
-    for (int pass = 0; pass < 2 * kPasses; ++pass) {
+    const Eigen::Array3f most = kMostMoved * grain.array();
+    const float finer = (grain.array() / step.array()).maxCoeff();
+    const int passes = int(std::lround(kPasses * finer * finer));  // what spreads takes so long
+    for (int pass = 0; pass < 2 * passes; ++pass) {
         const float factor = pass % 2 == 0 ? kShrink : kGrow;
         for (size_t v = 0; v < start.size(); ++v) {
             Eigen::Vector3f sum = Eigen::Vector3f::Zero();
@@ -190,15 +206,16 @@ NodeMesh packed(MaterialId material, const Surface& surface, const std::vector<E
 }  // namespace
 
 std::vector<NodeMesh> meshStructures(const BoneProperties& properties, const MaterialTable& materials,
-                                     const Eigen::Vector3d& spacing) {
+                                     const Eigen::Vector3d& spacing, double label_edge) {
+    const int stride = std::max(1, int(std::lround(label_edge / (kSamplesPerLabel * spacing.maxCoeff()))));
     const auto boxes = boxesOf(properties);
     std::vector<NodeMesh> meshes;
     for (size_t id = 1; id < materials.size(); ++id) {
         if (!materials[id].is_protected || boxes[id].isEmpty()) continue;
-        StructureSurface samples(properties, MaterialId(id), boxes[id], spacing);
+        StructureSurface samples(properties, MaterialId(id), boxes[id], spacing, stride);
         Surface surface = samples.make();
         if (surface.indices.empty()) continue;
-        smooth(surface, samples.step());
+        smooth(surface, samples.step(), samples.step().cwiseMax(float(label_edge)));
         const std::vector<Eigen::Vector3f> normals = normalsOf(surface);
         simplify(surface, kSimplified * samples.step().minCoeff());
         meshes.push_back(packed(MaterialId(id), surface, normals));

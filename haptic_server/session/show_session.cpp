@@ -120,10 +120,11 @@ std::future<std::vector<NodeMesh>> meshingStructures(const Simulation& simulatio
     const bool are_there =
         std::ranges::any_of(effects.materials, [](const MaterialProperties& m) { return m.is_protected; });
     if (!effects.properties || !are_there) return {};
-    return std::async(std::launch::async, [properties = effects.properties, materials = effects.materials,
-                                           spacing = simulation.bone->volume.spacing()] {
-        return meshStructures(*properties, materials, spacing);
-    });
+    return std::async(std::launch::async,
+                      [properties = effects.properties, materials = effects.materials,
+                       spacing = simulation.bone->volume.spacing(), grain = simulation.label_edge] {
+                          return meshStructures(*properties, materials, spacing, grain);
+                      });
 }
 
 }  // namespace

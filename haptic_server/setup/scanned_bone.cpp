@@ -7,6 +7,7 @@
 #include "haptic_server/setup/scene_region.h"
 #include "haptic_server/volume/import/far_air.h"
 #include "haptic_server/volume/import/import_volume.h"
+#include "haptic_server/volume/import/inner_values.h"
 
 namespace bonemill {
 namespace {
@@ -42,7 +43,7 @@ ScannedBone wholeBone(const LoadedScene& loaded, Scan scan) {
     VoxelVolume volume = densify(std::move(scan.raw), scan.mapping);
     dropPieces(loaded, volume, {}, scan.remarks);
     clearFarFromBone(volume, keptTissueOf(loaded, materials.ids, volume.geometry()));
-    return {std::move(volume), scan.mapping, std::move(materials),
+    return {std::move(volume), scan.mapping, std::move(materials),   {},
             nullptr,           lacks_axes,   std::move(scan.remarks)};
 }
 
@@ -50,13 +51,20 @@ ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
     const VolumeGeometry whole = scan.raw.geometry;
     CutScan cut = cutRegion(loaded, std::move(scan.raw), scan.mapping, scan.remarks);
     const bool lacks_axes = cut.region.lacks_patient_axes;
-    ScannedMaterials materials = scannedMaterialsOf(loaded, cut.region, scan.remarks);
+    RawVolume inner{.geometry = cut.region.geometry, .values = {}, .description = {}};
+    if (wantsProperties(loaded.scene))
+        inner.values = innerValues(cut.region, scan.mapping.iso_value, whole.spacing);
+    ScannedMaterials materials = scannedMaterialsOf(loaded, inner, scan.remarks);
     VoxelVolume volume = densify(std::move(cut.region), scan.mapping);
     removeSpecks(volume, whole);
     clearFarFromBone(volume, keptTissueOf(loaded, materials.ids, volume.geometry()));
-    return {std::move(volume),    scan.mapping,
-            std::move(materials), std::make_shared<const Surroundings>(std::move(cut.surroundings)),
-            lacks_axes,           std::move(scan.remarks)};
+    return {std::move(volume),
+            scan.mapping,
+            std::move(materials),
+            std::move(inner.values),
+            std::make_shared<const Surroundings>(std::move(cut.surroundings)),
+            lacks_axes,
+            std::move(scan.remarks)};
 }
 
 }  // namespace

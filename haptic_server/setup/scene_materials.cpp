@@ -132,6 +132,7 @@ ScannedMaterials scannedMaterialsOf(const LoadedScene& loaded, const RawVolume& 
     try {
         ResampledLabels labels = resampleLabels(file, rules, raw.geometry, label_path);
         if (!labels.is_exact) remarks.push_back(textOf(labels, file.geometry, label_path));
+        materials.label_edge = file.geometry.spacing.minCoeff();
         materials.ids = materialIds(raw, rules, std::move(labels.ids));
         return materials;
     } catch (const UserError& error) {

@@ -29,6 +29,7 @@ using SegmentColors = std::vector<std::optional<Eigen::Vector3d>>;  // red, gree
 struct ScannedMaterials {
     std::vector<MaterialId> ids;  // of each raw voxel, x fastest; empty: the scene has no materials
     SegmentColors segment_colors;
+    double label_edge = 0;  // m: the shortest of the label map's voxels; 0: there is none
 };
 
 // Imports volume.label_path, and says it if its grid is another one. Throws UserError.

@@ -177,17 +177,22 @@ void warnOfMissingMaterials(Simulation& simulation, const scene::Scene& scene,
 }
 
 // The effects that ask for it learn what the scanned bone was made of.
-void addProperties(Simulation& simulation, const LoadedScene& loaded, const VoxelVolume& volume,
-                   const std::vector<MaterialId>& material_ids) {
+void addProperties(Simulation& simulation, const LoadedScene& loaded, const ScannedBone& scanned) {
     if (!wantsProperties(loaded.scene)) return;
-    warnOfMissingMaterials(simulation, loaded.scene, material_ids);
-    const Eigen::Vector3i& dims = volume.dims();
+    const VoxelVolume& volume = scanned.volume;
+    const std::vector<MaterialId>& ids = scanned.materials.ids;
+    warnOfMissingMaterials(simulation, loaded.scene, ids);
+    const auto index = [&dims = volume.dims()](const Eigen::Vector3i& v) {
+        return size_t(v.x()) + size_t(dims.x()) * (size_t(v.y()) + size_t(dims.y()) * size_t(v.z()));
+    };
+    const auto material = [&](const Eigen::Vector3i& v) { return ids.empty() ? kNoMaterial : ids[index(v)]; };
+    const auto density = [&](const Eigen::Vector3i& v) {
+        const Density own = volume.at(v.x(), v.y(), v.z());
+        if (own < volume.iso() || scanned.inner_values.size() == 0) return own;
+        return std::max(own, scanned.mapping.density(double(scanned.inner_values[index(v)])));
+    };
     EffectConfigs& effects = simulation.tick.effects;
-    effects.properties = std::make_shared<const BoneProperties>(volume, [&](const Eigen::Vector3i& v) {
-        const size_t at =
-            size_t(v.x()) + size_t(dims.x()) * (size_t(v.y()) + size_t(dims.y()) * size_t(v.z()));
-        return material_ids.empty() ? kNoMaterial : material_ids[at];
-    });
+    effects.properties = std::make_shared<const BoneProperties>(volume, material, density);
     effects.protected_field = protectedFieldOf(loaded, *effects.properties, volume.spacing());
 }
 
@@ -256,6 +261,7 @@ Simulation makeSimulation(const LoadedScene& loaded) {
                           .bone = nullptr,
                           .mapping = {},
                           .segment_colors = {},
+                          .label_edge = 0,
                           .tools = buildTools(loaded),
                           .X_WD = poseOf(scene.device()),
                           .remarks = {},
@@ -265,11 +271,12 @@ Simulation makeSimulation(const LoadedScene& loaded) {
     simulation.lacks_patient_axes = scanned.lacks_patient_axes;
     simulation.mapping = scanned.mapping;
     simulation.segment_colors = std::move(scanned.materials.segment_colors);
+    simulation.label_edge = scanned.materials.label_edge;
     simulation.surroundings = std::move(scanned.surroundings);
     const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), scanned.volume.geometry());
     simulation.tick = tickConfigOf(scene);
     mapRawValues(simulation.tick.effects, loaded, simulation.mapping);
-    addProperties(simulation, loaded, scanned.volume, scanned.materials.ids);
+    addProperties(simulation, loaded, scanned);
     simulation.bone =
         std::make_unique<BoneModel>(std::move(scanned.volume), leaf_cells, shellConfigOf(scene));
     simulation.task = judgedTaskOf(loaded, simulation.bone->volume, simulation.tick.effects.properties);

@@ -35,6 +35,7 @@ struct Simulation {
     std::shared_ptr<const Surroundings> surroundings = nullptr;  // null: the bone is all there is
     DensityMapping mapping;
     SegmentColors segment_colors;                      // for shownSceneOf()
+    double label_edge = 0;                             // of ScannedMaterials
     std::vector<SceneTool> tools;                      // at least one
     std::shared_ptr<const JudgedTask> task = nullptr;  // null: the scene has none
     bool lacks_patient_axes = false;                   // RawVolume

@@ -13,10 +13,14 @@ namespace bonemill {
 
 class BoneProperties {
   public:
-    // The properties are those of the volume as it is now. material(voxel) is asked for once per voxel.
-    // Allocates; start-up only.
+    // The properties are those of the volume as it is now. material(voxel) is asked for once per voxel, and
+    // so is density(voxel), which is iso or more where the volume's is. Allocates; start-up only.
+    template <class MaterialOf, class DensityOf>
+    BoneProperties(const VoxelVolume& scanned, MaterialOf&& material, DensityOf&& density);
     template <class MaterialOf>
-    BoneProperties(const VoxelVolume& scanned, MaterialOf&& material);
+    BoneProperties(const VoxelVolume& scanned, MaterialOf&& material)
+        : BoneProperties(scanned, material,
+                         [&](const Eigen::Vector3i& v) { return scanned.at(v.x(), v.y(), v.z()); }) {}
 
     // It is RT-safe, for any thread. Outside it is 0 and kNoMaterial.
     Density original(const Eigen::Vector3i& voxel) const noexcept {
@@ -48,24 +52,25 @@ class BoneProperties {
     std::vector<MaterialId> material_;
 };
 
-template <class MaterialOf>
-BoneProperties::BoneProperties(const VoxelVolume& scanned, MaterialOf&& material) : map_(scanned.dims()) {
-    std::vector<Density> density(BrickMap::kBrick);
+template <class MaterialOf, class DensityOf>
+BoneProperties::BoneProperties(const VoxelVolume& scanned, MaterialOf&& material, DensityOf&& density)
+    : map_(scanned.dims()) {
+    std::vector<Density> densities(BrickMap::kBrick);
     std::vector<MaterialId> materials(BrickMap::kBrick);
     forEachIndex({Eigen::Vector3i::Zero(), map_.bricksPerAxis().array() - 1},
                  [&](const Eigen::Vector3i& brick) {
                      bool is_something = false;
-                     std::fill(density.begin(), density.end(), Density(0));
+                     std::fill(densities.begin(), densities.end(), Density(0));
                      std::fill(materials.begin(), materials.end(), kNoMaterial);
                      forEachIndex(map_.voxelsOf(brick), [&](const Eigen::Vector3i& v) {
                          const size_t at = BrickMap::inBrick(v);
-                         density[at] = scanned.at(v.x(), v.y(), v.z());
+                         densities[at] = density(v);
                          materials[at] = material(v);
-                         is_something |= density[at] >= scanned.iso() || materials[at] != kNoMaterial;
+                         is_something |= densities[at] >= scanned.iso() || materials[at] != kNoMaterial;
                      });
                      if (!is_something) return;
                      map_.addBrick(brick);
-                     density_.insert(density_.end(), density.begin(), density.end());
+                     density_.insert(density_.end(), densities.begin(), densities.end());
                      material_.insert(material_.end(), materials.begin(), materials.end());
                  });
 }

@@ -123,5 +123,29 @@ TEST(StructureMesher, OnlyWhatIsProtectedAndThereIsMeshed) {
     EXPECT_TRUE(isClosed(meshes[0]));
 }
 
+// A ball that was labelled on voxels of 1.25 mm, looked at on voxels of 0.25 mm: the surface is round,
+// although its voxels have the stairs of the labels.
+TEST(StructureMesher, LabelsOfCoarseVoxelsHaveNoStairsOnFineOnes) {
+    const Vector3d fine = Vector3d::Constant(0.25e-3);
+    const Distance ball = ballOf(5e-3);
+    const Distance labelled = [&](const Vector3d& p) {
+        constexpr double kEdge = 1.25e-3;  // five fine ones
+        return ball((p / kEdge).array().round().matrix() * kEdge);
+    };
+    VoxelVolume volume(test::boxGeometry(Eigen::Vector3i::Constant(96), fine), 1000);
+    const BoneProperties properties(volume, [&](const Eigen::Vector3i& voxel) {
+        return labelled(fine.cwiseProduct(voxel.cast<double>())) < 0 ? kStructure : MaterialId(1);
+    });
+    const auto smooth = meshStructures(properties, oneProtected(), fine, 1.25e-3);
+    ASSERT_EQ(smooth.size(), 1u);
+    EXPECT_TRUE(isClosed(smooth[0]));
+    const Deviation here = deviationOf(smooth[0], ball);
+    const Deviation stairs = deviationOf(meshStructures(properties, oneProtected(), fine)[0], ball);
+    const Deviation coarse = deviationOf(structuresOf(ball, Vector3d::Constant(1.25e-3), 24)[0], ball);
+    EXPECT_LT(here.rms, 1.5 * coarse.rms);
+    EXPECT_LT(here.rms, 0.5 * stairs.rms);
+    EXPECT_LT(here.worst_angle, 0.4 * stairs.worst_angle);
+}
+
 }  // namespace
 }  // namespace bonemill

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "haptic_server/setup/scene_setup.h"
 #include "haptic_server/volume/import/nrrd_writer.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/volume_import/expect_user_error.h"
@@ -66,6 +67,29 @@ TEST_F(ScannedBoneOfAScene, HasAllPiecesIfItDoesNotChoose) {
     EXPECT_TRUE(isBoneAt(bone.volume, small_));
     EXPECT_TRUE(isBoneAt(bone.volume, Eigen::Vector3d(37, 3, 3) * kMm));
     EXPECT_FALSE(bone.surroundings);
+}
+
+// Half a scan voxel under the surface the value is 750 and more; on the surface it is 500.
+TEST_F(ScannedBoneOfAScene, FineVoxelsAreAsHardAtTheSurfaceAsTheScansOwn) {
+    const std::string region =
+        "region { min_mm { x: 2 y: 5 z: 5 } max_mm { x: 22 y: 25 z: 25 } resample_mm: 0.25 }";
+    const std::string hard = "material { name: 'hard' from_value: 650 }";
+    const ScannedBone bone = boneOf(region, hard);
+    size_t voxels = 0, soft = 0;
+    forEachIndex({Eigen::Vector3i::Zero(), bone.volume.dims().array() - 1}, [&](const Eigen::Vector3i& v) {
+        const size_t at = voxels++;
+        if (bone.volume.at(v.x(), v.y(), v.z()) >= bone.volume.iso())
+            soft += bone.materials.ids[at] == kNoMaterial;
+    });
+    EXPECT_EQ(soft, 0u);
+    const Simulation simulation = makeSimulation(sceneOf(region, hard));
+    const BoneProperties& properties = *simulation.tick.effects.properties;
+    Density softest = kMaxDensity;
+    forEachIndex({Eigen::Vector3i::Zero(), bone.volume.dims().array() - 1}, [&](const Eigen::Vector3i& v) {
+        if (bone.volume.at(v.x(), v.y(), v.z()) >= bone.volume.iso())
+            softest = std::min(softest, properties.original(v));
+    });
+    EXPECT_GE(softest, bone.mapping.density(650));
 }
 
 TEST_F(ScannedBoneOfAScene, KeepsTheLargestPieceAndSaysWhatWent) {
