@@ -39,7 +39,7 @@ struct Scan {
 ScannedBone wholeBone(const LoadedScene& loaded, Scan scan) {
     const bool lacks_axes = scan.raw.lacks_patient_axes;
     std::vector<MaterialId> ids = materialIdsOf(loaded, scan.raw, scan.remarks);
-    VoxelVolume volume = densify(std::move(scan.raw), scan.mapping);
+    VoxelVolume volume = densifyNearBone(std::move(scan.raw), scan.mapping);
     dropPieces(loaded, volume, {}, scan.remarks);
     clearFarFromBone(volume);
     return {std::move(volume), scan.mapping, std::move(ids), nullptr, lacks_axes, std::move(scan.remarks)};
@@ -50,7 +50,7 @@ ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
     CutScan cut = cutRegion(loaded, std::move(scan.raw), scan.mapping, scan.remarks);
     const bool lacks_axes = cut.region.lacks_patient_axes;
     std::vector<MaterialId> ids = materialIdsOf(loaded, cut.region, scan.remarks);
-    VoxelVolume volume = densify(std::move(cut.region), scan.mapping);
+    VoxelVolume volume = densifyNearBone(std::move(cut.region), scan.mapping);
     removeSpecks(volume, whole);
     clearFarFromBone(volume);
     return {std::move(volume), scan.mapping,

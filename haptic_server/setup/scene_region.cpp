@@ -98,12 +98,19 @@ IndexBox usedVoxels(const LoadedScene& loaded, const VolumeGeometry& scan) {
 
 // X_VS keeps the axes' directions.
 Eigen::AlignedBox3d boneIn(const VoxelVolume& whole, const Pose& X_VS) {
-    Eigen::AlignedBox3d box;
-    forEachIndex({Eigen::Vector3i::Zero(), whole.dims().array() - 1}, [&](const Eigen::Vector3i& v) {
-        if (whole.at(v.x(), v.y(), v.z()) >= whole.iso())
-            box.extend(X_VS * Eigen::Vector3d(whole.spacing().cwiseProduct(v.cast<double>())));
-    });
-    return box;
+    IndexBox bone;
+    whole.forEachOwnedPart({Eigen::Vector3i::Zero(), whole.dims().array() - 1},
+                           [&](const IndexBox& part, size_t) {
+                               if (whole.uniformDensity(part.min) == 0) return;
+                               forEachIndex(part, [&](const Eigen::Vector3i& v) {
+                                   if (whole.at(v.x(), v.y(), v.z()) >= whole.iso()) bone.include(v);
+                               });
+                           });
+    if (bone.isEmpty()) return {};
+    const auto placeOf = [&](const Eigen::Vector3i& v) {
+        return X_VS * Eigen::Vector3d(whole.spacing().cwiseProduct(v.cast<double>()));
+    };
+    return Eigen::AlignedBox3d(placeOf(bone.min)).extend(placeOf(bone.max));
 }
 
 // With the voxels around them, which hold a part of them: beside air a rim would become a shell of bone.
@@ -170,7 +177,7 @@ CutScan cutRegion(const LoadedScene& loaded, RawVolume scan, const DensityMappin
     const IndexBox used = usedVoxels(loaded, scan.geometry);
     if (used.isEmpty() || (used.max - used.min).minCoeff() < 1)
         refuseField(loaded, "volume.region", kNowhere);
-    VoxelVolume whole = densify(std::as_const(scan), mapping);
+    VoxelVolume whole = densifyNearBone(std::as_const(scan), mapping);
     std::vector<Eigen::Vector3i> dropped;
     dropPieces(loaded, whole, used, remarks, [&](const Eigen::Vector3i& v) { dropped.push_back(v); });
     takeAway(dropped, whole, scan.values);

@@ -39,8 +39,10 @@ struct DensityMapping {
 DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window);
 
 VoxelVolume densify(const RawVolume& raw, const DensityMapping& mapping);
+// What clearFarFromBone() makes of that (far_air.h), without memory for what it clears.
+VoxelVolume densifyNearBone(const RawVolume& raw, const DensityMapping& mapping);
 // Gives the raw values' memory back as their densities come: both are never there as a whole.
-VoxelVolume densify(RawVolume&& raw, const DensityMapping& mapping);
+VoxelVolume densifyNearBone(RawVolume&& raw, const DensityMapping& mapping);
 // Does chooseMapping, densify and removeSmallPieces in one.
 VoxelVolume densify(const RawVolume& raw, const DensityWindow& window);
 

@@ -11,6 +11,10 @@ Bricks bricksWithBone(const VoxelVolume& volume) {
     const BrickStore& bricks = volume.bricks();
     Bricks has_bone(bricks.brickCount());
     for (BrickId id = 0; id < bricks.brickCount(); ++id) {
+        if (const auto shared = bricks.sharedDensity(id)) {
+            has_bone[id] = *shared >= volume.iso();
+            continue;
+        }
         const Density* held = bricks.contents(id);
         has_bone[id] =
             std::any_of(held, held + kBrickSize, [&](Density density) { return density >= volume.iso(); });
@@ -28,6 +32,7 @@ bool isFar(const BrickStore& bricks, const Bricks& has_bone, const Eigen::Vector
 
 // Clears them in every brick that holds them.
 void clearVoxels(VoxelVolume& volume, const Eigen::Vector3i& brick) {
+    if (volume.bricks().sharedDensity(volume.bricks().brickAt(brick.x(), brick.y(), brick.z())) == 0) return;
     const Density air[kBrickCells] = {};
     const Eigen::Vector3i first = brick.array() * kBrickCells - 1;
     const IndexBox owned = IndexBox{first, first.array() + (kBrickCells - 1)}.clamped(
