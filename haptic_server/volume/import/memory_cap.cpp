@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <fstream>
 #include <optional>
 
@@ -14,6 +15,8 @@ constexpr bool kIsSanitized = true;
 #else
 constexpr bool kIsSanitized = false;
 #endif
+
+std::atomic<bool> is_capped = false;
 
 // Returns the limits with `extra_bytes` more than is mapped now; nothing when there is no capping.
 std::optional<rlimit> cappedLimit(uint64_t extra_bytes, rlimit& now) {
@@ -27,13 +30,15 @@ std::optional<rlimit> cappedLimit(uint64_t extra_bytes, rlimit& now) {
 
 }  // namespace
 
-MemoryCap::MemoryCap(uint64_t extra_bytes) {
+MemoryCap::MemoryCap(uint64_t extra_bytes) : is_outermost_(!is_capped.exchange(true)) {
+    if (!is_outermost_) return;
     const auto capped = cappedLimit(extra_bytes, before_);
     is_set_ = capped && setrlimit(RLIMIT_AS, &*capped) == 0;
 }
 
 MemoryCap::~MemoryCap() {
     if (is_set_) setrlimit(RLIMIT_AS, &before_);
+    if (is_outermost_) is_capped = false;
 }
 
 void capMemoryForGood(uint64_t extra_bytes) noexcept {
