@@ -27,10 +27,11 @@ template <class T>
 class DensityOf {
   public:
     explicit DensityOf(const DensityMapping& mapping) : mapping_(mapping) {
-        if constexpr (!std::is_integral_v<T>) return;
-        for (int value = int(kLowest); value <= int(std::numeric_limits<T>::max()); ++value)
-            table_.push_back(mapping.density(value));
-        least_bone_ = int(kLowest) + int(std::ranges::lower_bound(table_, mapping.iso) - table_.begin());
+        if constexpr (std::is_integral_v<T>) {
+            for (int value = kLowest; value <= std::numeric_limits<T>::max(); ++value)
+                table_.push_back(mapping.density(value));
+            least_bone_ = kLowest + int(std::ranges::lower_bound(table_, mapping.iso) - table_.begin());
+        }
     }
     bool isBone(T sample) const noexcept {
         if constexpr (std::is_integral_v<T>)

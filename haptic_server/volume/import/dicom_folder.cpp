@@ -9,6 +9,7 @@
 #include "haptic_server/volume/import/dicom_scan.h"
 #include "haptic_server/volume/import/import_limits.h"
 #include "haptic_server/volume/import/itk_image_file.h"
+#include "haptic_server/volume/import/memory_cap.h"
 #include "haptic_server/volume/import/physical_frame.h"
 #include "haptic_server/volume/import/series_table.h"
 #include "haptic_server/volume/import/work_ahead.h"
@@ -66,10 +67,10 @@ void readSlices(const std::vector<DicomSlice>& slices, RawValues& values) {
     uint64_t bytes = 0;
     for (const Slices& file : files)
         bytes = std::max(bytes, mostMemoryToRead(file.front().path, kSampleBytes * pixels * file.size()));
-    workAhead(files, bytes, kHeldBytes * pixels * slices.size(), pixelsOf,
-              [&](const Slices& of_file, Pixels of_pixels) {
-                  for (const DicomSlice& slice : of_file) append(slice, of_pixels, values);
-              });
+    const MemoryCap cap(memoryForAll(bytes, kHeldBytes * pixels * slices.size()));
+    workAhead(files, pixelsOf, [&](const Slices& of_file, Pixels of_pixels) {
+        for (const DicomSlice& slice : of_file) append(slice, of_pixels, values);
+    });
 }
 
 // Air is negative on no other scale.

@@ -9,6 +9,7 @@
 #include "haptic_server/volume/import/dicom_frames.h"
 #include "haptic_server/volume/import/dicom_scan.h"
 #include "haptic_server/volume/import/itk_image_file.h"
+#include "haptic_server/volume/import/memory_cap.h"
 #include "haptic_server/volume/import/work_ahead.h"
 
 namespace bonemill {
@@ -179,9 +180,10 @@ std::vector<DicomSlice> slicesOfFiles(const std::vector<std::filesystem::path>& 
     };
     uint64_t bytes = 0;
     for (const auto& file : files) bytes = std::max(bytes, mostMemoryToRead(file, 0));
+    const MemoryCap cap(memoryForAll(bytes, bytes));
     std::vector<DicomSlice> slices;
     workAhead(
-        files, bytes, bytes,
+        files,
         [&](const std::filesystem::path& file) {
             OfFile of_file;
             try {

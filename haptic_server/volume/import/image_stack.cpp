@@ -9,6 +9,7 @@
 #include "common/user_error.h"
 #include "haptic_server/volume/import/import_limits.h"
 #include "haptic_server/volume/import/itk_image_file.h"
+#include "haptic_server/volume/import/memory_cap.h"
 #include "haptic_server/volume/import/physical_frame.h"
 #include "haptic_server/volume/import/work_ahead.h"
 
@@ -120,9 +121,9 @@ RawValues readPictures(const Stack& stack, const ItkImageHeader& first) {
     for (const fs::path& slice : stack.slices) bytes = std::max(bytes, mostMemoryToRead(slice, picture));
     RawValues values;
     values.reserve(size_t(first.dims[0] * first.dims[1]) * stack.slices.size());
+    const MemoryCap cap(memoryForAll(bytes, picture * stack.slices.size()));
     workAhead(
-        stack.slices, bytes, picture * stack.slices.size(),
-        [&](const fs::path& slice) { return pixelsOf(slice, stack, first); },
+        stack.slices, [&](const fs::path& slice) { return pixelsOf(slice, stack, first); },
         [&](const fs::path&, const RawValues& pixels) {
             pixels.visit([&](auto samples) { values.append(samples); });
         });

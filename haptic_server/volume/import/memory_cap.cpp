@@ -7,6 +7,8 @@
 #include <fstream>
 #include <optional>
 
+#include "haptic_server/volume/import/work_ahead.h"
+
 namespace bonemill {
 namespace {
 
@@ -39,6 +41,11 @@ MemoryCap::MemoryCap(uint64_t extra_bytes) : is_outermost_(!is_capped.exchange(t
 MemoryCap::~MemoryCap() {
     if (is_set_) setrlimit(RLIMIT_AS, &before_);
     if (is_outermost_) is_capped = false;
+}
+
+uint64_t memoryForAll(uint64_t bytes_of_one, uint64_t bytes_taken) {
+    constexpr uint64_t kThread = uint64_t(256) << 20;  // its stack and its heap, most of it never used
+    return mostAtATime() * (bytes_of_one + kThread) + bytes_taken;
 }
 
 void capMemoryForGood(uint64_t extra_bytes) noexcept {

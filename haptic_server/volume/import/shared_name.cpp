@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstring>
 #include <memory>
+#include <new>
 
 #include "haptic_server/volume/import/file_being_read.h"
 
@@ -25,7 +26,8 @@ void provideHandlersStack() {
     constexpr size_t kStackBytes = 64 << 10;
     thread_local std::unique_ptr<char[]> stack;
     if (stack) return;
-    stack = std::make_unique<char[]>(kStackBytes);
+    stack.reset(new (std::nothrow) char[kStackBytes]);
+    if (!stack) return;
     const stack_t handlers{.ss_sp = stack.get(), .ss_flags = 0, .ss_size = kStackBytes};
     sigaltstack(&handlers, nullptr);
 }

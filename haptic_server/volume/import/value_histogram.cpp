@@ -13,16 +13,20 @@ namespace bonemill {
 
 ValueCounts::ValueCounts(const RawValues& values) : values_(values) {
     values.visit([&]<class T>(std::span<const T> samples) {
-        if constexpr (!std::is_integral_v<T>) return;
-        first_ = int(std::numeric_limits<T>::lowest());
-        counts_.resize(size_t(int(std::numeric_limits<T>::max()) - first_) + 1);
-        // Neighbours are often alike: one after the other they are counted in turn, so that none waits.
-        constexpr size_t kTurns = 4;
-        std::vector<std::array<uint32_t, kTurns>> turns(counts_.size());
-        for (size_t n = 0; n < samples.size(); ++n) ++turns[size_t(int(samples[n]) - first_)][n % kTurns];
-        for (size_t v = 0; v < counts_.size(); ++v)
-            for (const uint32_t count : turns[v]) counts_[v] += count;
+        if constexpr (std::is_integral_v<T>) count(samples);
     });
+}
+
+template <class T>
+void ValueCounts::count(std::span<const T> samples) {
+    first_ = std::numeric_limits<T>::lowest();
+    counts_.resize(size_t(std::numeric_limits<T>::max() - first_) + 1);
+    // Neighbours are often alike: one after the other they are counted in turn, so that none waits.
+    constexpr size_t kTurns = 4;
+    std::vector<std::array<uint32_t, kTurns>> turns(counts_.size());
+    for (size_t n = 0; n < samples.size(); ++n) ++turns[size_t(samples[n] - first_)][n % kTurns];
+    for (size_t v = 0; v < counts_.size(); ++v)
+        for (const uint32_t count : turns[v]) counts_[v] += count;
 }
 
 Histogram countInto(const ValueCounts& values, double low, double width, size_t bins) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "haptic_server/volume/raw_values.h"
@@ -20,6 +21,9 @@ class ValueCounts {
     void forEach(See&& see) const;
 
   private:
+    template <class T>
+    void count(std::span<const T> samples);
+
     const RawValues& values_;
     int first_ = 0;                 // value of counts_[0]
     std::vector<uint64_t> counts_;  // empty: floats

@@ -19,7 +19,7 @@ std::vector<int> numbersBelow(int count) {
 TEST(WorkAhead, ResultsComeInOrderWhateverIsDoneFirst) {
     std::vector<int> taken;
     workAhead(
-        numbersBelow(40), 0, 0,
+        numbersBelow(40),
         [](int n) {
             if (n % 3 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
             return 10 * n;
@@ -35,7 +35,7 @@ TEST(WorkAhead, ResultsComeInOrderWhateverIsDoneFirst) {
 TEST(WorkAhead, SeveralAreWorkedAtBesideEachOther) {
     std::atomic<bool> has_second = false;
     workAhead(
-        numbersBelow(2), 0, 0,
+        numbersBelow(2),
         [&](int n) {
             if (n == 1) has_second = true;
             while (!has_second) std::this_thread::yield();
@@ -53,7 +53,7 @@ TEST(WorkAhead, TheFirstErrorInOrderIsThrownAndNothingAfterItTaken) {
         return n;
     };
     try {
-        workAhead(numbersBelow(40), 0, 0, work, [&](int n, int) { taken.push_back(n); });
+        workAhead(numbersBelow(40), work, [&](int n, int) { taken.push_back(n); });
         FAIL() << "nothing was thrown";
     } catch (const std::runtime_error& error) {
         EXPECT_STREQ(error.what(), "5");
@@ -63,7 +63,7 @@ TEST(WorkAhead, TheFirstErrorInOrderIsThrownAndNothingAfterItTaken) {
 
 TEST(WorkAhead, NothingIsDoneWithoutItems) {
     workAhead(
-        std::vector<int>(), 0, 0, [](int n) { return n; }, [](int, int) { FAIL(); });
+        std::vector<int>(), [](int n) { return n; }, [](int, int) { FAIL(); });
 }
 
 }  // namespace
