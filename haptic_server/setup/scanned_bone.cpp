@@ -1,16 +1,23 @@
 #include "haptic_server/setup/scanned_bone.h"
 
+#include <spdlog/spdlog.h>
+
 #include <utility>
 
+#include "common/rt/clock.h"
 #include "haptic_server/setup/kept_tissue.h"
+#include "haptic_server/setup/refuse_field.h"
 #include "haptic_server/setup/scene_pieces.h"
 #include "haptic_server/setup/scene_region.h"
 #include "haptic_server/volume/import/far_air.h"
+#include "haptic_server/volume/import/import_limits.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/inner_values.h"
 
 namespace bonemill {
 namespace {
+
+constexpr int64_t kLongWithoutAWordNs = 2 * kNsPerSecond;
 
 DensityWindow windowOf(const scene::Volume& volume) {
     DensityWindow window;
@@ -37,12 +44,26 @@ struct Scan {
     std::vector<std::string> remarks;
 };
 
+// A session keeps the bone as it was beside the bone as it is, and its surface.
+void requireMemory(const LoadedScene& loaded, const VoxelVolume& volume) {
+    const uint64_t bone = volume.bricks().ownCount() * kBrickSize * sizeof(Density);
+    const uint64_t needed = bone + bone / 2, available = availableMemory();
+    if (available == 0 || needed <= available) return;
+    refuseField(loaded, "volume",
+                ": all of this scan is more than can be milled here: its bone takes " +
+                    std::to_string(bone >> 20) + " MiB, a session needs " + std::to_string(needed >> 20) +
+                    " MiB more, and only " + std::to_string(available >> 20) +
+                    " MiB of memory are free; name the part that is milled in volume.region");
+}
+
 ScannedBone wholeBone(const LoadedScene& loaded, Scan scan) {
     const bool lacks_axes = scan.raw.lacks_patient_axes;
     ScannedMaterials materials = scannedMaterialsOf(loaded, scan.raw, scan.remarks);
-    VoxelVolume volume = densify(std::move(scan.raw), scan.mapping);
+    const auto is_kept = keptTissueOf(loaded, materials.ids, scan.raw.geometry);
+    VoxelVolume volume = densifyNearBone(std::move(scan.raw), scan.mapping, is_kept);
     dropPieces(loaded, volume, {}, scan.remarks);
-    clearFarFromBone(volume, keptTissueOf(loaded, materials.ids, volume.geometry()));
+    clearFarFromBone(volume, is_kept);
+    requireMemory(loaded, volume);
     return {std::move(volume), scan.mapping, std::move(materials),   {},
             nullptr,           lacks_axes,   std::move(scan.remarks)};
 }
@@ -55,9 +76,10 @@ ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
     if (wantsProperties(loaded.scene))
         inner.values = innerValues(cut.region, scan.mapping.iso_value, whole.spacing);
     ScannedMaterials materials = scannedMaterialsOf(loaded, inner, scan.remarks);
-    VoxelVolume volume = densify(std::move(cut.region), scan.mapping);
+    const auto is_kept = keptTissueOf(loaded, materials.ids, inner.geometry);
+    VoxelVolume volume = densifyNearBone(std::move(cut.region), scan.mapping, is_kept);
     removeSpecks(volume, whole);
-    clearFarFromBone(volume, keptTissueOf(loaded, materials.ids, volume.geometry()));
+    clearFarFromBone(volume, is_kept);
     return {std::move(volume),
             scan.mapping,
             std::move(materials),
@@ -71,8 +93,11 @@ ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
 
 ScannedBone readBone(const LoadedScene& loaded) {
     const scene::Volume& scene = loaded.scene.volume();
+    const int64_t start_ns = monotonicNowNs();
     Scan scan{importVolume(resolvePath(loaded, scene.path()), optionsOf(scene)), {}, {}};
     scan.remarks.push_back(scan.raw.description);
+    if (monotonicNowNs() - start_ns > kLongWithoutAWordNs)
+        spdlog::info("{} is read; now its bone is made", scene.path());
     scan.mapping = chooseMapping(scan.raw, windowOf(scene));
     if (scan.mapping.proposed)
         scan.remarks.push_back("no volume.iso_value in the scene: " + textOf(*scan.mapping.proposed));

@@ -11,7 +11,8 @@ namespace {
 
 constexpr size_t kMostRemarked = 4, kMostListed = 100;
 
-std::vector<bool> droppedOf(const LoadedScene& loaded, const BonePieces& pieces, const IndexBox& region) {
+std::vector<bool> droppedOf(const LoadedScene& loaded, const BonePieces& pieces, const IndexBox& region,
+                            int scan_voxels) {
     const scene::Volume& scene = loaded.scene.volume();
     const size_t count = pieces.list().size();
     std::vector<bool> is_dropped(count), touches(count, true);
@@ -21,8 +22,8 @@ std::vector<bool> droppedOf(const LoadedScene& loaded, const BonePieces& pieces,
         touches = pieces.touching(region);
     }
     for (size_t n = 0; n < count; ++n)
-        is_dropped[n] = pieces.list()[n].voxels < scene.smallest_piece_voxels() || !touches[n] ||
-                        (scene.keep_pieces() == scene::Volume::LARGEST_PIECE && n > 0);
+        is_dropped[n] = pieces.list()[n].voxels * uint64_t(scan_voxels) < scene.smallest_piece_voxels() ||
+                        !touches[n] || (scene.keep_pieces() == scene::Volume::LARGEST_PIECE && n > 0);
     for (int n = 0; n < scene.drop_piece_size(); ++n) {
         if (scene.drop_piece(n) > count)
             refuseField(loaded, "volume.drop_piece[" + std::to_string(n) + "]",
@@ -76,10 +77,10 @@ bool choosesPieces(const scene::Scene& scene) {
 }
 
 void dropPieces(const LoadedScene& loaded, VoxelVolume& volume, const IndexBox& region,
-                std::vector<std::string>& remarks, const BonePieces::See& see) {
+                std::vector<std::string>& remarks, const PieceView& view) {
     if (!choosesPieces(loaded.scene)) return;
     const BonePieces pieces(volume);
-    const std::vector<bool> is_dropped = droppedOf(loaded, pieces, region);
+    const std::vector<bool> is_dropped = droppedOf(loaded, pieces, region, view.scan_voxels);
     if (!std::ranges::count(is_dropped, false))
         refuseField(loaded, "volume",
                     pieces.list().empty() ? ": no voxel reaches the iso-value"
@@ -88,7 +89,7 @@ void dropPieces(const LoadedScene& loaded, VoxelVolume& volume, const IndexBox& 
     const std::string dropped = list(pieces, is_dropped, true, volume.geometry(), "; ", kMostRemarked);
     remarks.push_back("kept " + list(pieces, is_dropped, false, volume.geometry(), "; ", kMostRemarked) +
                       (dropped.empty() ? "" : "; dropped " + dropped));
-    pieces.drop(volume, is_dropped, see);
+    pieces.drop(volume, is_dropped, view.see);
 }
 
 std::string listPieces(const VoxelVolume& volume) {

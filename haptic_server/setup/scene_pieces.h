@@ -13,10 +13,14 @@ namespace bonemill {
 bool choosesPieces(const scene::Scene& scene);
 
 // By smallest_piece_voxels, keep_pieces and drop_piece; `region` is empty without a volume.region. The remark
-// lists the largest pieces that were kept and that were dropped, with number, size and place. `see` gets each
-// voxel that goes. Throws UserError if none would be left, or a number is of no piece.
+// lists the largest pieces that were kept and that were dropped, with number, size and place. Throws
+// UserError if none would be left, or a number is of no piece.
+struct PieceView {
+    BonePieces::See see = {};  // gets each voxel that goes
+    int scan_voxels = 1;       // so many of the scan are one of the volume
+};
 void dropPieces(const LoadedScene& loaded, VoxelVolume& volume, const IndexBox& region,
-                std::vector<std::string>& remarks, const BonePieces::See& see = {});
+                std::vector<std::string>& remarks, const PieceView& view = {});
 
 // Lists the largest pieces, one line each, with the numbers that volume.drop_piece takes.
 std::string listPieces(const VoxelVolume& volume);

@@ -13,6 +13,7 @@
 #include "haptic_server/setup/refuse_field.h"
 #include "haptic_server/setup/scene_pieces.h"
 #include "haptic_server/volume/import/bone_pieces.h"
+#include "haptic_server/volume/import/coarser.h"
 #include "haptic_server/volume/import/far_air.h"
 #include "haptic_server/volume/import/region.h"
 #include "haptic_server/volume/import/thin_walls.h"
@@ -26,6 +27,8 @@ constexpr double kAirHu = -1000, kSurelyAirHu = -500, kDensestHu = 3071;
 constexpr double kProposedVoxels = 1 << 26;
 constexpr double kMostVoxels = 1 << 28;
 constexpr int64_t kMostLookedAt = 1 << 28;  // for thin walls: a second
+// What is only looked at needs no more voxels than this, and would not fit into memory with them.
+constexpr size_t kMostAround = size_t(1) << 28;
 constexpr char kNowhere[] = " does not lie in the volume, or only its rim does";
 
 Eigen::AlignedBox3d boxOf(const LoadedScene& loaded) {
@@ -98,25 +101,37 @@ IndexBox usedVoxels(const LoadedScene& loaded, const VolumeGeometry& scan) {
 
 // X_VS keeps the axes' directions.
 Eigen::AlignedBox3d boneIn(const VoxelVolume& whole, const Pose& X_VS) {
-    Eigen::AlignedBox3d box;
-    forEachIndex({Eigen::Vector3i::Zero(), whole.dims().array() - 1}, [&](const Eigen::Vector3i& v) {
-        if (whole.at(v.x(), v.y(), v.z()) >= whole.iso())
-            box.extend(X_VS * Eigen::Vector3d(whole.spacing().cwiseProduct(v.cast<double>())));
-    });
-    return box;
+    IndexBox bone;
+    whole.forEachOwnedPart({Eigen::Vector3i::Zero(), whole.dims().array() - 1},
+                           [&](const IndexBox& part, size_t) {
+                               if (whole.uniformDensity(part.min) == 0) return;
+                               forEachIndex(part, [&](const Eigen::Vector3i& v) {
+                                   if (whole.at(v.x(), v.y(), v.z()) >= whole.iso()) bone.include(v);
+                               });
+                           });
+    if (bone.isEmpty()) return {};
+    const auto placeOf = [&](const Eigen::Vector3i& v) {
+        return X_VS * Eigen::Vector3d(whole.spacing().cwiseProduct(v.cast<double>()));
+    };
+    return Eigen::AlignedBox3d(placeOf(bone.min)).extend(placeOf(bone.max));
 }
 
-// With the voxels around them, which hold a part of them: beside air a rim would become a shell of bone.
-void takeAway(const std::vector<Eigen::Vector3i>& dropped, const VoxelVolume& whole, RawValues& values) {
-    const Eigen::Vector3i& dims = whole.dims();
-    for (const Eigen::Vector3i& voxel : dropped)
-        forEachIndex(
-            IndexBox{voxel, voxel}.grown(1).clamped(Eigen::Vector3i::Zero(), dims.array() - 1),
-            [&](const Eigen::Vector3i& v) {
-                if (whole.at(v.x(), v.y(), v.z()) < whole.iso())
-                    values.setToLowest(size_t(v.x()) +
-                                       size_t(dims.x()) * (size_t(v.y()) + size_t(dims.y()) * size_t(v.z())));
-            });
+// With the voxels around them, which hold a part of them: beside air a rim would become a shell of bone. Each
+// voxel of the whole is `coarse`^3 of the scan.
+void takeAway(const std::vector<Eigen::Vector3i>& dropped, const VoxelVolume& whole, int coarse,
+              RawVolume& scan) {
+    const Eigen::Vector3i& dims = scan.geometry.dims;
+    for (const Eigen::Vector3i& voxel : dropped) {
+        const IndexBox around{(voxel.array() - 1) * coarse, (voxel.array() + 2) * coarse - 1};
+        forEachIndex(around.clamped(Eigen::Vector3i::Zero(), dims.array() - 1),
+                     [&](const Eigen::Vector3i& v) {
+                         const Eigen::Vector3i of_whole = v / coarse;
+                         if (whole.at(of_whole.x(), of_whole.y(), of_whole.z()) < whole.iso())
+                             scan.values.setToLowest(size_t(v.x()) +
+                                                     size_t(dims.x()) *
+                                                         (size_t(v.y()) + size_t(dims.y()) * size_t(v.z())));
+                     });
+    }
 }
 
 // A step makes the spline ring by a tenth: padding and metal far beyond bone would make bone of soft tissue.
@@ -149,6 +164,24 @@ RawVolume resampled(const LoadedScene& loaded, const RawVolume& scan, std::vecto
     return resampleRegion(scan, region, bandOf(scan), deblur_mm * kMillimetre);
 }
 
+// So many times larger voxels leave no more than kMostAround of them.
+int coarseFactorOf(const VolumeGeometry& scan) {
+    int factor = 1;
+    while (scan.voxelCount() / (size_t(factor) * size_t(factor) * size_t(factor)) > kMostAround) ++factor;
+    return factor;
+}
+
+VoxelVolume wholeOf(const RawVolume& scan, int coarse, const DensityMapping& mapping,
+                    std::vector<std::string>& remarks) {
+    if (coarse == 1) return densifyNearBone(scan, mapping);
+    std::ostringstream text;
+    text << "the scan has " << rounded(voxelsOf(scan.geometry) / 1e6)
+         << " million voxels: around the region it is shown, and searched for pieces, with voxels of "
+         << (coarse * scan.geometry.spacing * kPerMillimetre).transpose() << " mm";
+    remarks.push_back(text.str());
+    return densifyNearBone(coarser(scan, coarse), mapping);
+}
+
 }  // namespace
 
 void remarkThinWalls(const LoadedScene& loaded, const RawVolume& scan, double iso_value,
@@ -170,15 +203,18 @@ CutScan cutRegion(const LoadedScene& loaded, RawVolume scan, const DensityMappin
     const IndexBox used = usedVoxels(loaded, scan.geometry);
     if (used.isEmpty() || (used.max - used.min).minCoeff() < 1)
         refuseField(loaded, "volume.region", kNowhere);
-    VoxelVolume whole = densify(std::as_const(scan), mapping);
+    const int coarse = coarseFactorOf(scan.geometry);
+    VoxelVolume whole = wholeOf(scan, coarse, mapping, remarks);
     std::vector<Eigen::Vector3i> dropped;
-    dropPieces(loaded, whole, used, remarks, [&](const Eigen::Vector3i& v) { dropped.push_back(v); });
-    takeAway(dropped, whole, scan.values);
+    dropPieces(loaded, whole, {used.min / coarse, used.max / coarse}, remarks,
+               {.see = [&](const Eigen::Vector3i& v) { dropped.push_back(v); },
+                .scan_voxels = coarse * coarse * coarse});
+    takeAway(dropped, whole, coarse, scan);
     clearFarFromBone(whole);
     RawVolume region = resampled(loaded, scan, remarks);
     const VolumeGeometry& fine = region.geometry;
     const Eigen::Vector3d end = fine.spacing.cwiseProduct((fine.dims.array() - 1).matrix().cast<double>());
-    const Pose X_VS = fine.X_WV.inverse() * scan.geometry.X_WV;
+    const Pose X_VS = fine.X_WV.inverse() * whole.geometry().X_WV;
     const Eigen::AlignedBox3d bone = boneIn(whole, X_VS);
     return {std::move(region), {std::move(whole), X_VS, {Eigen::Vector3d::Zero(), end}, bone}};
 }

@@ -17,7 +17,7 @@ bool isUniform(const Density* contents) {
 BrickStore::BrickStore(const Eigen::Vector3i& voxels)
     : bricks_((voxels.array() + kBrickCells - 1) / kBrickCells), slots_(size_t(bricks_.prod()), kAirSlot) {
     setPoolSize(kSharedSlots);
-    std::fill_n(pool_.begin() + ptrdiff_t(kSolidSlot * kBrickSize), kBrickSize, kMaxDensity);
+    std::fill_n(pool_.data() + kSolidSlot * kBrickSize, kBrickSize, kMaxDensity);
 }
 
 void BrickStore::makeSpare(size_t count) {
@@ -26,14 +26,13 @@ void BrickStore::makeSpare(size_t count) {
 
 void BrickStore::dropSpare() {
     setPoolSize(used_);
-    pool_.shrink_to_fit();
 }
 
 BrickStore BrickStore::withoutSpare() const {
     BrickStore copy(Eigen::Vector3i::Zero());
     copy.bricks_ = bricks_;
     copy.slots_ = slots_;
-    copy.pool_.assign(pool_.begin(), pool_.begin() + ptrdiff_t(used_ * kBrickSize));
+    copy.pool_ = DensityPool({pool_.data(), used_ * kBrickSize});
     copy.used_ = used_;
     return copy;
 }

@@ -11,6 +11,7 @@
 
 #include "common/assert.h"
 #include "haptic_server/kernels/brick_layout.h"
+#include "haptic_server/volume/density_pool.h"
 #include "haptic_server/volume/index_box.h"
 
 namespace bonemill {
@@ -89,14 +90,11 @@ class BrickStore {
         return std::atomic_ref<uint32_t>(const_cast<uint32_t&>(slots_[brick]))
             .load(std::memory_order_acquire);
     }
-    void setPoolSize(size_t bricks) {
-        pool_.reserve(bricks * kBrickSize);  // resize() alone would double it
-        pool_.resize(bricks * kBrickSize);
-    }
+    void setPoolSize(size_t bricks) { pool_.resize(bricks * kBrickSize); }
 
     Eigen::Vector3i bricks_;
     std::vector<uint32_t> slots_;  // per brick: where in the pool
-    std::vector<Density> pool_;
+    DensityPool pool_;
     size_t used_ = kSharedSlots;
 };
 

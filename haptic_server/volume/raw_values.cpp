@@ -12,7 +12,11 @@ namespace {
 template <class T>
 ValueRange rangeOf(std::span<const T> samples) {
     if (samples.empty()) return {};
-    const auto [low, high] = std::ranges::minmax(samples);
+    T low = samples.front(), high = low;
+    for (const T sample : samples) {  // plain, for the compiler takes many at a time
+        low = std::min(low, sample);
+        high = std::max(high, sample);
+    }
     return {double(low), double(high), true, 0};
 }
 

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 
 #include "haptic_server/volume/brick_store.h"
 #include "haptic_server/volume/raw_volume.h"
@@ -88,6 +89,10 @@ class VoxelVolume {
     // Fills all voxels at once with density(i, j, k), which is asked for some voxels more than once.
     template <class DensityAt>
     void fill(DensityAt&& density);
+    // Does the same row by row, in layers of bricks from below: fill_row(first, out) writes out.size() voxels
+    // along x. A brick for which is_air(brick) stays air, copies of its neighbours' voxels included.
+    template <class IsAir, class FillRow>
+    void fillRows(IsAir&& is_air, FillRow&& fill_row);
     void shareUniformBricks() { bricks_.shareUniformBricks(); }
 
     // Returns densityGradient() at this voxel, counts per m. Any index in -1 .. dims is right. It is RT-safe.
@@ -151,24 +156,39 @@ void VoxelVolume::forEachPiece(const IndexBox& voxels, Visit&& visit) const noex
     }
 }
 
-template <class DensityAt>
-void VoxelVolume::fill(DensityAt&& density) {
+template <class IsAir, class FillRow>
+void VoxelVolume::fillRows(IsAir&& is_air, FillRow&& fill_row) {
+    constexpr size_t kMoreBricks = 1024;
     bricks_ = BrickStore(geometry_.dims.array() + 2);
     const IndexBox data{Eigen::Vector3i::Zero(), geometry_.dims.array() - 1};
-    BrickId id = 0;
+    BrickId next = 0;
     forEachIndex(bricks_.allBricks(), [&](const Eigen::Vector3i& brick) {
-        const IndexBox held = voxelsIn(brick);
-        if (bricks_.spareCount() == 0) bricks_.makeSpare(bricks_.ownCount() / 4 + 16);
+        const BrickId id = next++;
+        if (is_air(brick)) return;
+        if (bricks_.spareCount() == 0) bricks_.makeSpare(kMoreBricks);
         Density* contents = bricks_.nextSpare();
         std::fill_n(contents, kBrickSize, Density(0));
-        forEachIndex(held.clamped(data.min, data.max), [&](const Eigen::Vector3i& v) {
-            const Eigen::Vector3i at = v - held.min;
-            contents[size_t(at.x()) + kStrideY * size_t(at.y()) + kStrideZ * size_t(at.z())] =
-                density(v.x(), v.y(), v.z());
-        });
-        bricks_.adoptNextSpare(id++);
+        const Eigen::Vector3i low = voxelsIn(brick).min;
+        const IndexBox held = voxelsIn(brick).clamped(data.min, data.max);
+        const auto count = size_t(std::max(0, held.max.x() - held.min.x() + 1));
+        for (int k = held.min.z(); k <= held.max.z(); ++k)
+            for (int j = held.min.y(); j <= held.max.y(); ++j)
+                fill_row(Eigen::Vector3i(held.min.x(), j, k),
+                         std::span(contents + (held.min.x() - low.x()) + kStrideY * size_t(j - low.y()) +
+                                       kStrideZ * size_t(k - low.z()),
+                                   count));
+        bricks_.adoptNextSpare(id);
     });
     bricks_.dropSpare();
+}
+
+template <class DensityAt>
+void VoxelVolume::fill(DensityAt&& density) {
+    fillRows([](const Eigen::Vector3i&) { return false; },
+             [&](const Eigen::Vector3i& first, std::span<Density> out) {
+                 for (size_t n = 0; n < out.size(); ++n)
+                     out[n] = density(first.x() + int(n), first.y(), first.z());
+             });
 }
 
 }  // namespace bonemill

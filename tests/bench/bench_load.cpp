@@ -8,7 +8,6 @@
 #include "haptic_server/tick/fixed_tick.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "haptic_server/volume/import/densify.h"
-#include "haptic_server/volume/import/far_air.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/leaf_cells.h"
@@ -34,9 +33,8 @@ std::unique_ptr<BoneModel> makeBone(const std::string& path, std::optional<doubl
     json["import_child_peak_mib"] = mib(peakResidentBytesOfChildren());
     start = monotonicNowNs();
     const DensityMapping mapping = chooseMapping(*raw, DensityWindow{.low = {}, .high = {}, .iso = iso});
-    VoxelVolume volume = densify(std::move(*raw), mapping);
+    VoxelVolume volume = densifyNearBone(std::move(*raw), mapping);
     raw.reset();
-    clearFarFromBone(volume);
     json["densify_ms"] = msSince(start);
     start = monotonicNowNs();
     auto bone = std::make_unique<BoneModel>(std::move(volume), Eigen::Vector3i::Constant(kLeafCells),

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "haptic_server/volume/import/propose_iso.h"
@@ -39,8 +40,12 @@ struct DensityMapping {
 DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window);
 
 VoxelVolume densify(const RawVolume& raw, const DensityMapping& mapping);
+// What clearFarFromBone(is_kept) makes of that (far_air.h), without memory for what it clears.
+VoxelVolume densifyNearBone(const RawVolume& raw, const DensityMapping& mapping,
+                            const std::function<bool(size_t)>& is_kept = {});
 // Gives the raw values' memory back as their densities come: both are never there as a whole.
-VoxelVolume densify(RawVolume&& raw, const DensityMapping& mapping);
+VoxelVolume densifyNearBone(RawVolume&& raw, const DensityMapping& mapping,
+                            const std::function<bool(size_t)>& is_kept = {});
 // Does chooseMapping, densify and removeSmallPieces in one.
 VoxelVolume densify(const RawVolume& raw, const DensityWindow& window);
 

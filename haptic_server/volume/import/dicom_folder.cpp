@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <span>
 
 #include "common/user_error.h"
 #include "haptic_server/volume/import/dicom_headers.h"
@@ -9,37 +10,68 @@
 #include "haptic_server/volume/import/dicom_segments.h"
 #include "haptic_server/volume/import/import_limits.h"
 #include "haptic_server/volume/import/itk_image_file.h"
+#include "haptic_server/volume/import/memory_cap.h"
 #include "haptic_server/volume/import/physical_frame.h"
 #include "haptic_server/volume/import/series_table.h"
+#include "haptic_server/volume/import/work_ahead.h"
 
 namespace bonemill {
 namespace {
 
-void readSlices(const std::vector<DicomSlice>& slices, RawValues& values) {
-    std::filesystem::path read_path;
-    RawValues pixels;
-    DicomRescale applied;
-    for (const DicomSlice& slice : slices) {
-        if (slice.path != read_path) {
-            pixels = {};
-            ItkImageFile image(ItkFormat::kDicom, slice.path);
-            image.appendValues(pixels);
-            applied = image.appliedRescale();
-            read_path = slice.path;
-        }
-        const size_t size = size_t(slice.columns) * size_t(slice.rows), begin = size * size_t(slice.frame);
-        if (pixels.size() % size != 0 || pixels.size() < begin + size)
-            throw UserError(slice.path.string() +
-                            ": holds fewer pixels than its header says; the file is damaged");
-        const bool is_scaled = pixels.visit([&](auto samples) {
-            return appendRescaled(samples.subspan(begin, size), applied, slice.rescale.value_or(applied),
-                                  values);
-        });
-        if (!is_scaled)
-            throw UserError(slice.path.string() +
-                            ": its frames are scaled too differently to be read; export it anew");
-        pixels.forget(begin, begin + size);
+using Slices = std::span<const DicomSlice>;
+
+// Slices that follow each other in one file.
+std::vector<Slices> filesOf(Slices slices) {
+    std::vector<Slices> files;
+    while (!slices.empty()) {
+        const auto other = std::ranges::find_if(
+            slices, [&](const DicomSlice& slice) { return slice.path != slices.front().path; });
+        const auto count = size_t(other - slices.begin());
+        files.push_back(slices.first(count));
+        slices = slices.subspan(count);
     }
+    return files;
+}
+
+struct Pixels {
+    RawValues values;
+    DicomRescale applied;
+};
+
+Pixels pixelsOf(const Slices& of_file) {
+    Pixels pixels;
+    ItkImageFile image(ItkFormat::kDicom, of_file.front().path);
+    image.appendValues(pixels.values);
+    pixels.applied = image.appliedRescale();
+    return pixels;
+}
+
+void append(const DicomSlice& slice, Pixels& pixels, RawValues& values) {
+    const size_t size = size_t(slice.columns) * size_t(slice.rows), begin = size * size_t(slice.frame);
+    if (pixels.values.size() % size != 0 || pixels.values.size() < begin + size)
+        throw UserError(slice.path.string() +
+                        ": holds fewer pixels than its header says; the file is damaged");
+    const bool is_scaled = pixels.values.visit([&](auto samples) {
+        return appendRescaled(samples.subspan(begin, size), pixels.applied,
+                              slice.rescale.value_or(pixels.applied), values);
+    });
+    if (!is_scaled)
+        throw UserError(slice.path.string() +
+                        ": its frames are scaled too differently to be read; export it anew");
+    pixels.values.forget(begin, begin + size);
+}
+
+void readSlices(const std::vector<DicomSlice>& slices, RawValues& values) {
+    constexpr uint64_t kSampleBytes = 8, kHeldBytes = 2 + 4;  // the widest; while they become wider
+    const std::vector<Slices> files = filesOf(slices);
+    const uint64_t pixels = uint64_t(slices.front().columns) * uint64_t(slices.front().rows);
+    uint64_t bytes = 0;
+    for (const Slices& file : files)
+        bytes = std::max(bytes, mostMemoryToRead(file.front().path, kSampleBytes * pixels * file.size()));
+    const MemoryCap cap(memoryForAll(bytes, kHeldBytes * pixels * slices.size()));
+    workAhead(files, pixelsOf, [&](const Slices& of_file, Pixels of_pixels) {
+        for (const DicomSlice& slice : of_file) append(slice, of_pixels, values);
+    });
 }
 
 // Air is negative on no other scale.
@@ -101,13 +133,6 @@ RawVolume readChoice(const DicomChoice& choice, const std::string& name) {
     return raw;
 }
 
-std::vector<DicomSlice> slicesOfFiles(const std::vector<std::filesystem::path>& files, LeftOut& left_out) {
-    std::vector<DicomSlice> slices;
-    for (const auto& file : files)
-        for (const DicomSlice& slice : slicesOfFile(file, left_out)) slices.push_back(slice);
-    return slices;
-}
-
 RawVolume importFolder(const std::filesystem::path& folder, Subfolders subfolders, const DicomWish& wish) {
     LeftOut left_out;
     const auto files = filesOf(folder, subfolders, left_out);
@@ -134,22 +159,11 @@ RawVolume importAroundSlice(const std::filesystem::path& file, const DicomSlice&
     return raw;
 }
 
-// Damage is told in a line of its own, so that it hides no other series.
-std::vector<DicomSlice> readableSlices(const std::vector<std::filesystem::path>& files, LeftOut& left_out,
-                                       std::vector<std::string>& problems) {
-    std::vector<DicomSlice> slices;
-    for (const auto& file : files) try {
-            for (const DicomSlice& slice : slicesOfFile(file, left_out)) slices.push_back(slice);
-        } catch (const UserError& error) {
-            problems.push_back(error.what());
-        }
-    return slices;
-}
-
 std::vector<std::string> listFiles(const std::vector<std::filesystem::path>& files,
                                    const std::filesystem::path& path, LeftOut& left_out) {
     SeriesTableNotes notes;
-    const std::vector<DicomSlice> slices = readableSlices(files, left_out, notes.problems);
+    // Damage is told in a line of its own, so that it hides no other series.
+    const std::vector<DicomSlice> slices = slicesOfFiles(files, left_out, &notes.problems);
     notes.left_out = left_out.text();
     if (slices.empty())
         throw UserError(path.string() + ": holds no DICOM slice that can be used: " +

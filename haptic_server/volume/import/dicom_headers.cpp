@@ -9,6 +9,8 @@
 #include "haptic_server/volume/import/dicom_frames.h"
 #include "haptic_server/volume/import/dicom_scan.h"
 #include "haptic_server/volume/import/itk_image_file.h"
+#include "haptic_server/volume/import/memory_cap.h"
+#include "haptic_server/volume/import/work_ahead.h"
 
 namespace bonemill {
 namespace {
@@ -120,6 +122,16 @@ void LeftOut::add(const std::string& reason, const std::filesystem::path& file) 
     entries_.push_back({reason, file.filename().string(), 1});
 }
 
+void LeftOut::add(const LeftOut& more) {
+    for (const Entry& entry : more.entries_) {
+        const auto same = std::ranges::find(entries_, entry.reason, &Entry::reason);
+        if (same != entries_.end())
+            same->count += entry.count;
+        else
+            entries_.push_back(entry);
+    }
+}
+
 std::string LeftOut::text() const {
     std::string text;
     for (const Entry& entry : entries_)
@@ -160,6 +172,37 @@ std::vector<DicomSlice> slicesOfFile(const std::filesystem::path& path, LeftOut&
             break;
     }
     return readHeader(path, left_out);
+}
+
+std::vector<DicomSlice> slicesOfFiles(const std::vector<std::filesystem::path>& files, LeftOut& left_out,
+                                      std::vector<std::string>* damaged) {
+    struct OfFile {
+        std::vector<DicomSlice> slices;
+        LeftOut left_out;
+        std::string problem;
+    };
+    uint64_t bytes = 0;
+    for (const auto& file : files) bytes = std::max(bytes, mostMemoryToRead(file, 0));
+    const MemoryCap cap(memoryForAll(bytes, bytes));
+    std::vector<DicomSlice> slices;
+    workAhead(
+        files,
+        [&](const std::filesystem::path& file) {
+            OfFile of_file;
+            try {
+                of_file.slices = slicesOfFile(file, of_file.left_out);
+            } catch (const UserError& error) {
+                if (!damaged) throw;
+                of_file.problem = error.what();
+            }
+            return of_file;
+        },
+        [&](const std::filesystem::path&, OfFile of_file) {
+            left_out.add(of_file.left_out);
+            slices.insert(slices.end(), of_file.slices.begin(), of_file.slices.end());
+            if (!of_file.problem.empty()) damaged->push_back(std::move(of_file.problem));
+        });
+    return slices;
 }
 
 // Links to folders are not followed, for they may lead in circles.

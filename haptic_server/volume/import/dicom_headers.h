@@ -13,6 +13,7 @@ namespace bonemill {
 class LeftOut {
   public:
     void add(const std::string& reason, const std::filesystem::path& file);
+    void add(const LeftOut& more);
     std::string text() const;  // empty: none
 
   private:
@@ -31,5 +32,10 @@ std::vector<std::filesystem::path> filesOf(const std::filesystem::path& folder, 
 // The pictures of one file, or none and the reason: it cannot belong to a volume. Throws UserError when it is
 // damaged, which must not pass as "not an image": the volume would silently lose a slice.
 std::vector<DicomSlice> slicesOfFile(const std::filesystem::path& path, LeftOut& left_out);
+
+// Those of all the files, which are read several at a time. `damaged` gets what is wrong with a file, which
+// is left out; without it the first such error is thrown.
+std::vector<DicomSlice> slicesOfFiles(const std::vector<std::filesystem::path>& files, LeftOut& left_out,
+                                      std::vector<std::string>* damaged = nullptr);
 
 }  // namespace bonemill

@@ -11,6 +11,10 @@ Bricks bricksWithBone(const VoxelVolume& volume) {
     const BrickStore& bricks = volume.bricks();
     Bricks has_bone(bricks.brickCount());
     for (BrickId id = 0; id < bricks.brickCount(); ++id) {
+        if (const auto shared = bricks.sharedDensity(id)) {
+            has_bone[id] = *shared >= volume.iso();
+            continue;
+        }
         const Density* held = bricks.contents(id);
         has_bone[id] =
             std::any_of(held, held + kBrickSize, [&](Density density) { return density >= volume.iso(); });
@@ -33,18 +37,11 @@ IndexBox voxelsOf(const VoxelVolume& volume, const Eigen::Vector3i& brick) {
                                                                       volume.dims().array() - 1);
 }
 
-bool holdsAny(const Eigen::Vector3i& dims, const IndexBox& voxels,
-              const std::function<bool(size_t)>& is_kept) {
-    bool holds = false;
-    forEachIndex(voxels, [&](const Eigen::Vector3i& v) {
-        holds = holds || is_kept(size_t(v.x()) +
-                                 size_t(dims.x()) * (size_t(v.y()) + size_t(dims.y()) * size_t(v.z())));
-    });
-    return holds;
-}
-
 // Clears them in every brick that holds them.
-void clearVoxels(VoxelVolume& volume, const IndexBox& owned) {
+void clearVoxels(VoxelVolume& volume, const Eigen::Vector3i& brick) {
+    if (volume.bricks().sharedDensity(volume.bricks().brickAt(brick.x(), brick.y(), brick.z())) == 0) return;
+    const IndexBox owned = voxelsOf(volume, brick);
+    if (owned.isEmpty()) return;
     const Density air[kBrickCells] = {};
     const IndexBox rows{owned.min, {owned.min.x(), owned.max.y(), owned.max.z()}};
     forEachIndex(rows, [&](const Eigen::Vector3i& row) {
@@ -54,12 +51,23 @@ void clearVoxels(VoxelVolume& volume, const IndexBox& owned) {
 
 }  // namespace
 
+bool ownsAny(const VoxelVolume& volume, const Eigen::Vector3i& brick,
+             const std::function<bool(size_t)>& is_kept) {
+    if (!is_kept) return false;
+    const Eigen::Vector3i& dims = volume.dims();
+    bool owns = false;
+    forEachIndex(voxelsOf(volume, brick), [&](const Eigen::Vector3i& v) {
+        owns = owns ||
+               is_kept(size_t(v.x()) + size_t(dims.x()) * (size_t(v.y()) + size_t(dims.y()) * size_t(v.z())));
+    });
+    return owns;
+}
+
 void clearFarFromBone(VoxelVolume& volume, const std::function<bool(size_t)>& is_kept) {
     const Bricks has_bone = bricksWithBone(volume);
     forEachIndex(volume.bricks().allBricks(), [&](const Eigen::Vector3i& brick) {
-        const IndexBox owned = voxelsOf(volume, brick);
-        if (owned.isEmpty() || !isFar(volume.bricks(), has_bone, brick)) return;
-        if (!is_kept || !holdsAny(volume.dims(), owned, is_kept)) clearVoxels(volume, owned);
+        if (isFar(volume.bricks(), has_bone, brick) && !ownsAny(volume, brick, is_kept))
+            clearVoxels(volume, brick);
     });
     volume.shareUniformBricks();
 }

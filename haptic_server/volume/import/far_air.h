@@ -9,6 +9,10 @@
 
 namespace bonemill {
 
+// Does the brick own a voxel that is_kept(index, x fastest)? Without is_kept it does not.
+bool ownsAny(const VoxelVolume& volume, const Eigen::Vector3i& brick,
+             const std::function<bool(size_t)>& is_kept);
+
 // Densities in bricks that hold no bone, and whose neighbours hold none, become air: soft tissue and noise at
 // least 16 voxels away from all bone, which no surface and no gradient ever sees. A burr that adds bone there
 // starts from air. Their memory is given back. Bricks with a voxel that is_kept(index, x fastest) stay as

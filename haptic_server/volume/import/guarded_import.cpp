@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <spdlog/spdlog.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -207,13 +208,26 @@ bool receive(Incoming& from, uint8_t wanted, Received& received) {
     return receiveValues(from, head, raw.values);
 }
 
-[[noreturn]] void sendAsChild(int file, const std::filesystem::path& path,
-                              const std::function<void()>& send) {
-    for (const int number : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTERM, SIGINT})
-        signal(number, SIG_DFL);
+// What the library did is done again, or abort() goes on, and the process ends as it would have without this.
+void nameFileAndEnd(int number) {
+    nameFileOfEndingThread();
+    signal(number, SIG_DFL);
+}
+
+void handleSignals() {
+    struct sigaction naming {};
+    naming.sa_handler = nameFileAndEnd;
+    naming.sa_flags = SA_ONSTACK;
+    for (const int number : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) sigaction(number, &naming, nullptr);
+    for (const int number : {SIGTERM, SIGINT}) signal(number, SIG_DFL);
     sigset_t all;
     sigfillset(&all);
     sigprocmask(SIG_UNBLOCK, &all, nullptr);
+}
+
+[[noreturn]] void sendAsChild(int file, const std::filesystem::path& path,
+                              const std::function<void()>& send) {
+    handleSignals();
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // a reader without its parent would only hold on to what it inherited
     const rlimit no_core{0, 0}, cpu{kMostCpuSeconds, kMostCpuSeconds};
     setrlimit(RLIMIT_CORE, &no_core);
@@ -263,7 +277,10 @@ Received receiveFrom(const std::filesystem::path& path, const StartReader& start
     const pid_t child = start(pipe.end(1), name.file());
     if (child < 0) throw UserError("cannot start a process to read " + path.string() + "; memory is short");
     pipe.closeEnd(1);
-    Incoming incoming(pipe.end(0), most);
+    Incoming incoming(pipe.end(0), most, [&] {
+        spdlog::info("reading {} takes a while; it is at {}", oneLine(path.string()),
+                     nameOfFileBeingRead(path));
+    });
     Received received;
     std::string& error = received.error;
     bool is_complete = false;

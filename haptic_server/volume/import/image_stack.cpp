@@ -9,7 +9,9 @@
 #include "common/user_error.h"
 #include "haptic_server/volume/import/import_limits.h"
 #include "haptic_server/volume/import/itk_image_file.h"
+#include "haptic_server/volume/import/memory_cap.h"
 #include "haptic_server/volume/import/physical_frame.h"
+#include "haptic_server/volume/import/work_ahead.h"
 
 namespace bonemill {
 namespace {
@@ -98,24 +100,33 @@ void checkPicture(const ItkImageHeader& header, const std::string& file) {
         throw UserError(file + ": claims an image of absurd size; the file is damaged");
 }
 
-RawValues readSlices(const Stack& stack, const ItkImageHeader& first) {
-    const size_t pixels = size_t(first.dims[0] * first.dims[1]);
+RawValues pixelsOf(const fs::path& slice, const Stack& stack, const ItkImageHeader& first) {
+    ItkImageFile image(stack.format(), slice);
+    const ItkImageHeader& header = image.header();
+    checkPicture(header, slice.string());
+    if (pictureText(header) != pictureText(first))
+        throw UserError(slice.string() + ": has " + pictureText(header) + ", but " +
+                        stack.slices.front().filename().string() + " has " + pictureText(first) +
+                        "; all slices must be alike");
+    RawValues pixels;
+    image.appendValues(pixels);
+    if (pixels.size() != size_t(first.dims[0] * first.dims[1]))
+        throw UserError(slice.string() + ": holds fewer pixels than its header says; the file is damaged");
+    return pixels;
+}
+
+RawValues readPictures(const Stack& stack, const ItkImageHeader& first) {
+    const uint64_t picture = first.dims[0] * first.dims[1] * first.bytes_per_voxel;
+    uint64_t bytes = 0;
+    for (const fs::path& slice : stack.slices) bytes = std::max(bytes, mostMemoryToRead(slice, picture));
     RawValues values;
-    values.reserve(pixels * stack.slices.size());
-    for (const fs::path& slice : stack.slices) {
-        ItkImageFile image(stack.format(), slice);
-        const ItkImageHeader& header = image.header();
-        checkPicture(header, slice.string());
-        if (pictureText(header) != pictureText(first))
-            throw UserError(slice.string() + ": has " + pictureText(header) + ", but " +
-                            stack.slices.front().filename().string() + " has " + pictureText(first) +
-                            "; all slices must be alike");
-        const size_t before = values.size();
-        image.appendValues(values);
-        if (values.size() != before + pixels)
-            throw UserError(slice.string() +
-                            ": holds fewer pixels than its header says; the file is damaged");
-    }
+    values.reserve(size_t(first.dims[0] * first.dims[1]) * stack.slices.size());
+    const MemoryCap cap(memoryForAll(bytes, picture * stack.slices.size()));
+    workAhead(
+        stack.slices, [&](const fs::path& slice) { return pixelsOf(slice, stack, first); },
+        [&](const fs::path&, const RawValues& pixels) {
+            pixels.visit([&](auto samples) { values.append(samples); });
+        });
     return values;
 }
 
@@ -162,7 +173,7 @@ RawVolume importImageStack(const std::filesystem::path& folder,
     checkPicture(first, stack.slices.front().string());
     checkVolumeSize({first.dims[0], first.dims[1], stack.slices.size()}, first.bytes_per_voxel, name);
     RawVolume raw;
-    raw.values = readSlices(stack, first);
+    raw.values = readPictures(stack, first);
     FileFrame frame;
     frame.dims = {int(first.dims[0]), int(first.dims[1]), int(stack.slices.size())};
     frame.spacing_mm = *spacing_mm;

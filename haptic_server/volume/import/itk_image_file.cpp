@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <mutex>
 #include <span>
 #include <sstream>
 #include <type_traits>
@@ -22,7 +23,10 @@
 namespace bonemill {
 namespace {
 
+// The library's list of what it can make is made when it is first asked, by one thread at a time here.
 itk::ImageIOBase::Pointer makeReader(ItkFormat format) {
+    static std::mutex only_one;
+    const std::lock_guard lock(only_one);
     switch (format) {
         case ItkFormat::kNrrd:
             return itk::NrrdImageIO::New().GetPointer();
@@ -58,12 +62,6 @@ uint64_t bytesOnDisk(const std::string& file) {
     struct stat facts {};
     if (stat(file.c_str(), &facts) != 0) return 0;
     return std::min(uint64_t(facts.st_size), uint64_t(facts.st_blocks) * kBlockBytes);
-}
-
-// A reader holds the file, what it unpacks to and some tables; lengths that ask for more are damaged.
-uint64_t memoryFor(const std::string& file, uint64_t voxel_bytes) {
-    constexpr uint64_t kTables = 256 << 20;
-    return kTables + 8 * bytesOnDisk(file) + 4 * voxel_bytes;
 }
 
 ItkImageHeader headerOf(const itk::ImageIOBase& io) {
@@ -157,6 +155,11 @@ bool readAs(itk::IOComponentEnum type, itk::ImageIOBase& io, RawValues& values) 
 
 }  // namespace
 
+uint64_t mostMemoryToRead(const std::filesystem::path& file, uint64_t voxel_bytes) {
+    constexpr uint64_t kTables = 256 << 20;
+    return kTables + 8 * bytesOnDisk(file.string()) + 4 * voxel_bytes;
+}
+
 struct ItkImageFile::Reader {
     itk::ImageIOBase::Pointer io;
 };
@@ -164,7 +167,7 @@ struct ItkImageFile::Reader {
 ItkImageFile::ItkImageFile(ItkFormat format, const std::filesystem::path& path)
     : file_(path.string()), reader_(std::make_unique<Reader>()) {
     noteFileBeingRead(path);
-    const MemoryCap cap(memoryFor(file_, 0));
+    const MemoryCap cap(mostMemoryToRead(file_, 0));
     try {
         reader_->io = makeReader(format);
         reader_->io->SetFileName(file_);
@@ -195,7 +198,7 @@ DicomRescale ItkImageFile::appliedRescale() const {
 void ItkImageFile::appendValues(RawValues& values) {
     itk::ImageIOBase& io = *reader_->io;
     const uint64_t bytes = uint64_t(io.GetImageSizeInBytes());
-    const MemoryCap cap(memoryFor(file_, bytes) + bytes / header_.bytes_per_voxel * sizeof(float));
+    const MemoryCap cap(mostMemoryToRead(file_, bytes) + bytes / header_.bytes_per_voxel * sizeof(float));
     try {
         itk::ImageIORegion region(io.GetNumberOfDimensions());
         for (unsigned a = 0; a < io.GetNumberOfDimensions(); ++a) region.SetSize(a, io.GetDimensions(a));

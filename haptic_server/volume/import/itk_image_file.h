@@ -30,7 +30,12 @@ struct ItkImageHeader {
     std::array<std::array<double, 3>, 3> axis{};  // where each index axis points
 };
 
-// It is for start-up only, by one thread. Throws UserError with one message naming the file.
+// What reading a file of so many bytes of voxels may take: the file, what it unpacks to and some tables.
+// Lengths that ask for more are damaged.
+uint64_t mostMemoryToRead(const std::filesystem::path& file, uint64_t voxel_bytes);
+
+// It is for start-up only; each object is for one thread, several may read beside each other. Throws
+// UserError with one message naming the file.
 class ItkImageFile {
   public:
     // Reads the header.

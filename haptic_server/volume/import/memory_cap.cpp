@@ -3,8 +3,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <fstream>
 #include <optional>
+
+#include "haptic_server/volume/import/work_ahead.h"
 
 namespace bonemill {
 namespace {
@@ -14,6 +17,8 @@ constexpr bool kIsSanitized = true;
 #else
 constexpr bool kIsSanitized = false;
 #endif
+
+std::atomic<bool> is_capped = false;
 
 // Returns the limits with `extra_bytes` more than is mapped now; nothing when there is no capping.
 std::optional<rlimit> cappedLimit(uint64_t extra_bytes, rlimit& now) {
@@ -27,13 +32,20 @@ std::optional<rlimit> cappedLimit(uint64_t extra_bytes, rlimit& now) {
 
 }  // namespace
 
-MemoryCap::MemoryCap(uint64_t extra_bytes) {
+MemoryCap::MemoryCap(uint64_t extra_bytes) : is_outermost_(!is_capped.exchange(true)) {
+    if (!is_outermost_) return;
     const auto capped = cappedLimit(extra_bytes, before_);
     is_set_ = capped && setrlimit(RLIMIT_AS, &*capped) == 0;
 }
 
 MemoryCap::~MemoryCap() {
     if (is_set_) setrlimit(RLIMIT_AS, &before_);
+    if (is_outermost_) is_capped = false;
+}
+
+uint64_t memoryForAll(uint64_t bytes_of_one, uint64_t bytes_taken) {
+    constexpr uint64_t kThread = uint64_t(256) << 20;  // its stack and its heap, most of it never used
+    return mostAtATime() * (bytes_of_one + kThread) + bytes_taken;
 }
 
 void capMemoryForGood(uint64_t extra_bytes) noexcept {

@@ -8,8 +8,9 @@
 namespace bonemill {
 
 // While it lives, the process may map at most `extra_bytes` more than it does now; beyond that, allocation
-// fails with std::bad_alloc. It has no effect under sanitizers, which map terabytes themselves. It is for one
-// thread, at start-up only.
+// fails with std::bad_alloc. It has no effect under sanitizers, which map terabytes themselves, and none
+// while another one lives: that of several files (memoryForAll) counts for each of them. It is for start-up
+// only; one that has an effect lives longer than all threads that begin after it.
 class MemoryCap {
   public:
     explicit MemoryCap(uint64_t extra_bytes);
@@ -19,8 +20,12 @@ class MemoryCap {
 
   private:
     rlimit before_{};
-    bool is_set_ = false;
+    bool is_outermost_ = false, is_set_ = false;
 };
+
+// What reading a folder by several threads (work_ahead.h) may take: so much for one file, and for what comes
+// of all.
+uint64_t memoryForAll(uint64_t bytes_of_one, uint64_t bytes_taken);
 
 // Does the same for all that this process will do, and cannot be taken back.
 void capMemoryForGood(uint64_t extra_bytes) noexcept;

@@ -57,7 +57,7 @@ double medianAbove(const Histogram& h, double value) {
 }
 
 // Goes half-way from soft tissue to bone, in HU; there is nothing when the scan holds no soft tissue.
-std::optional<double> halfWayFromSoftTissue(const RawValues& values, double water) {
+std::optional<double> halfWayFromSoftTissue(const ValueCounts& values, double water) {
     const auto bins = size_t((kHighestHu - kSoftTissueLowHu) / kSoftTissueBinHu);
     Histogram h = countInto(values, water + kSoftTissueLowHu, kSoftTissueBinHu, bins);
     h.low -= water;
@@ -138,16 +138,16 @@ IsoProposal ofUnknownScale(const Histogram& h, const std::vector<Mode>& modes) {
     return {otsuThreshold(h), IsoDoubt::kLarge, std::nullopt, "no material stands out: Otsu's threshold"};
 }
 
-IsoProposal proposal(const RawVolume& raw) {
+IsoProposal proposal(const RawVolume& raw, const ValueCounts& values) {
     const ValueRange& range = raw.values.range();
     if (!(range.low < range.high))
         throw UserError("no iso-value can be proposed: all values of the volume are alike (" +
                         raw.description + ")");
-    const Histogram h = histogramOf(raw.values, range);
+    const Histogram h = histogramOf(values, range);
     const std::vector<Mode> modes = modesOf(h);
     const auto water = waterValue(raw, range, h, modes);
     if (!water) return ofUnknownScale(h, modes);
-    const auto half_way = halfWayFromSoftTissue(raw.values, *water);
+    const auto half_way = halfWayFromSoftTissue(values, *water);
     if (!half_way) return ofUnknownScale(h, modes);
     const double value = *water + std::clamp(*half_way, kBoneLowHu, kBoneHighHu);
     const double other = *water + *half_way;
@@ -159,19 +159,18 @@ IsoProposal proposal(const RawVolume& raw) {
 
 constexpr double kLeastBone = 5e-4, kMostBone = 0.6;  // of the voxels
 
-double shareAbove(const RawValues& values, double iso) {
-    size_t above = 0;
-    values.visit([&](auto samples) {
-        for (const double v : samples) above += v >= iso;
-    });
-    return double(above) / double(values.size() - values.range().non_finite);
+double shareAbove(const ValueCounts& values, double iso) {
+    double above = 0;
+    values.forEach([&](double value, double count) { above += value >= iso ? count : 0; });
+    return above / values.total();
 }
 
 }  // namespace
 
 IsoProposal proposeIso(const RawVolume& raw) {
-    IsoProposal proposed = proposal(raw);
-    proposed.bone_share = shareAbove(raw.values, proposed.value);
+    const ValueCounts values(raw.values);
+    IsoProposal proposed = proposal(raw, values);
+    proposed.bone_share = shareAbove(values, proposed.value);
     return proposed;
 }
 

@@ -7,6 +7,7 @@
 
 #include "haptic_server/volume/import/cubic_spline.h"
 #include "haptic_server/volume/import/index_map.h"
+#include "haptic_server/volume/import/work_ahead.h"
 
 namespace bonemill {
 namespace {
@@ -149,6 +150,20 @@ class SliceMaker {
     std::vector<float> row_;
 };
 
+// Slices begin .. end - 1 of the region.
+struct Layers {
+    int begin, end;
+};
+
+// Each of them takes a few of the scan's slices along its lower and its upper end, too.
+std::vector<Layers> layersOf(int slices) {
+    constexpr int kThick = 48;
+    std::vector<Layers> layers;
+    for (int begin = 0; begin < slices; begin += kThick)
+        layers.push_back({begin, std::min(begin + kThick, slices)});
+    return layers;
+}
+
 }  // namespace
 
 VolumeGeometry regionGeometry(const VolumeGeometry& scan, const Eigen::AlignedBox3d& box_W, double voxel) {
@@ -171,22 +186,29 @@ RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region, co
     const Eigen::Vector3d low = map.translation(), step = map.linear().diagonal();
     const Eigen::Vector3d high = low + step.cwiseProduct((region.dims.array() - 1).matrix().cast<double>());
     const SplineCoefficients spline(scan, low, high, band, blur);
-    SliceMaker slices(spline, region.dims, low, step);
     RawVolume out;
     out.geometry = region;
     out.description = scan.description;
     out.is_hounsfield = scan.is_hounsfield;
     out.lacks_patient_axes = scan.lacks_patient_axes;
     out.values.reserve(region.voxelCount());
-    std::vector<float> slice;
-    for (int k = 0; k < region.dims.z(); ++k) {
-        slices.make(k, slice);
-        for (float& value : slice) {
-            if (blur <= 0) value = std::clamp(value, float(band.low), float(band.high));
-            if (band.are_integers) value = std::nearbyint(value);
+    const auto valuesOf = [&](const Layers& layers) {
+        SliceMaker slices(spline, region.dims, low, step);
+        RawValues values;
+        std::vector<float> slice;
+        for (int k = layers.begin; k < layers.end; ++k) {
+            slices.make(k, slice);
+            for (float& value : slice) {
+                if (blur <= 0) value = std::clamp(value, float(band.low), float(band.high));
+                if (band.are_integers) value = std::nearbyint(value);
+            }
+            values.append(std::span<const float>(slice));
         }
-        out.values.append(std::span<const float>(slice));
-    }
+        return values;
+    };
+    workAhead(layersOf(region.dims.z()), valuesOf, [&](const Layers&, const RawValues& values) {
+        values.visit([&](auto samples) { out.values.append(samples); });
+    });
     return out;
 }
 

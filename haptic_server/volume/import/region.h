@@ -6,7 +6,7 @@
 // than it was scanned: what the scanner blurred stays blurred, unless its blur is named.
 //
 // Lengths are in m. For start-up only: not RT-safe, it allocates the result, the scan's voxels around the
-// region as float, and four slices.
+// region as float, and for each thread some slices.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,10 +1,14 @@
 #include "haptic_server/volume/import/shared_name.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstring>
+#include <memory>
+#include <new>
 
 #include "haptic_server/volume/import/file_being_read.h"
 
@@ -14,6 +18,19 @@ namespace {
 constexpr size_t kNameBytes = 4096;
 
 char* file_being_read = nullptr;  // shared with the child
+std::atomic<bool> is_ending = false;
+thread_local char file_of_thread[kNameBytes];
+
+// A thread whose stack is used up needs another one to say what it was at.
+void provideHandlersStack() {
+    constexpr size_t kStackBytes = 64 << 10;
+    thread_local std::unique_ptr<char[]> stack;
+    if (stack) return;
+    stack.reset(new (std::nothrow) char[kStackBytes]);
+    if (!stack) return;
+    const stack_t handlers{.ss_sp = stack.get(), .ss_flags = 0, .ss_size = kStackBytes};
+    sigaltstack(&handlers, nullptr);
+}
 
 void mapName(int file) {
     void* page = mmap(nullptr, kNameBytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
@@ -53,7 +70,15 @@ void shareNameOfFileBeingRead(int file) {
 }
 
 void noteFileBeingRead(const std::filesystem::path& file) noexcept {
-    if (file_being_read) std::strncpy(file_being_read, file.c_str(), kNameBytes - 1);
+    if (!file_being_read) return;
+    provideHandlersStack();
+    std::strncpy(file_of_thread, file.c_str(), kNameBytes - 1);
+    if (!is_ending) std::memcpy(file_being_read, file_of_thread, kNameBytes);
+}
+
+void nameFileOfEndingThread() noexcept {
+    is_ending = true;
+    if (file_being_read && file_of_thread[0] != 0) std::memcpy(file_being_read, file_of_thread, kNameBytes);
 }
 
 std::string oneLine(std::string text) {

@@ -28,6 +28,10 @@ std::string nameOfFileBeingRead(const std::filesystem::path& path);
 // For a child that was not forked: noteFileBeingRead() writes there.
 void shareNameOfFileBeingRead(int name);
 
+// For the handler of a signal that ends the reader: what this thread noted is the file at fault, whatever
+// others have noted since. It is safe in a handler.
+void nameFileOfEndingThread() noexcept;
+
 // Control characters would end a message's line, or command the terminal that shows it.
 std::string oneLine(std::string text);
 

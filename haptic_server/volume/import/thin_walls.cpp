@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <span>
 #include <vector>
 
 namespace bonemill {
@@ -10,12 +12,26 @@ namespace {
 
 constexpr double kLeastRise = 0.5;  // of the way from the higher end to the iso-value: noise rises less
 
-template <class Samples>
-double meanAbove(Samples samples, double iso) {
+double meanAbove(std::span<const float> samples, double iso) {
     double sum = 0, count = 0;
     for (const auto sample : samples)
         if (const auto value = double(sample); std::isfinite(value) && value >= iso) sum += value, ++count;
     return count > 0 ? sum / count : iso;
+}
+
+// Whole numbers are added without rounding, in any order.
+template <class Integer>
+double meanAbove(std::span<const Integer> samples, double iso) {
+    const double least = std::ceil(iso);
+    if (!(least <= double(std::numeric_limits<Integer>::max()))) return iso;
+    const int first = int(std::max(least, double(std::numeric_limits<Integer>::lowest())));
+    int64_t sum = 0, count = 0;
+    for (const Integer sample : samples) {
+        const bool is_above = sample >= first;
+        sum += is_above ? sample : 0;
+        count += is_above;
+    }
+    return count > 0 ? double(sum) / double(count) : iso;
 }
 
 // In voxels along the axis; 0: it is none.

@@ -191,6 +191,20 @@ TEST(GuardedImport, deathOfTheReaderNamesTheFileItWasAt) {
     expectUserError([] { importGuarded("file", []() -> RawVolume { _exit(0); }); }, {"file", "ended early"});
 }
 
+// The other thread has noted its file later.
+TEST(GuardedImport, deathOfAThreadNamesTheFileThatTheThreadWasAt) {
+    for (const bool is_out_of_stack : {false, true}) {
+        const auto readBesideAndDie = [=]() -> RawVolume {
+            noteFileBeingRead("folder/slice7");
+            std::thread([] { noteFileBeingRead("folder/slice8"); }).join();
+            if (!is_out_of_stack) std::abort();
+            const std::function<int(int)> goDeeper = [&](int n) { return n < 0 ? n : goDeeper(n + 1) + 1; };
+            throw UserError(std::to_string(goDeeper(0)));
+        };
+        expectUserError([&] { importGuarded("folder", readBesideAndDie); }, {"folder/slice7", "damaged"});
+    }
+}
+
 // Names what the reader should not have been able to do.
 std::string doneByReader(const std::string& folder) {
     std::string done;
