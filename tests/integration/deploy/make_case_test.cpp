@@ -1,9 +1,13 @@
 // deploy/make-case as a teacher calls it: from a DICOM series to a case with pictures.
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include <filesystem>
+#include <fstream>
 
+#include "common/mcap/mcap_reader.h"
 #include "tests/integration/deploy/bonemill_rig.h"
+#include "tests/support/planted_patient.h"
 
 namespace bonemill {
 namespace {
@@ -39,6 +43,58 @@ TEST_F(MakeCaseScript, MakesACaseWithPictures) {
             << file;
     }
     EXPECT_NE(test::readFile(rig_.folder() / "case/case.textproto").find("round 014"), std::string::npos);
+}
+
+// What a recording holds, unpacked.
+std::string messagesOf(const std::filesystem::path& recording) {
+    std::ifstream stream(recording, std::ios::binary);
+    std::string all;
+    mcap::read(stream, [&](const mcap::Channel& channel, const mcap::Message& message) {
+        all += channel.topic + std::string(message.data);
+    });
+    return all;
+}
+
+// From a series that names the patient everywhere to the case's pictures, and to what a session with it
+// leaves: recording, report and the list of scenes that viewers get. Where the case lies is in the recording.
+TEST_F(MakeCaseScript, NoFileOfACaseOrItsSessionNamesThePatient) {
+    const test::TemporaryFolder source;
+    const std::string series = test::writePlantedSeries(source.path(), test::plantedHu);
+    const test::Finished made =
+        test::run({rig_.programFile("make-case"), series, "--out", rig_.folder() / "case", "--tools",
+                   "dental", "--at", "30", "20", "20", "--size-mm", "16", "--voxel-mm", "0.5"});
+    ASSERT_EQ(made.exit_code, 0) << made.out << made.err;
+    EXPECT_EQ(test::plantedUnder(rig_.folder() / "case"), std::vector<std::string>());
+    for (const char* const picture : {"case/preview.png", "case/case.png"})
+        for (const std::string& chunk : test::pngChunks(test::readFile(rig_.folder() / picture)))
+            EXPECT_EQ(std::string("tEXt zTXt iTXt eXIf tIME").find(chunk), std::string::npos) << chunk;
+
+    const std::string recordings = rig_.folder() / "recordings", report = rig_.folder() / "report.json";
+    test::Process server({rig_.programFile("haptic_server"), "--scene", rig_.folder() / "case/case.textproto",
+                          "--session", "4711", "--recording", recordings, "--report", report});
+    ASSERT_TRUE(test::waitFor([&] {
+        return !server.isRunning() || server.errSoFar().find("waits for a device") != std::string::npos ||
+               server.outSoFar().find("waits for a device") != std::string::npos;
+    }));
+    server.signal(SIGTERM);
+    const test::Finished session = server.wait();
+    EXPECT_EQ(session.exit_code, 0) << session.err;
+    EXPECT_EQ(test::plantedIn(session.out + session.err), std::vector<std::string>());
+    EXPECT_EQ(test::plantedIn(test::readFile(report)), std::vector<std::string>());
+    EXPECT_GT(test::readFile(report).size(), 100u);
+    size_t count = 0;
+    for (const auto& recording : std::filesystem::directory_iterator(recordings)) {
+        const std::string messages = messagesOf(recording.path());
+        EXPECT_NE(messages.find("case.textproto"), std::string::npos) << "its place is said";
+        EXPECT_EQ(test::plantedIn(recording.path().string() + messages), std::vector<std::string>());
+        ++count;
+    }
+    EXPECT_EQ(count, 1u);
+    const test::Finished listed =
+        test::run({rig_.programFile("haptic_server"), "--scenes", rig_.folder() / "case", "--list-scenes"});
+    EXPECT_EQ(listed.exit_code, 0) << listed.err;
+    EXPECT_NE(listed.out.find("case"), std::string::npos) << listed.out;
+    EXPECT_EQ(test::plantedIn(listed.out), std::vector<std::string>());
 }
 
 TEST_F(MakeCaseScript, SaysWhichToolsThereAre) {

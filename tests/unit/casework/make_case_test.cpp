@@ -10,7 +10,10 @@
 
 #include "haptic_server/setup/scene_setup.h"
 #include "haptic_server/volume/import/import_volume.h"
+#include "haptic_server/volume/import/nrrd_stream.h"
+#include "tests/support/planted_patient.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/unit/volume_import/dicom_seg_bytes.h"
 #include "tests/unit/volume_import/expect_user_error.h"
 #include "tests/unit/volume_import/grid_scan.h"
 #include "tests/unit/volume_import/seg_nrrd.h"
@@ -129,6 +132,40 @@ TEST_F(MakeCase, SaysNothingOfThePatient) {
             EXPECT_EQ(text.find(word), std::string::npos) << word << " in " << entry.path();
     }
     EXPECT_EQ(files, 4u);
+}
+
+// Every text of the scan and of the segmentation names the patient; only what is typed goes into the case.
+TEST_F(MakeCase, OfADicomSeriesSaysNothingOfThePatient) {
+    request_.scan = test::writePlantedSeries(folder_.path(), test::plantedHu);
+    request_.labels = request_.scan + "/QVPLANTED_SEG.dcm";
+    DicomSegmentation drawn{
+        .rows = 40, .columns = 40, .segments = {{1, "nerve"}, {2, "QVPLANTED"}}, .frames = {}};
+    for (const int slice : {19, 20})
+        for (const int segment : {1, 2}) {
+            DicomSegmentation::Frame frame{segment, "0\\0\\" + std::to_string(slice), {}};
+            for (int n = 0; n < 40 * 40; ++n) frame.values.push_back(n % 40 > 27 + segment);
+            drawn.frames.push_back(frame);
+        }
+    writeDicomSeg(request_.labels, drawn);
+    request_.label_words = {"nerve:protected"};
+    EXPECT_GE(test::plantedUnder(folder_.path()).size(), 40 * test::kPlanted.size()) << "the search works";
+    make();
+    EXPECT_EQ(test::plantedUnder(folder_ / "case"), std::vector<std::string>());
+    const RawVolume scan = importVolumeHere(folder_ / "case/scan.nrrd");
+    EXPECT_EQ(scan.values[20 + 40 * (20 + 40 * 20)], 1500) << "it is that scan";
+}
+
+TEST(PlantedPatient, IsFoundInPackedBytes) {
+    const test::TemporaryFolder folder;
+    VolumeGeometry geometry;
+    geometry.dims = {24, 24, 24};
+    std::vector<uint8_t> values(geometry.voxelCount(), 0);
+    std::ranges::copy(std::string("QvPlanted"), values.begin() + 5000);
+    NrrdStream<uint8_t> stream(folder / "a.nrrd", geometry, NrrdEncoding::kGzip);
+    stream.append(std::span<const uint8_t>(values));
+    stream.close();
+    EXPECT_TRUE(test::plantedIn(textOfFile(folder / "a.nrrd")).empty());
+    EXPECT_EQ(test::plantedUnder(folder.path()).size(), 1u);
 }
 
 TEST_F(MakeCase, SaysWhereItComesFrom) {
