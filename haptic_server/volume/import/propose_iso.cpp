@@ -109,8 +109,18 @@ std::optional<double> boneAbove(const Histogram& h, double air, double tissue, d
     return spread >= kLeastSpread * (tissue - air) ? std::optional(bone) : std::nullopt;
 }
 
+// Bone denser than the scale goes piles up at its end, where it looks like a material. It is none if more of
+// it lies on the way there.
+bool isCutOff(const Histogram& h, const Mode& below, const Mode& last) {
+    if (last.bin + 1 != h.count.size()) return false;
+    const double tissue = peakValue(h, below), end = h.centre(last.bin);
+    const double heap = h.count.back();
+    return h.sumAbove(tissue + kBoneAboveTissue * (end - tissue)) - heap > heap;
+}
+
 // Of a scan of the trunk most is soft tissue, and air is no material of its own.
-std::optional<double> boneAboveTissue(const Histogram& h, const std::vector<Mode>& modes) {
+std::optional<double> boneAboveTissue(const Histogram& h, std::vector<Mode> modes) {
+    if (modes.size() > 1 && isCutOff(h, modes[modes.size() - 2], modes.back())) modes.pop_back();
     const auto background = std::ranges::max_element(modes, {}, &Mode::mass);
     const auto above = std::ranges::max_element(background + 1, modes.end(), {}, &Mode::mass);
     if (above != modes.end())

@@ -88,6 +88,31 @@ TEST(ProposeIso, eightBitHeadGivesBoneAndSaysThatItIsAGuess) {
     EXPECT_NE(textOf(head).find("the next best is"), std::string::npos);
 }
 
+RawVolume cutTo8Bit(RawVolume raw) {
+    std::vector<uint8_t> values;
+    for (size_t n = 0; n < raw.values.size(); ++n)
+        values.push_back(uint8_t(std::clamp(raw.values[n], 0.0f, 255.0f)));
+    raw.values = {};
+    raw.values.append(std::move(values));
+    return raw;
+}
+
+// -1000 .. 1000 HU: lung, fat, soft tissue, cancellous bone, and a cortex of which much is denser than the
+// scale goes. Half-way from tissue to what is cut off would be 194, and lose the cancellous bone.
+TEST(ProposeIso, eightBitSpineThatIsCutOffGivesBone) {
+    const IsoProposal proposed = proposeIso(cutTo8Bit(mixtureOf(
+        {{133, 4, 0.45}, {18, 4, 0.24}, {117, 4, 0.2}, {165, 12, 0.05}, {210, 30, 0.03}, {275, 15, 0.03}})));
+    EXPECT_NEAR(proposed.value, 159, 8);
+    EXPECT_EQ(proposed.doubt, IsoDoubt::kLarge);
+}
+
+// What lies at the end of the scale is no heap of something else where little is on the way to it.
+TEST(ProposeIso, eightBitPlateauAtTheEndOfTheScaleIsAMaterial) {
+    const IsoProposal proposed =
+        proposeIso(cutTo8Bit(mixtureOf({{0, 0.1, 0.5}, {128, 60, 0.06}, {255, 0.1, 0.44}})));
+    EXPECT_NEAR(proposed.value, 127.5, 5);
+}
+
 TEST(ProposeIso, saysHowSureItIs) {
     RawVolume head = mixtureOf(kHead);
     EXPECT_EQ(proposeIso(head).doubt, IsoDoubt::kLittle);
