@@ -100,8 +100,8 @@ RawVolume cutTo8Bit(RawVolume raw) {
 // -1000 .. 1000 HU: lung, fat, soft tissue, cancellous bone, and a cortex of which much is denser than the
 // scale goes. Half-way from tissue to what is cut off would be 194, and lose the cancellous bone.
 TEST(ProposeIso, eightBitSpineThatIsCutOffGivesBone) {
-    const IsoProposal proposed = proposeIso(cutTo8Bit(mixtureOf(
-        {{133, 4, 0.45}, {18, 4, 0.24}, {117, 4, 0.2}, {165, 12, 0.05}, {210, 30, 0.03}, {275, 15, 0.03}})));
+    const IsoProposal proposed = proposeIso(cutTo8Bit(
+        mixtureOf({{133, 4, 0.47}, {18, 4, 0.25}, {117, 4, 0.2}, {165, 18, 0.04}, {215, 40, 0.04}})));
     EXPECT_NEAR(proposed.value, 159, 8);
     EXPECT_EQ(proposed.doubt, IsoDoubt::kLarge);
 }
