@@ -180,6 +180,11 @@ void addCaseOptions(CLI::App& app, CaseRequest& request) {
         ":target behind it, may be given again");
     app.add_option("--tools", request.tools, "scene text with the tools, as those in deploy/tools")
         ->type_name("FILE");
+    app.add_option(
+           "--figures", request.figures,
+           "new folder with what gnuplot makes the pictures of pieces and values of, as deploy/make-case "
+           "does")
+        ->type_name("DIR");
 }
 
 struct Options {

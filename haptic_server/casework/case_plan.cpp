@@ -5,13 +5,14 @@
 
 #include "common/units.h"
 #include "common/user_error.h"
-#include "haptic_server/volume/import/bone_pieces.h"
 
 namespace bonemill {
 namespace {
 
 constexpr double kNoiseShare = 1e-3;  // of the largest piece: less is noise
 constexpr double kLeastOutwards = 0.1;
+constexpr size_t kMostListed = 8;
+constexpr double kMetalShare = 0.2;  // of a piece: the rest is its rim, which is blurred
 
 std::optional<Eigen::Vector3d> pointOf(const std::vector<double>& mm) {
     if (mm.empty()) return std::nullopt;
@@ -57,21 +58,38 @@ Eigen::Vector3d toWorld(const VolumeGeometry& geometry, const Eigen::Vector3d& v
 
 void describePieces(const BonePieces& pieces, const VolumeGeometry& geometry, uint32_t smallest,
                     std::vector<std::string>& remarks) {
-    size_t listed = 0, noise = 0;
-    for (const BonePiece& piece : pieces.list()) {
-        if (piece.voxels < smallest) {
-            ++noise;
-            continue;
-        }
-        std::ostringstream text;
-        text.precision(3);
-        text << "piece " << ++listed
-             << " of bone: " << double(piece.voxels) * geometry.spacing.prod() * kPerCubicMillimetre
-             << " mm^3 around " << textOf(toWorld(geometry, piece.middle));
-        if (listed <= 8) remarks.push_back(text.str());
-    }
+    const auto noise =
+        std::ranges::count_if(pieces.list(), [&](const BonePiece& piece) { return piece.voxels < smallest; });
+    const size_t count = pieces.list().size() - size_t(noise);
+    for (size_t n = 0; n < std::min(count, kMostListed); ++n)
+        remarks.push_back(textOf(pieces.list()[n], n + 1, geometry));
     if (noise > 0) remarks.push_back(std::to_string(noise) + " smaller pieces are taken for noise");
-    if (listed > 1) remarks.push_back("--drop-piece NUMBER leaves one out: a head holder, a cable");
+    if (count > 1) remarks.push_back("--drop-piece NUMBER leaves one out: a head holder, a cable");
+}
+
+// Metal is left out where it is a piece of its own, or so much of one that no bone is lost with it.
+void describeMetal(const CasePlan& plan, const VolumeGeometry& geometry, std::vector<std::string>& remarks) {
+    if (plan.metal.pieces.empty()) return;
+    remarks.push_back(textOf(plan.metal, geometry));
+    std::vector<uint64_t> metal_of(plan.pieces->list().size());
+    for (const MetalPiece& metal : plan.metal.pieces) {
+        const std::vector<bool> is_in = plan.pieces->touching({metal.first, metal.first});
+        const auto piece = std::ranges::find(is_in, true);
+        if (piece != is_in.end()) metal_of[size_t(piece - is_in.begin())] += metal.voxels;
+    }
+    for (size_t n = 0; n < metal_of.size(); ++n) {
+        if (metal_of[n] == 0 || plan.is_dropped[n]) continue;
+        const std::string piece = "piece " + std::to_string(n + 1);
+        if (double(metal_of[n]) > kMetalShare * double(plan.pieces->list()[n].voxels))
+            remarks.push_back(piece + " is metal: --drop-piece " + std::to_string(n + 1) + " leaves it out");
+        else
+            remarks.push_back("metal is joined to the bone of " + piece +
+                              " and would be milled as if it were bone: choose a place without it (--at)");
+    }
+    if (plan.metal.streaks && plan.metal.streaks->reach > 0)
+        remarks.push_back(
+            "streaks make bone of tissue and gaps in bone: choose a place in other slices, or further from "
+            "them");
 }
 
 // Those that are asked for, and noise beside the largest of the others: so many voxels are none.
@@ -101,13 +119,16 @@ CasePlan planCase(const RawVolume& scan, const CaseRequest& request) {
     plan.mapping = chooseMapping(scan, window);
     if (plan.mapping.proposed) plan.remarks.push_back("iso-value " + textOf(*plan.mapping.proposed));
     VoxelVolume volume = densify(scan, plan.mapping);
-    const BonePieces pieces(volume);
+    plan.pieces = std::make_shared<const BonePieces>(volume);
+    const BonePieces& pieces = *plan.pieces;
     if (pieces.list().empty()) throw UserError("no voxel of the scan reaches the iso-value; set --iso");
-    const std::vector<bool> is_dropped = droppedOf(pieces, request.drop_pieces, plan.smallest_piece_voxels);
+    plan.is_dropped = droppedOf(pieces, request.drop_pieces, plan.smallest_piece_voxels);
+    plan.metal = findMetal(scan);
     describePieces(pieces, scan.geometry, plan.smallest_piece_voxels, plan.remarks);
-    pieces.drop(volume, is_dropped);
+    describeMetal(plan, scan.geometry, plan.remarks);
+    pieces.drop(volume, plan.is_dropped);
     const BonePiece& largest =
-        pieces.list()[size_t(std::ranges::find(is_dropped, false) - is_dropped.begin())];
+        pieces.list()[size_t(std::ranges::find(plan.is_dropped, false) - plan.is_dropped.begin())];
     const Eigen::Vector3d middle_of_bone = toWorld(scan.geometry, largest.middle);
     const Eigen::Vector3d middle = pointOf(request.at_mm).value_or(middle_of_bone);
     const ScanBone bone(volume);

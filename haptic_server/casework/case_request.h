@@ -38,6 +38,7 @@ struct CaseRequest {
     std::string labels;                    // file
     std::vector<std::string> label_words;  // [NUMBER=]NAME[:protected|:target]
     std::string tools;                     // scene text with tools; empty: the default tool
+    std::string figures;                   // folder for the figures (case_figures.h); empty: none
 };
 
 // Reads [NUMBER=]NAME[:protected|:target]. Throws UserError.

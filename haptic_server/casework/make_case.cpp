@@ -13,6 +13,7 @@
 #include "common/require_file.h"
 #include "common/units.h"
 #include "common/user_error.h"
+#include "haptic_server/casework/case_figures.h"
 #include "haptic_server/casework/case_scene.h"
 #include "haptic_server/setup/scene_setup.h"
 #include "haptic_server/volume/import/import_volume.h"
@@ -132,6 +133,7 @@ void makeCase(const CaseRequest& request, const std::string& version, std::ostre
     out << scan.description << '\n';
     const CasePlan plan = planCase(scan, request);
     for (const std::string& remark : plan.remarks) out << remark << '\n';
+    if (!request.figures.empty()) writeFigures(request.figures, scan, plan);
     writeVolume(folder / kScanOfCase, scan);
     if (!request.labels.empty()) {
         const RawVolume map = importVolume(request.labels);

@@ -15,6 +15,7 @@
 #include "haptic_server/setup/coupling_text.h"
 #include "haptic_server/setup/scene_pieces.h"
 #include "haptic_server/setup/scene_setup.h"
+#include "haptic_server/volume/import/bone_box.h"
 
 namespace bonemill {
 namespace {
@@ -74,14 +75,9 @@ void describePlace(const LoadedScene& loaded, const Simulation& simulation, std:
             box_W.extend(geometry.X_WV * box_V.corner(Eigen::AlignedBox3d::CornerType(corner)));
         return box_W;
     };
-    const Eigen::Vector3d last =
-        geometry.spacing.cwiseProduct((geometry.dims.array() - 1).matrix().cast<double>());
-    out << "volume in W: " << textOf(inWorld({Eigen::Vector3d::Zero(), last})) << '\n';
-    Eigen::AlignedBox3d bone;
-    forEachIndex({Eigen::Vector3i::Zero(), geometry.dims.array() - 1}, [&](const Eigen::Vector3i& v) {
-        if (volume.at(v.x(), v.y(), v.z()) >= volume.iso())
-            bone.extend(Eigen::Vector3d(geometry.spacing.cwiseProduct(v.cast<double>())));
-    });
+    const IndexBox all{Eigen::Vector3i::Zero(), geometry.dims.array() - 1};
+    out << "volume in W: " << textOf(inWorld(placesOf(all, geometry.spacing))) << '\n';
+    const Eigen::AlignedBox3d bone = placesOf(boneBox(volume), geometry.spacing);
     if (bone.isEmpty()) return void(out << "bone in W: none\n");
     const Eigen::Vector3d middle = geometry.X_WV * Eigen::Vector3d(bone.center()) * kPerMillimetre;
     out << "bone in W: " << textOf(inWorld(bone)) << ", middle (" << middle.transpose() << ") mm\n";

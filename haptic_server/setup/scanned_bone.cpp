@@ -7,6 +7,7 @@
 #include "common/rt/clock.h"
 #include "haptic_server/setup/kept_tissue.h"
 #include "haptic_server/setup/refuse_field.h"
+#include "haptic_server/setup/scene_metal.h"
 #include "haptic_server/setup/scene_pieces.h"
 #include "haptic_server/setup/scene_region.h"
 #include "haptic_server/volume/import/far_air.h"
@@ -41,7 +42,9 @@ ImportOptions optionsOf(const scene::Volume& volume) {
 struct Scan {
     RawVolume raw;
     DensityMapping mapping;
-    std::vector<std::string> remarks;
+    Metal metal;
+    IndexBox used;  // voxels that are milled
+    std::vector<std::string> remarks, warnings;
 };
 
 // A session keeps the bone as it was beside the bone as it is, and its surface.
@@ -57,20 +60,23 @@ void requireMemory(const LoadedScene& loaded, const VoxelVolume& volume) {
 }
 
 ScannedBone wholeBone(const LoadedScene& loaded, Scan scan) {
+    const VolumeGeometry whole = scan.raw.geometry;
     const bool lacks_axes = scan.raw.lacks_patient_axes;
     ScannedMaterials materials = scannedMaterialsOf(loaded, scan.raw, scan.remarks);
     const auto is_kept = keptTissueOf(loaded, materials.ids, scan.raw.geometry);
     VoxelVolume volume = densifyNearBone(std::move(scan.raw), scan.mapping, is_kept);
     dropPieces(loaded, volume, {}, scan.remarks);
+    remarkMetal(loaded, scan.metal, whole, volume, scan.used, scan.remarks, scan.warnings);
     clearFarFromBone(volume, is_kept);
     requireMemory(loaded, volume);
-    return {std::move(volume), scan.mapping, std::move(materials),   {},
-            nullptr,           lacks_axes,   std::move(scan.remarks)};
+    return {std::move(volume), scan.mapping, std::move(materials),    {},
+            nullptr,           lacks_axes,   std::move(scan.remarks), std::move(scan.warnings)};
 }
 
 ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
     const VolumeGeometry whole = scan.raw.geometry;
     CutScan cut = cutRegion(loaded, std::move(scan.raw), scan.mapping, scan.remarks);
+    remarkMetal(loaded, scan.metal, whole, cut.surroundings.volume, scan.used, scan.remarks, scan.warnings);
     const bool lacks_axes = cut.region.lacks_patient_axes;
     RawVolume inner{.geometry = cut.region.geometry, .values = {}, .description = {}};
     if (wantsProperties(loaded.scene))
@@ -86,7 +92,8 @@ ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
             std::move(inner.values),
             std::make_shared<const Surroundings>(std::move(cut.surroundings)),
             lacks_axes,
-            std::move(scan.remarks)};
+            std::move(scan.remarks),
+            std::move(scan.warnings)};
 }
 
 }  // namespace
@@ -94,13 +101,15 @@ ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
 ScannedBone readBone(const LoadedScene& loaded) {
     const scene::Volume& scene = loaded.scene.volume();
     const int64_t start_ns = monotonicNowNs();
-    Scan scan{importVolume(resolvePath(loaded, scene.path()), optionsOf(scene)), {}, {}};
+    Scan scan{importVolume(resolvePath(loaded, scene.path()), optionsOf(scene)), {}, {}, {}, {}, {}};
     scan.remarks.push_back(scan.raw.description);
     if (monotonicNowNs() - start_ns > kLongWithoutAWordNs)
         spdlog::info("{} is read; now its bone is made", scene.path());
     scan.mapping = chooseMapping(scan.raw, windowOf(scene));
     if (scan.mapping.proposed)
         scan.remarks.push_back("no volume.iso_value in the scene: " + textOf(*scan.mapping.proposed));
+    scan.metal = findMetal(scan.raw);
+    scan.used = usedVoxels(loaded, scan.raw.geometry);
     remarkThinWalls(loaded, scan.raw, scan.mapping.iso_value, scan.remarks);
     return scene.has_region() ? boneOfRegion(loaded, std::move(scan)) : wholeBone(loaded, std::move(scan));
 }

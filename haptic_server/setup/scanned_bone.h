@@ -23,6 +23,7 @@ struct ScannedBone {
     std::shared_ptr<const Surroundings> surroundings;  // null: all of the scan is in the volume
     bool lacks_patient_axes;                           // RawVolume
     std::vector<std::string> remarks;                  // for people: what was read, proposed, left out
+    std::vector<std::string> warnings;                 // what the user would better change in the scene
 };
 
 // Throws UserError.

@@ -1,9 +1,7 @@
 #include "haptic_server/setup/scene_pieces.h"
 
 #include <algorithm>
-#include <cstdio>
 
-#include "common/units.h"
 #include "haptic_server/setup/refuse_field.h"
 
 namespace bonemill {
@@ -31,21 +29,6 @@ std::vector<bool> droppedOf(const LoadedScene& loaded, const BonePieces& pieces,
         is_dropped[scene.drop_piece(n) - 1] = true;
     }
     return is_dropped;
-}
-
-std::string textOf(const BonePiece& piece, size_t number, const VolumeGeometry& geometry) {
-    const Eigen::Vector3d at = geometry.X_WV * piece.middle.cwiseProduct(geometry.spacing) * kPerMillimetre;
-    const Eigen::Vector3d size =
-        geometry.spacing.cwiseProduct(
-            (piece.box.max - piece.box.min + Eigen::Vector3i::Ones()).cast<double>()) *
-        kPerMillimetre;
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "piece %zu: %llu voxels, %.3g mm^3, %.0f x %.0f x %.0f mm around (%.1f, %.1f, %.1f) mm",
-                  number, static_cast<unsigned long long>(piece.voxels),
-                  double(piece.voxels) * geometry.spacing.prod() * kPerCubicMillimetre, size.x(), size.y(),
-                  size.z(), at.x(), at.y(), at.z());
-    return text;
 }
 
 // Those whose is_listed is true: the largest, and how many more.

@@ -12,6 +12,7 @@
 #include "common/user_error.h"
 #include "haptic_server/setup/refuse_field.h"
 #include "haptic_server/setup/scene_pieces.h"
+#include "haptic_server/volume/import/bone_box.h"
 #include "haptic_server/volume/import/bone_pieces.h"
 #include "haptic_server/volume/import/coarser.h"
 #include "haptic_server/volume/import/far_air.h"
@@ -86,36 +87,6 @@ VoxelChoice chooseVoxel(const LoadedScene& loaded, const VolumeGeometry& scan,
     return {affordable, "more than " + why + ", for 64 million voxels: a smaller region can be finer"};
 }
 
-// The voxels of the scan that the scene's bone comes from.
-IndexBox usedVoxels(const LoadedScene& loaded, const VolumeGeometry& scan) {
-    const Eigen::Vector3i last = scan.dims.array() - 1;
-    if (!loaded.scene.volume().has_region()) return {Eigen::Vector3i::Zero(), last};
-    const VolumeGeometry region = regionGeometry(scan, boxOf(loaded), scan.spacing.minCoeff());
-    if (region.voxelCount() == 0) return {};
-    const Eigen::Array3d low = (scan.X_WV.inverse() * region.X_WV.position).array() / scan.spacing.array();
-    const Eigen::Array3d size =
-        region.spacing.array() * region.dims.cast<double>().array() / scan.spacing.array();
-    return {low.floor().cast<int>().max(0).matrix(),
-            (low + size).ceil().cast<int>().min(last.array()).matrix()};
-}
-
-// X_VS keeps the axes' directions.
-Eigen::AlignedBox3d boneIn(const VoxelVolume& whole, const Pose& X_VS) {
-    IndexBox bone;
-    whole.forEachOwnedPart({Eigen::Vector3i::Zero(), whole.dims().array() - 1},
-                           [&](const IndexBox& part, size_t) {
-                               if (whole.uniformDensity(part.min) == 0) return;
-                               forEachIndex(part, [&](const Eigen::Vector3i& v) {
-                                   if (whole.at(v.x(), v.y(), v.z()) >= whole.iso()) bone.include(v);
-                               });
-                           });
-    if (bone.isEmpty()) return {};
-    const auto placeOf = [&](const Eigen::Vector3i& v) {
-        return X_VS * Eigen::Vector3d(whole.spacing().cwiseProduct(v.cast<double>()));
-    };
-    return Eigen::AlignedBox3d(placeOf(bone.min)).extend(placeOf(bone.max));
-}
-
 // With the voxels around them, which hold a part of them: beside air a rim would become a shell of bone. Each
 // voxel of the whole is `coarse`^3 of the scan.
 void takeAway(const std::vector<Eigen::Vector3i>& dropped, const VoxelVolume& whole, int coarse,
@@ -184,6 +155,18 @@ VoxelVolume wholeOf(const RawVolume& scan, int coarse, const DensityMapping& map
 
 }  // namespace
 
+IndexBox usedVoxels(const LoadedScene& loaded, const VolumeGeometry& scan) {
+    const Eigen::Vector3i last = scan.dims.array() - 1;
+    if (!loaded.scene.volume().has_region()) return {Eigen::Vector3i::Zero(), last};
+    const VolumeGeometry region = regionGeometry(scan, boxOf(loaded), scan.spacing.minCoeff());
+    if (region.voxelCount() == 0) return {};
+    const Eigen::Array3d low = (scan.X_WV.inverse() * region.X_WV.position).array() / scan.spacing.array();
+    const Eigen::Array3d size =
+        region.spacing.array() * region.dims.cast<double>().array() / scan.spacing.array();
+    return {low.floor().cast<int>().max(0).matrix(),
+            (low + size).ceil().cast<int>().min(last.array()).matrix()};
+}
+
 void remarkThinWalls(const LoadedScene& loaded, const RawVolume& scan, double iso_value,
                      std::vector<std::string>& remarks) {
     const IndexBox used = usedVoxels(loaded, scan.geometry);
@@ -215,7 +198,8 @@ CutScan cutRegion(const LoadedScene& loaded, RawVolume scan, const DensityMappin
     const VolumeGeometry& fine = region.geometry;
     const Eigen::Vector3d end = fine.spacing.cwiseProduct((fine.dims.array() - 1).matrix().cast<double>());
     const Pose X_VS = fine.X_WV.inverse() * whole.geometry().X_WV;
-    const Eigen::AlignedBox3d bone = boneIn(whole, X_VS);
+    Eigen::AlignedBox3d bone = placesOf(boneBox(whole), whole.spacing());
+    if (!bone.isEmpty()) bone = {X_VS * bone.min(), X_VS * bone.max()};  // X_VS keeps the axes' directions
     return {std::move(region), {std::move(whole), X_VS, {Eigen::Vector3d::Zero(), end}, bone}};
 }
 

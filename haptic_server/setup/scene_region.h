@@ -12,6 +12,9 @@
 
 namespace bonemill {
 
+// The voxels of the scan that the scene's bone comes from; empty: its region lies elsewhere.
+IndexBox usedVoxels(const LoadedScene& loaded, const VolumeGeometry& scan);
+
 // Says it if walls of the scan, within the region if there is one, are too thin to become bone.
 void remarkThinWalls(const LoadedScene& loaded, const RawVolume& scan, double iso_value,
                      std::vector<std::string>& remarks);

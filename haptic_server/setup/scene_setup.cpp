@@ -268,6 +268,7 @@ Simulation makeSimulation(const LoadedScene& loaded) {
                           .warnings = {}};
     ScannedBone scanned = readBone(loaded);
     simulation.remarks = std::move(scanned.remarks);
+    simulation.warnings = std::move(scanned.warnings);
     simulation.lacks_patient_axes = scanned.lacks_patient_axes;
     simulation.mapping = scanned.mapping;
     simulation.segment_colors = std::move(scanned.materials.segment_colors);

@@ -54,7 +54,7 @@ void measure(const Setting& setting, const RawVolume& scan, const ToolModel& too
     const Eigen::Vector3i leaf_cells = setting.has_thesis_octree
                                            ? LeafLattice::leafCellsOfDepth(scan.geometry, 3)
                                            : Eigen::Vector3i::Constant(16);
-    BoneModel bone(densify(scan, DensityWindow{-1000, 3000, 600, 0}), leaf_cells,
+    BoneModel bone(densify(scan, DensityWindow{-1000, 3000, 600}), leaf_cells,
                    {.levels = {{setting.scaling_factor}}});
     FixedTickConfig config;
     config.tool.model = &tool;

@@ -39,7 +39,7 @@ nlohmann::json toJson(const Waits& waits) {
 }
 
 BoneModel corridorBone(int leaf_cells) {
-    VoxelVolume volume = densify(scanTooth(toothGrid(), {}), DensityWindow{-1000, 3000, 600, 0});
+    VoxelVolume volume = densify(scanTooth(toothGrid(), {}), DensityWindow{-1000, 3000, 600});
     clearFarFromBone(volume);
     return {std::move(volume),
             Eigen::Vector3i::Constant(leaf_cells),

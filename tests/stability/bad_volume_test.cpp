@@ -82,7 +82,7 @@ double notANumber(const Variant& variant) {
                                              : hu);
             }
     raw.values.append(std::move(values));
-    return drag(densify(raw, DensityWindow{-1000, 3000, 600, 0}), variant);
+    return drag(densify(raw, DensityWindow{-1000, 3000, 600}), variant);
 }
 
 // A plate of 14 × 14 mm lies on a plane of 0.125 mm voxels, with one contact per voxel face.

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/units.h"
+#include "haptic_server/volume/import/printed_text.h"
+#include "haptic_server/volume/import/volume_text.h"
+
 namespace bonemill {
 namespace {
 
@@ -148,19 +152,36 @@ std::vector<bool> BonePieces::touching(const IndexBox& box) const {
     return touches;
 }
 
+void BonePieces::forEachRun(const SeeRun& see) const {
+    runs_->forEachRow([&](const Runs::Row& row) {
+        for (RunId run = row.first; run < row.last; ++run)
+            see(piece_of_run_[run], {(*runs_)[run].begin, row.j, row.k}, int((*runs_)[run].length()));
+    });
+}
+
 uint64_t BonePieces::drop(VoxelVolume& volume, const std::vector<bool>& is_dropped, const See& see) const {
     uint64_t dropped = 0;
-    runs_->forEachRow([&](const Runs::Row& row) {
-        for (RunId run = row.first; run < row.last; ++run) {
-            if (!is_dropped[piece_of_run_[run]]) continue;
-            dropped += (*runs_)[run].length();
-            for (int i = (*runs_)[run].begin; i < (*runs_)[run].end; ++i) {
-                volume.set(i, row.j, row.k, Density(volume.iso() - 1));
-                if (see) see({i, row.j, row.k});
-            }
+    forEachRun([&](size_t piece, const Eigen::Vector3i& first, int length) {
+        if (!is_dropped[piece]) return;
+        dropped += uint64_t(length);
+        for (int i = first.x(); i < first.x() + length; ++i) {
+            volume.set(i, first.y(), first.z(), Density(volume.iso() - 1));
+            if (see) see({i, first.y(), first.z()});
         }
     });
     return dropped;
+}
+
+std::string textOf(const BonePiece& piece, size_t number, const VolumeGeometry& geometry) {
+    const Eigen::Vector3d at = geometry.X_WV * piece.middle.cwiseProduct(geometry.spacing) * kPerMillimetre;
+    const Eigen::Vector3d size =
+        geometry.spacing.cwiseProduct(
+            (piece.box.max - piece.box.min + Eigen::Vector3i::Ones()).cast<double>()) *
+        kPerMillimetre;
+    return printed("piece %zu: %llu voxels, %s, %.0f x %.0f x %.0f mm around (%.1f, %.1f, %.1f) mm", number,
+                   static_cast<unsigned long long>(piece.voxels),
+                   volumeText(double(piece.voxels) * geometry.spacing.prod()).c_str(), size.x(), size.y(),
+                   size.z(), at.x(), at.y(), at.z());
 }
 
 PieceCount removeSmallPieces(VoxelVolume& volume, uint32_t smallest_piece_voxels) {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "haptic_server/volume/index_box.h"
@@ -31,6 +32,10 @@ class BonePieces {
     // Has the piece of this place in the list a voxel in the box?
     std::vector<bool> touching(const IndexBox& box) const;
 
+    // Goes through all bone, row by row: each call is `length` voxels along x, of the piece of this place.
+    using SeeRun = std::function<void(size_t piece, const Eigen::Vector3i& first, int length)>;
+    void forEachRun(const SeeRun& see) const;
+
     using See = std::function<void(const Eigen::Vector3i& voxel)>;
     // The volume is that of the constructor. Pieces for whose place in the list is_dropped is true go to iso
     // - 1, just below the surface, so that nothing of them is felt or drawn. Returns how many voxels that
@@ -43,6 +48,9 @@ class BonePieces {
     std::vector<BonePiece> pieces_;
     std::vector<uint32_t> piece_of_run_;  // place in the list
 };
+
+// For people: number, size and place in W. Numbers begin at 1.
+std::string textOf(const BonePiece& piece, size_t number, const VolumeGeometry& geometry);
 
 struct PieceCount {
     uint64_t pieces_kept = 0;

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "common/user_error.h"
-#include "haptic_server/volume/import/bone_pieces.h"
 #include "haptic_server/volume/import/far_air.h"
 #include "haptic_server/volume/import/propose_iso.h"
 
@@ -207,9 +206,7 @@ VoxelVolume densifyNearBone(RawVolume&& raw, const DensityMapping& mapping,
 }
 
 VoxelVolume densify(const RawVolume& raw, const DensityWindow& window) {
-    VoxelVolume volume = densify(raw, chooseMapping(raw, window));
-    removeSmallPieces(volume, window.smallest_piece_voxels);
-    return volume;
+    return densify(raw, chooseMapping(raw, window));
 }
 
 }  // namespace bonemill

@@ -1,4 +1,4 @@
-// Turns raw values into the bone's densities: window, iso-value, small pieces.
+// Turns raw values into the bone's densities: window and iso-value.
 //
 // It is not RT-safe (it allocates) and has no shared state.
 #pragma once
@@ -14,10 +14,9 @@ namespace bonemill {
 
 // The scene asks for these raw values (HU for CT).
 struct DensityWindow {
-    std::optional<double> low;           // becomes density 0; absent: lowest finite value of the data
-    std::optional<double> high;          // becomes density 255; absent: highest finite value
-    std::optional<double> iso;           // bone surface; absent: RawVolume::surface_value, or proposeIso()
-    uint32_t smallest_piece_voxels = 0;  // pieces with fewer voxels are removed; 0 and 1 keep everything
+    std::optional<double> low;   // becomes density 0; absent: lowest finite value of the data
+    std::optional<double> high;  // becomes density 255; absent: highest finite value
+    std::optional<double> iso;   // bone surface; absent: RawVolume::surface_value, or proposeIso()
 };
 
 // These were used in the end.
@@ -46,7 +45,7 @@ VoxelVolume densifyNearBone(const RawVolume& raw, const DensityMapping& mapping,
 // Gives the raw values' memory back as their densities come: both are never there as a whole.
 VoxelVolume densifyNearBone(RawVolume&& raw, const DensityMapping& mapping,
                             const std::function<bool(size_t)>& is_kept = {});
-// Does chooseMapping, densify and removeSmallPieces in one.
+// Does chooseMapping and densify in one.
 VoxelVolume densify(const RawVolume& raw, const DensityWindow& window);
 
 }  // namespace bonemill

@@ -15,17 +15,19 @@ namespace {
 constexpr double kSurelyAirHu = -500;
 constexpr double kExportShift = 1024;  // exports that store HU + 1024 and forget the intercept
 
-// Finds the raw value of 0 HU when the values are Hounsfield units, shifted or not.
-std::optional<double> waterValue(const RawVolume& raw, const ValueRange& range, const Histogram& h,
-                                 const std::vector<Mode>& modes) {
-    if (raw.is_hounsfield || range.low <= kSurelyAirHu) return 0.0;
+bool isSurelyHounsfield(const RawVolume& raw) {
+    return raw.is_hounsfield || raw.values.range().low <= kSurelyAirHu;
+}
+
+std::optional<double> waterValueOf(const RawVolume& raw, const Histogram& h, const std::vector<Mode>& modes) {
+    if (isSurelyHounsfield(raw)) return 0.0;
     bool has_air = false, has_soft_tissue = false;
     for (const Mode& mode : modes) {
         const double value = peakValue(h, mode);
         has_air = has_air || (value >= -50 && value <= 150);
         has_soft_tissue = has_soft_tissue || (value >= 950 && value <= 1150);
     }
-    if (has_air && has_soft_tissue && range.high > 1300) return kExportShift;
+    if (has_air && has_soft_tissue && raw.values.range().high > 1300) return kExportShift;
     return std::nullopt;
 }
 
@@ -155,7 +157,7 @@ IsoProposal proposal(const RawVolume& raw, const ValueCounts& values) {
                         raw.description + ")");
     const Histogram h = histogramOf(values, range);
     const std::vector<Mode> modes = modesOf(h);
-    const auto water = waterValue(raw, range, h, modes);
+    const auto water = waterValueOf(raw, h, modes);
     if (!water) return ofUnknownScale(h, modes);
     const auto half_way = halfWayFromSoftTissue(values, *water);
     if (!half_way) return ofUnknownScale(h, modes);
@@ -176,6 +178,12 @@ double shareAbove(const ValueCounts& values, double iso) {
 }
 
 }  // namespace
+
+std::optional<double> waterValue(const RawVolume& raw) {
+    if (isSurelyHounsfield(raw)) return 0.0;
+    const Histogram h = histogramOf(ValueCounts(raw.values), raw.values.range());
+    return waterValueOf(raw, h, modesOf(h));
+}
 
 IsoProposal proposeIso(const RawVolume& raw) {
     const ValueCounts values(raw.values);

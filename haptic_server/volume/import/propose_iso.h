@@ -33,6 +33,9 @@ struct IsoProposal {
 // none is finite.
 IsoProposal proposeIso(const RawVolume& raw);
 
+// The value of 0 HU; none if the values are no Hounsfield units, shifted by 1024 or not.
+std::optional<double> waterValue(const RawVolume& raw);
+
 // For people, with what looks odd about it.
 std::string textOf(const IsoProposal& proposed);
 

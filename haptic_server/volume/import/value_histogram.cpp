@@ -58,6 +58,10 @@ constexpr double kTail = 2e-4;  // share of values at each end that may be artef
 
 }  // namespace
 
+Histogram histogramOfAll(const ValueCounts& values, const ValueRange& range, size_t bins) {
+    return binnedOver(values, range.low, range.high, range.are_integers, bins);
+}
+
 Histogram histogramOf(const ValueCounts& values, ValueRange range) {
     for (int zoom = 0; zoom < 16; ++zoom) {
         const Histogram h = binnedOver(values, range.low, range.high, range.are_integers, kBins);

@@ -36,13 +36,18 @@ TEST_F(MakeCaseScript, MakesACaseWithPictures) {
     const test::Finished made = make({"--tools", "dental", "--at", "0", "0", "-2", "--size-mm", "6"});
     ASSERT_EQ(made.exit_code, 0) << made.out << made.err;
     EXPECT_NE(made.out.find("bonemill start"), std::string::npos) << made.out;
-    for (const char* const file :
-         {"case.textproto", "scan.nrrd", "provenance.json", "preview.png", "case.png"}) {
+    for (const char* const file : {"case.textproto", "scan.nrrd", "provenance.json", "preview.png",
+                                   "case.png", "pieces.png", "histogram.png"}) {
         std::error_code error;
         EXPECT_GT(std::filesystem::file_size(rig_.folder() / (std::string("case/") + file), error), 100u)
             << file;
     }
     EXPECT_NE(test::readFile(rig_.folder() / "case/case.textproto").find("round 014"), std::string::npos);
+    for (const char* const picture : {"preview.png", "case.png", "pieces.png", "histogram.png"}) {
+        const std::string bytes = test::readFile(rig_.folder() / (std::string("case/") + picture));
+        for (const char* const chunk : {"tEXt", "iTXt", "zTXt", "eXIf", "tIME"})
+            EXPECT_EQ(bytes.find(chunk), std::string::npos) << chunk << " in " << picture;
+    }
 }
 
 // What a recording holds, unpacked.

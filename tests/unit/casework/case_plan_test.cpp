@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/unit/volume_import/expect_user_error.h"
@@ -55,7 +56,7 @@ TEST(CasePlan, WithoutAPlaceIsOfAllBone) {
     const CasePlan plan = planCase(ballInAir(), requestAt({}));
     EXPECT_FALSE(plan.region);
     EXPECT_LT((plan.start - (kBall + Eigen::Vector3d(0, 0, kRadius))).norm(), 1.5e-3) << "from above";
-    EXPECT_NE(plan.remarks[0].find("piece 1 of bone: 3.3"), std::string::npos) << plan.remarks[0];
+    EXPECT_NE(plan.remarks[0].find("piece 1: 22"), std::string::npos) << plan.remarks[0];
 }
 
 TEST(CasePlan, LooksAtNoPieceThatIsDropped) {
@@ -81,6 +82,35 @@ TEST(CasePlan, RefusesAPlaceWithoutBone) {
     CaseRequest high = requestAt({});
     high.iso = 1400;
     EXPECT_NO_THROW(planCase(ballInAir(), high));
+}
+
+// A clip beside the ball is a piece of its own; a screw in the ball is none.
+TEST(CasePlan, SaysWhatToDoAboutMetal) {
+    RawVolume scan = ballInAir();
+    const auto said = [](const CasePlan& plan, const std::string& words) {
+        return std::ranges::any_of(
+            plan.remarks, [&](const std::string& remark) { return remark.find(words) != std::string::npos; });
+    };
+    EXPECT_FALSE(said(planCase(scan, requestAt({})), "metal"));
+    scan.is_hounsfield = true;
+    const auto withMetalAt = [&](const Eigen::Vector3d& at) {
+        RawVolume with = scan;
+        std::vector<float> values;
+        forEachIndex({Eigen::Vector3i::Zero(), scan.geometry.dims.array() - 1},
+                     [&](const Eigen::Vector3i& v) {
+                         const bool is_metal = (placeOfVoxel(scan.geometry, v) - at).norm() < 3.2e-3;
+                         values.push_back(is_metal ? 3071 : scan.values[indexOf(scan.geometry, v)]);
+                     });
+        with.values = {};
+        with.values.append(std::span<const float>(values));
+        return planCase(with, requestAt({}));
+    };
+    const CasePlan clip = withMetalAt({20e-3, 20e-3, 20e-3});
+    EXPECT_TRUE(said(clip, "piece 3 is metal: --drop-piece 3"));
+    EXPECT_EQ(clip.metal.pieces.size(), 1u);
+    const CasePlan screw = withMetalAt(kBall + Eigen::Vector3d(18e-3, 0, 0));
+    EXPECT_TRUE(said(screw, "metal is joined to the bone of piece 1"));
+    EXPECT_FALSE(said(screw, "is metal: --drop-piece"));
 }
 
 TEST(CaseLabels, AreReadFromWords) {

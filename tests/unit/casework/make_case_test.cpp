@@ -123,15 +123,19 @@ TEST_F(MakeCase, TakesSegmentsByTheirNames) {
 }
 
 TEST_F(MakeCase, SaysNothingOfThePatient) {
+    request_.figures = folder_ / "case_figures";
     make();
     size_t files = 0;
-    for (const auto& entry : fs::recursive_directory_iterator(folder_ / "case")) {
+    std::vector<fs::directory_entry> entries;
+    for (const char* const of : {"case", "case_figures"})
+        for (const auto& entry : fs::recursive_directory_iterator(folder_ / of)) entries.push_back(entry);
+    for (const fs::directory_entry& entry : entries) {
         ++files;
         const std::string text = entry.path().filename().string() + textOfFile(entry.path());
         for (const char* const word : {"DOE", "JOHN", "19610203", "HOSPITAL_X", folder_.path().c_str()})
             EXPECT_EQ(text.find(word), std::string::npos) << word << " in " << entry.path();
     }
-    EXPECT_EQ(files, 4u);
+    EXPECT_EQ(files, 4u + 5u);
 }
 
 // Every text of the scan and of the segmentation names the patient; only what is typed goes into the case.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include "haptic_server/setup/scene_setup.h"
@@ -253,6 +254,77 @@ TEST_F(SoftStructure, IsKeptWhereItIsAZone) {
     EXPECT_GT(densityAt(nerve_, region_, zone("role: TARGET material: 'nerve'")), 0);
     EXPECT_GT(densityAt(nerve_, region_, zone("role: PROTECTED " + ball)), 0);
     EXPECT_EQ(densityAt(nerve_, region_, zone("role: CONTEXT " + ball)), 0);
+}
+
+// Metal in the small ball, with streaks that reach neither the large one nor other slices.
+class MetalInAScene : public ScannedBoneOfAScene {
+  protected:
+    MetalInAScene() { writeMetal(3071, 0); }
+    void writeMetal(float metal, double streaks_hu) {
+        std::vector<float> values;
+        forEachIndex({Eigen::Vector3i::Zero(), geometry_.dims.array() - 1}, [&](const Eigen::Vector3i& v) {
+            const Eigen::Vector3d p = geometry_.spacing.cwiseProduct(v.cast<double>()), from = p - small_;
+            const double of_large = (p - large_).norm() - 8 * kMm, of_small = from.norm() - 4 * kMm;
+            const bool has_streaks = std::abs(from.z()) < 2.5 * kMm && from.head<2>().norm() < 12 * kMm;
+            const double streak =
+                has_streaks ? streaks_hu * std::sin(10 * std::atan2(from.y(), from.x())) : 0;
+            values.push_back(from.norm() < 2.5 * kMm        ? metal
+                             : of_large < 0 || of_small < 0 ? 1200.0f
+                                                            : float(40 + streak));
+        });
+        values[0] = -1024;
+        writeNrrd(folder_ / "scan.nrrd", geometry_, values);
+    }
+    static bool warns(const ScannedBone& bone, const std::string& word) {
+        return std::ranges::any_of(bone.warnings, [&](const std::string& warning) {
+            return warning.find(word) != std::string::npos;
+        });
+    }
+};
+
+TEST_F(MetalInAScene, IsSaidAndWarnedOfWhereItIsMilled) {
+    const ScannedBone whole = boneOf("");
+    EXPECT_TRUE(says(whole, "metal: ")) << whole.remarks.back();
+    EXPECT_TRUE(warns(whole, "milled as if it were bone"));
+    EXPECT_FALSE(warns(whole, "streaks"));
+    const ScannedBone dropped = boneOf("drop_piece: 2");
+    EXPECT_TRUE(says(dropped, "metal: "));
+    EXPECT_FALSE(warns(dropped, "milled as if"));
+    const ScannedBone elsewhere =
+        boneOf("region { min_mm { x: 5 y: 9 z: 9 } max_mm { x: 18 y: 21 z: 21 } resample_mm: 0.5 }");
+    EXPECT_TRUE(says(elsewhere, "metal: "));
+    EXPECT_FALSE(warns(elsewhere, "milled as if"));
+    EXPECT_TRUE(warns(boneOf(kAroundSmall + "resample_mm: 0.5 }"), "choose another volume.region"));
+}
+
+TEST_F(MetalInAScene, IsNotSaidWhereThereIsNone) {
+    writeMetal(1500, 200);
+    EXPECT_FALSE(says(boneOf(""), "metal"));
+    EXPECT_TRUE(boneOf("").warnings.empty());
+}
+
+TEST_F(MetalInAScene, WarnsOfStreaksThatCrossWhatIsMilled) {
+    writeMetal(3071, 250);
+    EXPECT_TRUE(warns(boneOf("drop_piece: 2"), "streaks of metal cross"));
+    const std::string region = " } resample_mm: 0.5 } drop_piece: 2";
+    EXPECT_TRUE(warns(boneOf("region { min_mm { x: 20 y: 2 z: 12 } max_mm { x: 32 y: 14 z: 18" + region),
+                      "streaks of metal cross"));
+    EXPECT_FALSE(
+        warns(boneOf("region { min_mm { x: 5 y: 8 z: 21 } max_mm { x: 32 y: 20 z: 27" + region), "streaks"))
+        << "other slices";
+}
+
+TEST_F(MetalInAScene, WarnsOfAScaleThatItStretches) {
+    const auto sceneWithout = [&] {
+        LoadedScene scene = sceneOf("");
+        scene.scene.mutable_volume()->clear_window_high();
+        return scene;
+    };
+    EXPECT_FALSE(warns(readBone(sceneWithout()), "stretches"));
+    writeMetal(14000, 0);
+    EXPECT_TRUE(
+        warns(readBone(sceneWithout()), "stretches the scale of densities to 14000 HU; volume.window_high"));
+    EXPECT_FALSE(warns(boneOf(""), "stretches")) << "the scene has a window_high";
 }
 
 TEST_F(ScannedBoneOfAScene, LabelsOfARegionMayLieOnTheScansGrid) {

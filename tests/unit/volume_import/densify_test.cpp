@@ -29,7 +29,7 @@ TEST(Densify, windowIsLinearAndClamped) {
     constexpr float kInfinite = std::numeric_limits<float>::infinity();
     const RawVolume raw =
         rawOf({3, 2, 2}, {-2000, -1000, -500, 0, 500, 1000, 2000, kNan, kInfinite, -kInfinite}, 0);
-    const VoxelVolume volume = densify(raw, DensityWindow{-1000.0, 1000.0, 500.0, 0});
+    const VoxelVolume volume = densify(raw, DensityWindow{-1000.0, 1000.0, 500.0});
     const Density expected[] = {0, 0, 16384, 32768, 49151, 65535, 65535, 0, 65535, 0};
     for (int n = 0; n < 10; ++n) EXPECT_EQ(volume.at(n % 3, n / 3 % 2, n / 6), expected[n]) << n;
     EXPECT_EQ(volume.iso(), 49151);
@@ -38,7 +38,7 @@ TEST(Densify, windowIsLinearAndClamped) {
 
 TEST(Densify, windowDefaultsToTheRangeOfTheData) {
     const RawVolume raw = rawOf({4, 4, 4}, {110, std::numeric_limits<float>::quiet_NaN()}, 10);
-    const DensityMapping mapping = chooseMapping(raw, DensityWindow{{}, {}, 60.0, 0});
+    const DensityMapping mapping = chooseMapping(raw, DensityWindow{{}, {}, 60.0});
     EXPECT_EQ(mapping.low, 10);
     EXPECT_EQ(mapping.high, 110);
     EXPECT_EQ(mapping.iso, 32768);
@@ -49,9 +49,9 @@ TEST(Densify, windowDefaultsToTheRangeOfTheData) {
 TEST(Densify, isoMustLieInsideTheWindow) {
     const RawVolume raw = rawOf({4, 4, 4}, 10);
     for (const double iso : {-1.0, 0.0, 100.0, 101.0, std::numeric_limits<double>::quiet_NaN()})
-        expectUserError([&] { densify(raw, DensityWindow{0.0, 100.0, iso, 0}); }, {"iso-value", "0 .. 100"});
-    expectUserError([&] { densify(raw, DensityWindow{5.0, 5.0, 5.0, 0}); }, {"window", "empty"});
-    expectUserError([&] { densify(raw, DensityWindow{7.0, 5.0, 6.0, 0}); }, {"window", "empty"});
+        expectUserError([&] { densify(raw, DensityWindow{0.0, 100.0, iso}); }, {"iso-value", "0 .. 100"});
+    expectUserError([&] { densify(raw, DensityWindow{5.0, 5.0, 5.0}); }, {"window", "empty"});
+    expectUserError([&] { densify(raw, DensityWindow{7.0, 5.0, 6.0}); }, {"window", "empty"});
     expectUserError([&] { densify(rawOf({4, 4, 4}, NAN), DensityWindow{}); }, {"no finite value"});
 }
 
@@ -68,7 +68,7 @@ void expectTheSameNearBone() {
     RawVolume raw;
     raw.geometry.dims = dims;
     raw.values.append(std::span<const T>(values));
-    const DensityMapping mapping = chooseMapping(raw, DensityWindow{{}, {}, 150.0, 0});
+    const DensityMapping mapping = chooseMapping(raw, DensityWindow{{}, {}, 150.0});
     VoxelVolume expected = densify(raw, mapping);
     const size_t all = expected.bricks().ownCount();
     clearFarFromBone(expected);
@@ -97,7 +97,7 @@ TEST(Densify, IntegersHaveTheDensitiesOfFloats) {
     RawVolume raw;
     raw.geometry.dims = {64, 32, 32};
     raw.values.append(std::span<const int16_t>(integers));
-    const DensityMapping mapping = chooseMapping(raw, DensityWindow{-777.3, 2345.6, 250.0, 0});
+    const DensityMapping mapping = chooseMapping(raw, DensityWindow{-777.3, 2345.6, 250.0});
     const VoxelVolume volume = densify(raw, mapping);
     for (int n = 0; n < 65536; ++n)
         ASSERT_EQ(volume.at(n % 64, n / 64 % 32, n / 2048), mapping.density(n - 32768)) << n;

@@ -1,0 +1,13 @@
+#include "haptic_server/volume/import/volume_text.h"
+
+#include "common/units.h"
+#include "haptic_server/volume/import/printed_text.h"
+
+namespace bonemill {
+
+std::string volumeText(double cubic_metres) {
+    const double cubic_mm = cubic_metres * kPerCubicMillimetre;
+    return printed(cubic_mm < 100 ? "%.3g mm^3" : "%.0f mm^3", cubic_mm);
+}
+
+}  // namespace bonemill
