@@ -43,11 +43,6 @@ TEST_F(MakeCaseScript, MakesACaseWithPictures) {
             << file;
     }
     EXPECT_NE(test::readFile(rig_.folder() / "case/case.textproto").find("round 014"), std::string::npos);
-    for (const char* const picture : {"preview.png", "case.png", "pieces.png", "histogram.png"}) {
-        const std::string bytes = test::readFile(rig_.folder() / (std::string("case/") + picture));
-        for (const char* const chunk : {"tEXt", "iTXt", "zTXt", "eXIf", "tIME"})
-            EXPECT_EQ(bytes.find(chunk), std::string::npos) << chunk << " in " << picture;
-    }
 }
 
 // What a recording holds, unpacked.
@@ -70,7 +65,8 @@ TEST_F(MakeCaseScript, NoFileOfACaseOrItsSessionNamesThePatient) {
                    "dental", "--at", "30", "20", "20", "--size-mm", "16", "--voxel-mm", "0.5"});
     ASSERT_EQ(made.exit_code, 0) << made.out << made.err;
     EXPECT_EQ(test::plantedUnder(rig_.folder() / "case"), std::vector<std::string>());
-    for (const char* const picture : {"case/preview.png", "case/case.png"})
+    for (const char* const picture :
+         {"case/preview.png", "case/case.png", "case/pieces.png", "case/histogram.png"})
         for (const std::string& chunk : test::pngChunks(test::readFile(rig_.folder() / picture)))
             EXPECT_EQ(std::string("tEXt zTXt iTXt eXIf tIME").find(chunk), std::string::npos) << chunk;
 
