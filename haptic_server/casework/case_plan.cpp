@@ -100,7 +100,7 @@ CasePlan planCase(const RawVolume& scan, const CaseRequest& request) {
     window.iso = request.iso;
     plan.mapping = chooseMapping(scan, window);
     if (plan.mapping.proposed) plan.remarks.push_back("iso-value " + textOf(*plan.mapping.proposed));
-    VoxelVolume volume = densify(scan, plan.mapping);
+    VoxelVolume volume = densifyNearBone(scan, plan.mapping);
     const BonePieces pieces(volume);
     if (pieces.list().empty()) throw UserError("no voxel of the scan reaches the iso-value; set --iso");
     const std::vector<bool> is_dropped = droppedOf(pieces, request.drop_pieces, plan.smallest_piece_voxels);

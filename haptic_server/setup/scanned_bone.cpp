@@ -43,6 +43,11 @@ struct Scan {
     std::vector<std::string> remarks;
 };
 
+std::vector<uint64_t> dimsOf(const VolumeGeometry& geometry) {
+    const auto dims = geometry.dims.cast<uint64_t>();
+    return {dims.x(), dims.y(), dims.z()};
+}
+
 // A session keeps the bone as it was beside the bone as it is, and its surface.
 void requireMemory(const LoadedScene& loaded, const VoxelVolume& volume) {
     const uint64_t bone = volume.bricks().ownCount() * kBrickSize * sizeof(Density);
@@ -57,6 +62,7 @@ void requireMemory(const LoadedScene& loaded, const VoxelVolume& volume) {
 
 ScannedBone wholeBone(const LoadedScene& loaded, Scan scan) {
     const bool lacks_axes = scan.raw.lacks_patient_axes;
+    checkAllCanBeBone(dimsOf(scan.raw.geometry), loaded.scene.volume().path());
     std::vector<MaterialId> ids = materialIdsOf(loaded, scan.raw, scan.remarks);
     VoxelVolume volume = densifyNearBone(std::move(scan.raw), scan.mapping);
     dropPieces(loaded, volume, {}, scan.remarks);
