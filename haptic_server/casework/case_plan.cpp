@@ -118,7 +118,7 @@ CasePlan planCase(const RawVolume& scan, const CaseRequest& request) {
     window.iso = request.iso;
     plan.mapping = chooseMapping(scan, window);
     if (plan.mapping.proposed) plan.remarks.push_back("iso-value " + textOf(*plan.mapping.proposed));
-    VoxelVolume volume = densify(scan, plan.mapping);
+    VoxelVolume volume = densifyNearBone(scan, plan.mapping);
     plan.pieces = std::make_shared<const BonePieces>(volume);
     const BonePieces& pieces = *plan.pieces;
     if (pieces.list().empty()) throw UserError("no voxel of the scan reaches the iso-value; set --iso");

@@ -47,6 +47,11 @@ struct Scan {
     std::vector<std::string> remarks, warnings;
 };
 
+std::vector<uint64_t> dimsOf(const VolumeGeometry& geometry) {
+    const auto dims = geometry.dims.cast<uint64_t>();
+    return {dims.x(), dims.y(), dims.z()};
+}
+
 // A session keeps the bone as it was beside the bone as it is, and its surface.
 void requireMemory(const LoadedScene& loaded, const VoxelVolume& volume) {
     const uint64_t bone = volume.bricks().ownCount() * kBrickSize * sizeof(Density);
@@ -62,6 +67,7 @@ void requireMemory(const LoadedScene& loaded, const VoxelVolume& volume) {
 ScannedBone wholeBone(const LoadedScene& loaded, Scan scan) {
     const VolumeGeometry whole = scan.raw.geometry;
     const bool lacks_axes = scan.raw.lacks_patient_axes;
+    checkAllCanBeBone(dimsOf(whole), loaded.scene.volume().path());
     ScannedMaterials materials = scannedMaterialsOf(loaded, scan.raw, scan.remarks);
     const auto is_kept = keptTissueOf(loaded, materials.ids, scan.raw.geometry);
     VoxelVolume volume = densifyNearBone(std::move(scan.raw), scan.mapping, is_kept);

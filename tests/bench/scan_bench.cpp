@@ -1,7 +1,8 @@
 // How long a teacher waits for a large scan, and what memory it takes: import, region, mesh, first tick.
 //
-//   scan_bench --data build/scan_data            # makes the data there once (4 GB), then all cases: 6 min
-//   scan_bench --data build/scan_data --only head640
+//   cmake --build --preset release --target scan_bench haptic_server device_daemon
+//   build/release/bin/scan_bench            # makes the data once, 3 GB in build/scan_data; then all cases
+//   build/release/bin/scan_bench --only head640 --runs 5
 //
 // Each case runs in processes of its own. Seconds are the best of --runs by the clock, beside it the
 // processor's of that run, of all its processes; the peak is of all of them together. The digest is of the
@@ -16,6 +17,7 @@
 #include <sstream>
 
 #include "common/config/scene_file.h"
+#include "common/log/log.h"
 #include "common/rt/clock.h"
 #include "common/user_error.h"
 #include "haptic_server/bone/bone_model.h"
@@ -269,6 +271,7 @@ void runStageOf(const std::string& stage, const std::string& path) {
 int run(int argc, char** argv) {
     runReaderIfCalled(argc, argv);
     setReaderProgram("/proc/self/exe");
+    setUpLog("scan_bench", "info");  // to stderr: stdout has the figures
     Options options;
     std::vector<std::string> stage;
     CLI::App app("Time and memory that large scans take until the first tick", "scan_bench");

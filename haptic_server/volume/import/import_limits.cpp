@@ -40,16 +40,26 @@ void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel
             throw UserError(file + ": claims " + sizeText(dims) +
                             " voxels, more than 2^31; crop or resample it");
     }
-    // Samples move from the reader's process to this one and on into densities; what was moved is given back.
-    // At worst every brick takes memory.
-    uint64_t bricks = 1;
-    for (const uint64_t n : dims) bricks *= (n + 2 + kBrickCells - 1) / kBrickCells;
-    const uint64_t needed = voxels * bytes_per_voxel + bricks * kBrickSize * sizeof(uint16_t);
+    // Samples move from the reader's process to this one; what was moved is given back.
+    const uint64_t needed = voxels * bytes_per_voxel;
     const uint64_t available = availableMemory();
     if (available != 0 && needed > available)
         throw UserError(file + ": " + sizeText(dims) + " voxels need " + std::to_string(needed >> 20) +
                         " MiB to import and only " + std::to_string(available >> 20) +
                         " MiB of memory are free; crop or resample it");
+}
+
+void checkAllCanBeBone(const std::vector<uint64_t>& dims, const std::string& file) {
+    uint64_t bricks = 1;
+    for (const uint64_t n : dims) bricks *= (n + 2 + kBrickCells - 1) / kBrickCells;
+    const uint64_t needed = bricks * kBrickSize * sizeof(uint16_t);
+    const uint64_t available = availableMemory();
+    if (available != 0 && needed > available)
+        throw UserError(file + ": all of its " + sizeText(dims) + " voxels may need " +
+                        std::to_string(needed >> 20) + " MiB as bone and only " +
+                        std::to_string(available >> 20) +
+                        " MiB of memory are free; name the part that is milled in volume.region, or crop or "
+                        "resample it");
 }
 
 void checkStoredBytes(uint64_t promised_bytes, uint64_t stored_bytes, const std::string& file) {

@@ -22,6 +22,10 @@ uint64_t availableMemory();
 // reader takes at the most.
 void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel, const std::string& file);
 
+// Throws UserError naming `file` unless the densities of all these voxels fit into the memory that is free
+// now, wherever bone may be.
+void checkAllCanBeBone(const std::vector<uint64_t>& dims, const std::string& file);
+
 // Throws UserError when fewer bytes are stored than the header promises.
 void checkStoredBytes(uint64_t promised_bytes, uint64_t stored_bytes, const std::string& file);
 
