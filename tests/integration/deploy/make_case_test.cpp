@@ -12,6 +12,16 @@
 namespace bonemill {
 namespace {
 
+// What a recording holds, unpacked.
+std::string messagesOf(const std::filesystem::path& recording) {
+    std::ifstream stream(recording, std::ios::binary);
+    std::string all;
+    mcap::read(stream, [&](const mcap::Channel& channel, const mcap::Message& message) {
+        all += channel.topic + std::string(message.data);
+    });
+    return all;
+}
+
 class MakeCaseScript : public testing::Test {
   protected:
     MakeCaseScript() {
@@ -27,6 +37,25 @@ class MakeCaseScript : public testing::Test {
                                        rig_.folder() / "case"};
         words.insert(words.end(), more.begin(), more.end());
         return test::run(words);
+    }
+
+    // What a session with this scene says and leaves: output, report and recording.
+    std::string leftOfSession(const std::string& scene) const {
+        const test::TemporaryFolder recordings;
+        const std::string report = rig_.folder() / "report.json";
+        test::Process server({rig_.programFile("haptic_server"), "--scene", scene, "--session", "4711",
+                              "--recording", recordings.path(), "--report", report});
+        const auto says = [&] { return server.outSoFar() + server.errSoFar(); };
+        EXPECT_TRUE(test::waitFor(
+            [&] { return !server.isRunning() || says().find("waits for a device") != std::string::npos; }));
+        server.signal(SIGTERM);
+        const test::Finished session = server.wait();
+        EXPECT_EQ(session.exit_code, 0) << session.err;
+        EXPECT_GT(test::readFile(report).size(), 100u);
+        std::string left = session.out + session.err + test::readFile(report);
+        for (const auto& recording : std::filesystem::directory_iterator(recordings.path()))
+            left += recording.path().string() + messagesOf(recording.path());
+        return left;
     }
 
     test::BonemillRig rig_;
@@ -45,16 +74,6 @@ TEST_F(MakeCaseScript, MakesACaseWithPictures) {
     EXPECT_NE(test::readFile(rig_.folder() / "case/case.textproto").find("round 014"), std::string::npos);
 }
 
-// What a recording holds, unpacked.
-std::string messagesOf(const std::filesystem::path& recording) {
-    std::ifstream stream(recording, std::ios::binary);
-    std::string all;
-    mcap::read(stream, [&](const mcap::Channel& channel, const mcap::Message& message) {
-        all += channel.topic + std::string(message.data);
-    });
-    return all;
-}
-
 // From a series that names the patient everywhere to the case's pictures, and to what a session with it
 // leaves: recording, report and the list of scenes that viewers get. Where the case lies is in the recording.
 TEST_F(MakeCaseScript, NoFileOfACaseOrItsSessionNamesThePatient) {
@@ -70,27 +89,12 @@ TEST_F(MakeCaseScript, NoFileOfACaseOrItsSessionNamesThePatient) {
         for (const std::string& chunk : test::pngChunks(test::readFile(rig_.folder() / picture)))
             EXPECT_EQ(std::string("tEXt zTXt iTXt eXIf tIME").find(chunk), std::string::npos) << chunk;
 
-    const std::string recordings = rig_.folder() / "recordings", report = rig_.folder() / "report.json";
-    test::Process server({rig_.programFile("haptic_server"), "--scene", rig_.folder() / "case/case.textproto",
-                          "--session", "4711", "--recording", recordings, "--report", report});
-    ASSERT_TRUE(test::waitFor([&] {
-        return !server.isRunning() || server.errSoFar().find("waits for a device") != std::string::npos ||
-               server.outSoFar().find("waits for a device") != std::string::npos;
-    }));
-    server.signal(SIGTERM);
-    const test::Finished session = server.wait();
-    EXPECT_EQ(session.exit_code, 0) << session.err;
-    EXPECT_EQ(test::plantedIn(session.out + session.err), std::vector<std::string>());
-    EXPECT_EQ(test::plantedIn(test::readFile(report)), std::vector<std::string>());
-    EXPECT_GT(test::readFile(report).size(), 100u);
-    size_t count = 0;
-    for (const auto& recording : std::filesystem::directory_iterator(recordings)) {
-        const std::string messages = messagesOf(recording.path());
-        EXPECT_NE(messages.find("case.textproto"), std::string::npos) << "its place is said";
-        EXPECT_EQ(test::plantedIn(recording.path().string() + messages), std::vector<std::string>());
-        ++count;
-    }
-    EXPECT_EQ(count, 1u);
+    const std::string left = leftOfSession(rig_.folder() / "case/case.textproto");
+    EXPECT_NE(left.find("case.textproto"), std::string::npos) << "its place is said";
+    EXPECT_EQ(test::plantedIn(left), std::vector<std::string>());
+    test::writeFile(rig_.folder() / "raw.textproto", "volume { path: \"" + series + "\" }");
+    EXPECT_FALSE(test::plantedIn(leftOfSession(rig_.folder() / "raw.textproto")).empty())
+        << "who mills the scan itself has its path in the recording";
     const test::Finished listed =
         test::run({rig_.programFile("haptic_server"), "--scenes", rig_.folder() / "case", "--list-scenes"});
     EXPECT_EQ(listed.exit_code, 0) << listed.err;
