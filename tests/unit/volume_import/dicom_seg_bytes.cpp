@@ -1,5 +1,7 @@
 #include "tests/unit/volume_import/dicom_seg_bytes.h"
 
+#include <zlib.h>
+
 #include "tests/unit/volume_import/dicom_elements.h"
 #include "tests/unit/volume_import/volume_files.h"
 
@@ -57,6 +59,22 @@ std::string framePixels(const DicomSegmentation& file, int bits) {
     return bytes;
 }
 
+// As PS3.5 A.5 asks: without zlib's head.
+std::string deflatedData(const std::string& data) {
+    z_stream stream{};
+    constexpr int kNoHead = -15;
+    deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kNoHead, 8, Z_DEFAULT_STRATEGY);
+    std::string out(deflateBound(&stream, uLong(data.size())), '\0');
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data.data()));
+    stream.avail_in = uInt(data.size());
+    stream.next_out = reinterpret_cast<Bytef*>(out.data());
+    stream.avail_out = uInt(out.size());
+    deflate(&stream, Z_FINISH);
+    out.resize(stream.total_out);
+    deflateEnd(&stream);
+    return out;
+}
+
 }  // namespace
 
 std::string dicomSegBytes(const DicomSegmentation& file) {
@@ -64,20 +82,22 @@ std::string dicomSegBytes(const DicomSegmentation& file) {
     std::string segments, frames;
     for (const auto& segment : file.segments) segments += segmentItem(segment);
     for (const auto& frame : file.frames) frames += frameGroups(frame);
+    const std::string data =
+        textElement(0x00080005, "CS", file.character_set) + element(0x00080016, "UI", file.sop_class) +
+        element(0x00080018, "UI", "1.2.3.4.9") + element(0x00080060, "CS", "SEG") +
+        element(0x0020000d, "UI", "1.2.3") + element(0x0020000e, "UI", "1.2.3.5") +
+        shortElement(0x00280002, 1) + element(0x00280004, "CS", "MONOCHROME2") +
+        element(0x00280008, "IS", std::to_string(file.frames_said.value_or(int(file.frames.size())))) +
+        shortElement(0x00280010, file.rows) + shortElement(0x00280011, file.columns) +
+        shortElement(0x00280100, bits) + shortElement(0x00280101, bits) + shortElement(0x00280102, bits - 1) +
+        shortElement(0x00280103, 0) + textElement(0x00620001, "CS", file.type) +
+        (segments.empty() ? "" : element(0x00620002, "SQ", segments)) +
+        (file.most_fraction ? shortElement(0x0062000e, *file.most_fraction) : "") +
+        element(0x52009229, "SQ", item(sharedGroups(file))) + element(0x52009230, "SQ", frames) +
+        (file.has_pixels ? element(0x7fe00010, "OB", framePixels(file, bits)) : "");
+    const bool is_deflated = file.transfer_syntax == "1.2.840.10008.1.2.1.99";
     return metaHeader(file.sop_class, "1.2.3.4.9", file.transfer_syntax) +
-           textElement(0x00080005, "CS", file.character_set) + element(0x00080016, "UI", file.sop_class) +
-           element(0x00080018, "UI", "1.2.3.4.9") + element(0x00080060, "CS", "SEG") +
-           element(0x0020000d, "UI", "1.2.3") + element(0x0020000e, "UI", "1.2.3.5") +
-           shortElement(0x00280002, 1) + element(0x00280004, "CS", "MONOCHROME2") +
-           element(0x00280008, "IS", std::to_string(file.frames_said.value_or(int(file.frames.size())))) +
-           shortElement(0x00280010, file.rows) + shortElement(0x00280011, file.columns) +
-           shortElement(0x00280100, bits) + shortElement(0x00280101, bits) +
-           shortElement(0x00280102, bits - 1) + shortElement(0x00280103, 0) +
-           textElement(0x00620001, "CS", file.type) +
-           (segments.empty() ? "" : element(0x00620002, "SQ", segments)) +
-           (file.most_fraction ? shortElement(0x0062000e, *file.most_fraction) : "") +
-           element(0x52009229, "SQ", item(sharedGroups(file))) + element(0x52009230, "SQ", frames) +
-           (file.has_pixels ? element(0x7fe00010, "OB", framePixels(file, bits)) : "");
+           (is_deflated ? deflatedData(data) : data);
 }
 
 void writeDicomSeg(const std::filesystem::path& path, const DicomSegmentation& file) {

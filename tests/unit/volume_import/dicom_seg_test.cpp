@@ -197,6 +197,18 @@ TEST_F(DicomSeg, ofFractionsCountsFromHalfOn) {
     EXPECT_EQ(raw.values[240], 5);
 }
 
+// As 3D Slicer's extension for DICOM packs them.
+TEST_F(DicomSeg, mayBeDeflated) {
+    DicomSegmentation file = plainFile();
+    file.transfer_syntax = "1.2.840.10008.1.2.1.99";
+    const RawVolume raw = imported(file), plain = imported(plainFile());
+    EXPECT_TRUE(raw.values == plain.values);
+    EXPECT_EQ(raw.segments.list[0].name, "facial nerve");
+    std::string bytes = dicomSegBytes(file);
+    writeBytes(folder_ / "cut.dcm", bytes.substr(0, bytes.size() - 100));
+    expectUserError([&] { importVolume(folder_ / "cut.dcm"); }, {"cut.dcm"});
+}
+
 TEST_F(DicomSeg, ofOneSliceIsAsThickAsItSays) {
     DicomSegmentation file = plainFile();
     file.frames.resize(1);
