@@ -7,6 +7,7 @@
 #include "haptic_server/volume/import/bone_series.h"
 #include "haptic_server/volume/import/dicom_series.h"
 #include "haptic_server/volume/import/printed_text.h"
+#include "haptic_server/volume/import/series_rows.h"
 
 namespace bonemill {
 namespace {
@@ -14,10 +15,7 @@ namespace {
 constexpr size_t kMostRows = 1000, kMostProblems = 8;
 constexpr size_t kLongestCell = 64, kLongestLine = 600;  // a damaged header may claim to have any text
 
-constexpr std::array<const char*, 10> kHead = {"series",   "acquisition", "modality", "description",
-                                               "kernel",   "contrast",    "slices",   "size",
-                                               "voxel mm", "remark"};
-using Row = std::array<std::string, kHead.size()>;
+using Row = std::array<std::string, kSeriesColumns.size()>;
 
 std::string shortened(std::string text, size_t most) {
     text = printable(std::move(text));
@@ -63,12 +61,13 @@ Row rowOf(const DicomStack& stack) {
 // Columns begin below each other; the last one has no end.
 std::vector<std::string> aligned(const std::vector<Row>& rows) {
     std::vector<std::string> lines(rows.size());
-    for (size_t column = 0; column < kHead.size(); ++column) {
+    for (size_t column = 0; column < kSeriesColumns.size(); ++column) {
         size_t width = 0;
         for (const Row& row : rows) width = std::max(width, row[column].size());
         for (size_t r = 0; r < rows.size(); ++r) {
             lines[r] += rows[r][column];
-            if (column + 1 < kHead.size()) lines[r] += std::string(width + 2 - rows[r][column].size(), ' ');
+            if (column + 1 < kSeriesColumns.size())
+                lines[r] += std::string(width + 2 - rows[r][column].size(), ' ');
         }
     }
     return lines;
@@ -91,7 +90,7 @@ void recommend(const std::vector<DicomStack>& stacks, std::vector<std::string>& 
 
 std::vector<std::string> seriesTable(const std::vector<DicomStack>& stacks, const SeriesTableNotes& notes) {
     std::vector<Row> rows(1);
-    std::ranges::copy(kHead, rows.front().begin());
+    std::ranges::copy(kSeriesColumns, rows.front().begin());
     for (size_t s = 0; s < std::min(stacks.size(), kMostRows); ++s) rows.push_back(rowOf(stacks[s]));
     std::vector<std::string> lines = aligned(rows);
     if (stacks.size() > kMostRows)

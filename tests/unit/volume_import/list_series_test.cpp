@@ -4,6 +4,7 @@
 
 #include "haptic_server/volume/import/guarded_import.h"
 #include "haptic_server/volume/import/import_volume.h"
+#include "haptic_server/volume/import/series_rows.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/volume_import/dicom_bytes.h"
 #include "tests/unit/volume_import/expect_user_error.h"
@@ -49,6 +50,32 @@ class ListSeries : public testing::Test {
     int stacks_ = 0;
     std::vector<std::string> lines_;
 };
+
+TEST_F(ListSeries, IsReadAgainRowByRow) {
+    for (const char* number : {"1", "2"})
+        writeStack("1.2.1", 6, 0.6, [&](DicomImage& image) {
+            image.acquisition_number = number;
+            image.kernel = "H60s";
+            image.series_description = "Head, sharp";
+        });
+    writeStack("1.2.2", 5, 0.6, [](DicomImage&) {});
+    list();
+    const std::vector<SeriesRow> rows = rowsOfTable(lines_);
+    ASSERT_EQ(rows.size(), 3u) << text();
+    EXPECT_EQ(rows[1].uid, "1.2.1");
+    EXPECT_EQ(rows[1].acquisition, "2");
+    EXPECT_EQ(rows[1].description, "Head, sharp");
+    EXPECT_EQ(rows[1].kernel, "H60s");
+    EXPECT_EQ(rows[1].contrast, "-");
+    EXPECT_EQ(rows[1].slices, "6");
+    EXPECT_EQ(rows[1].voxel_mm, "0.5 x 0.5 x 0.6");
+    EXPECT_EQ(rows[2].acquisition, "-");
+    EXPECT_TRUE(rows[0].is_recommended) << text();
+    EXPECT_FALSE(rows[1].is_recommended) << "another acquisition of the same series";
+    EXPECT_FALSE(rows[2].is_recommended);
+    EXPECT_TRUE(rowsOfTable({"something else"}).empty());
+    EXPECT_TRUE(rowsOfTable({}).empty());
+}
 
 TEST_F(ListSeries, TellsStacksAndRecommendsOne) {
     for (const char* number : {"1", "2"})
