@@ -11,6 +11,7 @@
 #include "common/run_program.h"
 #include "common/user_error.h"
 #include "haptic_server/accuracy_report/accuracy_report.h"
+#include "haptic_server/casework/case_options.h"
 #include "haptic_server/casework/make_case.h"
 #include "haptic_server/export/export_journal.h"
 #include "haptic_server/offline/assess_journal.h"
@@ -145,46 +146,6 @@ void addReportOptions(CLI::App& app, AccuracyReportOptions& report) {
     app.add_option("--budget-us", report.budget_us,
                    "propose the most accurate setting whose ticks (p99.9) fit this many microseconds")
         ->check(within(1e-3, 1e6));
-}
-
-void addCaseOptions(CLI::App& app, CaseRequest& request) {
-    app.add_option("scan", request.scan, "folder of a DICOM series or of images, or a file")->required();
-    app.add_option("--out", request.out, "new folder for the case")->required()->type_name("DIR");
-    app.add_option("--series", request.series, "UID of the series; default: the one with the most slices");
-    app.add_option("--acquisition", request.acquisition,
-                   "which of the series' acquisitions, phases or kernels, as list-series names them");
-    app.add_option("--spacing-mm", request.spacing_mm,
-                   "edges of the voxels, mm, for images and files that do not say them")
-        ->expected(3);
-    app.add_option("--title", request.title, "what people read in the list of scenes");
-    app.add_option("--task", request.task, "what the trainee is to do");
-    app.add_option("--credit", request.credit,
-                   "who is to be named for the scan, and its licence; stands behind the task");
-    app.add_option("--iso", request.iso, "raw value (HU) of the bone's surface; default: proposed");
-    app.add_option("--at", request.at_mm,
-                   "middle of the part that is milled, in W (docs/frames.md), mm; default: all is")
-        ->expected(3);
-    app.add_option("--size-mm", request.size_mm, "edge of that part")
-        ->check(within(2, 500))
-        ->capture_default_str();
-    app.add_option("--voxel-mm", request.voxel_mm,
-                   "of that part; default: a quarter of the smallest burr's radius")
-        ->check(within(0.01, 10));
-    app.add_option("--from", request.from_mm, "where the hand comes from, in W, mm; default: from outside")
-        ->expected(3);
-    app.add_option("--drop-piece", request.drop_pieces, "leaves this piece of bone out, may be given again");
-    app.add_option("--labels", request.labels, "label map, on any grid");
-    app.add_option(
-        "--label", request.label_words,
-        "NUMBER=NAME of a structure in it, or the NAME of a segment that its file names, with :protected or "
-        ":target behind it, may be given again");
-    app.add_option("--tools", request.tools, "scene text with the tools, as those in deploy/tools")
-        ->type_name("FILE");
-    app.add_option(
-           "--figures", request.figures,
-           "new folder with what gnuplot makes the pictures of pieces and values of, as deploy/make-case "
-           "does")
-        ->type_name("DIR");
 }
 
 struct Options {

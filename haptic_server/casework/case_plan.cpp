@@ -56,6 +56,15 @@ Eigen::Vector3d toWorld(const VolumeGeometry& geometry, const Eigen::Vector3d& v
     return geometry.X_WV * Eigen::Vector3d(voxel.cwiseProduct(geometry.spacing));
 }
 
+std::vector<CasePiece> piecesOf(const CaseBone& bone, const VolumeGeometry& geometry) {
+    std::vector<CasePiece> found;
+    for (const BonePiece& piece : bone.all_pieces->list())
+        if (piece.voxels >= bone.smallest_piece_voxels)
+            found.push_back({double(piece.voxels) * geometry.spacing.prod(), toWorld(geometry, piece.middle),
+                             bone.is_dropped[found.size()]});
+    return found;
+}
+
 void describePieces(const BonePieces& pieces, const VolumeGeometry& geometry, uint32_t smallest,
                     std::vector<std::string>& remarks) {
     const auto noise =
@@ -68,25 +77,25 @@ void describePieces(const BonePieces& pieces, const VolumeGeometry& geometry, ui
 }
 
 // Metal is left out where it is a piece of its own, or so much of one that no bone is lost with it.
-void describeMetal(const CasePlan& plan, const VolumeGeometry& geometry, std::vector<std::string>& remarks) {
-    if (plan.metal.pieces.empty()) return;
-    remarks.push_back(textOf(plan.metal, geometry));
-    std::vector<uint64_t> metal_of(plan.pieces->list().size());
-    for (const MetalPiece& metal : plan.metal.pieces) {
-        const std::vector<bool> is_in = plan.pieces->touching({metal.first, metal.first});
+void describeMetal(const CaseBone& bone, const VolumeGeometry& geometry, std::vector<std::string>& remarks) {
+    if (bone.metal.pieces.empty()) return;
+    remarks.push_back(textOf(bone.metal, geometry));
+    std::vector<uint64_t> metal_of(bone.all_pieces->list().size());
+    for (const MetalPiece& metal : bone.metal.pieces) {
+        const std::vector<bool> is_in = bone.all_pieces->touching({metal.first, metal.first});
         const auto piece = std::ranges::find(is_in, true);
         if (piece != is_in.end()) metal_of[size_t(piece - is_in.begin())] += metal.voxels;
     }
     for (size_t n = 0; n < metal_of.size(); ++n) {
-        if (metal_of[n] == 0 || plan.is_dropped[n]) continue;
+        if (metal_of[n] == 0 || bone.is_dropped[n]) continue;
         const std::string piece = "piece " + std::to_string(n + 1);
-        if (double(metal_of[n]) > kMetalShare * double(plan.pieces->list()[n].voxels))
+        if (double(metal_of[n]) > kMetalShare * double(bone.all_pieces->list()[n].voxels))
             remarks.push_back(piece + " is metal: --drop-piece " + std::to_string(n + 1) + " leaves it out");
         else
             remarks.push_back("metal is joined to the bone of " + piece +
                               " and would be milled as if it were bone: choose a place without it (--at)");
     }
-    if (plan.metal.streaks && plan.metal.streaks->reach > 0)
+    if (bone.metal.streaks && bone.metal.streaks->reach > 0)
         remarks.push_back(
             "streaks make bone of tissue and gaps in bone: choose a place in other slices, or further from "
             "them");
@@ -112,42 +121,63 @@ std::vector<bool> droppedOf(const BonePieces& pieces, const std::vector<uint32_t
 
 }  // namespace
 
-CasePlan planCase(const RawVolume& scan, const CaseRequest& request) {
-    CasePlan plan;
+CaseBone findBone(const RawVolume& scan, const CaseRequest& request) {
     DensityWindow window;
     window.iso = request.iso;
-    plan.mapping = chooseMapping(scan, window);
-    if (plan.mapping.proposed) plan.remarks.push_back("iso-value " + textOf(*plan.mapping.proposed));
-    VoxelVolume volume = densifyNearBone(scan, plan.mapping);
-    plan.pieces = std::make_shared<const BonePieces>(volume);
-    const BonePieces& pieces = *plan.pieces;
+    const DensityMapping mapping = chooseMapping(scan, window);
+    CaseBone bone{.mapping = mapping,
+                  .volume = densifyNearBone(scan, mapping),
+                  .pieces = {},
+                  .metal = {},
+                  .all_pieces = nullptr,
+                  .is_dropped = {},
+                  .remarks = {}};
+    if (mapping.proposed) bone.remarks.push_back("iso-value " + textOf(*mapping.proposed));
+    bone.all_pieces = std::make_shared<const BonePieces>(bone.volume);
+    const BonePieces& pieces = *bone.all_pieces;
     if (pieces.list().empty()) throw UserError("no voxel of the scan reaches the iso-value; set --iso");
-    plan.is_dropped = droppedOf(pieces, request.drop_pieces, plan.smallest_piece_voxels);
-    plan.metal = findMetal(scan);
-    describePieces(pieces, scan.geometry, plan.smallest_piece_voxels, plan.remarks);
-    describeMetal(plan, scan.geometry, plan.remarks);
-    pieces.drop(volume, plan.is_dropped);
-    const BonePiece& largest =
-        pieces.list()[size_t(std::ranges::find(plan.is_dropped, false) - plan.is_dropped.begin())];
-    const Eigen::Vector3d middle_of_bone = toWorld(scan.geometry, largest.middle);
-    const Eigen::Vector3d middle = pointOf(request.at_mm).value_or(middle_of_bone);
-    const ScanBone bone(volume);
-    double within = bone.reach();
+    bone.is_dropped = droppedOf(pieces, request.drop_pieces, bone.smallest_piece_voxels);
+    bone.pieces = piecesOf(bone, scan.geometry);
+    bone.noise_pieces = pieces.list().size() - bone.pieces.size();
+    bone.metal = findMetal(scan);
+    describePieces(pieces, scan.geometry, bone.smallest_piece_voxels, bone.remarks);
+    describeMetal(bone, scan.geometry, bone.remarks);
+    pieces.drop(bone.volume, bone.is_dropped);
+    const auto largest = size_t(std::ranges::find(bone.is_dropped, false) - bone.is_dropped.begin());
+    bone.middle = toWorld(scan.geometry, pieces.list()[largest].middle);
+    return bone;
+}
+
+CasePlan planCase(const CaseBone& bone, const CaseRequest& request) {
+    CasePlan plan;
+    plan.mapping = bone.mapping;
+    plan.smallest_piece_voxels = bone.smallest_piece_voxels;
+    plan.metal = bone.metal;
+    plan.pieces = bone.all_pieces;
+    plan.is_dropped = bone.is_dropped;
+    plan.remarks = bone.remarks;
+    const Eigen::Vector3d middle = pointOf(request.at_mm).value_or(bone.middle);
+    const ScanBone scan(bone.volume);
+    double within = scan.reach();
     if (!request.at_mm.empty()) {
         const Eigen::Vector3d half = Eigen::Vector3d::Constant(request.size_mm * kMillimetre / 2);
         plan.region = Eigen::AlignedBox3d(middle - half, middle + half);
         within = half.x();
     }
-    const Eigen::Vector3d from = pointOf(request.from_mm).value_or(2 * middle - middle_of_bone) - middle;
+    const Eigen::Vector3d from = pointOf(request.from_mm).value_or(2 * middle - bone.middle) - middle;
     if (from.norm() > kLeastOutwards * kMillimetre) plan.outwards = from.normalized();
-    plan.start = bone.surface(middle, plan.outwards, within);
-    if (plan.region && !bone.isBone(plan.start))
+    plan.start = scan.surface(middle, plan.outwards, within);
+    if (plan.region && !scan.isBone(plan.start))
         throw UserError("there is no bone at --at " + textOf(middle) + " for a hand that comes from " +
                         textOf(middle + within * plan.outwards) + "; the bone's middle is " +
-                        textOf(middle_of_bone));
+                        textOf(bone.middle));
     plan.remarks.push_back("the hand begins at " + textOf(plan.start) + " and comes from " +
                            textOf(plan.start + 0.05 * plan.outwards));
     return plan;
+}
+
+CasePlan planCase(const RawVolume& scan, const CaseRequest& request) {
+    return planCase(findBone(scan, request), request);
 }
 
 }  // namespace bonemill
