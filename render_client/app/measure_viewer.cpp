@@ -100,7 +100,7 @@ void measure(const ClientOptions& options, const GlApi& gl) {
 
 void runMeasurement(const ClientOptions& options) {
     if (options.measure->is_in_window) {
-        const GlfwWindow window(options.width, options.height, "bonemill");
+        const GlfwWindow window(options.width, options.height, "bonemill", kWithoutDisplay);
         measure(options, window.gl());
     } else {
         const OsmesaContext context(options.width, options.height);

@@ -21,6 +21,10 @@ namespace bonemill {
 // The program waits so long for a server or its whole model, unless it is told.
 inline constexpr std::chrono::seconds kDefaultTimeout{60};
 
+// What to do where no window can be opened.
+inline constexpr char kWithoutDisplay[] =
+    "Without a display use: render_client --offscreen --frames N --out DIR";
+
 // A video instead of single pictures.
 struct VideoOptions {
     std::filesystem::path path;  // .mp4

@@ -105,7 +105,7 @@ class WindowViewer {
   public:
     explicit WindowViewer(const ClientOptions& options)
         : options_(options),
-          window_(options.width, options.height, "bonemill"),
+          window_(options.width, options.height, "bonemill", kWithoutDisplay),
           scene_(window_.gl(), options.has_effects),
           sound_({.is_played = true, .wav = options.sound_wav}),
           feed_(options.subscriber, scene_),

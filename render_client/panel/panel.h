@@ -7,17 +7,14 @@
 #pragma once
 
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 
 #include "render_client/controls/viewer_controls.h"
+#include "render_client/imgui/imgui_stage.h"
 #include "render_client/panel/lesson_draft.h"
 #include "render_client/panel/remark_draft.h"
 #include "render_client/panel/scene_pictures.h"
-
-struct ImDrawData;
-struct ImGuiContext;
 
 namespace bonemill {
 
@@ -46,31 +43,17 @@ class Panel {
     // Returns what to draw; null while the panel is closed and no lesson shows anything. It is valid until
     // the next call of setPicture() or handle().
     const ImDrawData* drawData() const;
-    // The font's pixels have 8 bits each; the number changes with them.
-    struct FontPixels {
-        const unsigned char* pixels;
-        int width;
-        int height;
-        int version;
-    };
-    FontPixels fontPixels() const;
+    ImGuiStage::FontPixels fontPixels() const { return stage_.fontPixels(); }
     // What the drawing names by a texture's number that is not 0 is the picture of this number.
     const std::map<std::string, ScenePicture>& pictures() const { return pictures_.all(); }
 
   private:
-    struct Destroy {
-        void operator()(ImGuiContext* context) const;
-    };
-    void feed(const WindowEvent& event);
     void frame(double seconds, ViewerControls& controls, const SessionView& session, Wishes& wishes);
-    void setScale(float scale);
     bool isWanted(const ViewerControls& controls, const SessionView& session) const;
 
-    std::unique_ptr<ImGuiContext, Destroy> context_;
+    ImGuiStage stage_;
     std::map<std::string, PixelPoint> places_;  // of the controls that can be seen, by label
-    float scale_ = 0;
     float view_width_ = 0;
-    int font_version_ = 0;
     double pending_seconds_ = 0;
     bool was_open_ = false;
     bool is_drawn_ = false;   // the panel, or something else

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "render_client/gl/gl_object.h"
-#include "render_client/gl/program.h"
+#include "render_client/imgui/imgui_painter.h"
 #include "render_client/panel/panel.h"
 
 namespace bonemill {
@@ -15,25 +15,17 @@ namespace bonemill {
 class PanelPainter {
   public:
     // Throws GlError.
-    explicit PanelPainter(const GlApi& gl);
+    explicit PanelPainter(const GlApi& gl) : gl_(gl), painter_(gl) {}
 
     // Draws into the bound framebuffer of this size (pixels). A closed panel draws nothing.
     void paint(const Panel& panel, int width, int height);
 
   private:
-    void uploadFont(const Panel::FontPixels& font);
-    void smooth();
     void uploadPictures(const Panel& panel);
-    void prepare(int width, int height);
 
     const GlApi& gl_;
-    Program program_;
-    GlVertexArray layout_;
-    GlBuffer vertices_;
-    GlBuffer indices_;
-    GlTexture font_;
+    ImGuiPainter painter_;
     std::map<int, GlTexture> pictures_;  // by number
-    int font_version_ = 0;               // of the pixels in the texture; 0: none
 };
 
 }  // namespace bonemill

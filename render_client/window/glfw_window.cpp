@@ -46,30 +46,30 @@ Modifiers modifiersOf(int bits) {
     return {(bits & GLFW_MOD_SHIFT) != 0, (bits & GLFW_MOD_CONTROL) != 0};
 }
 
-[[noreturn]] void failWith(const std::string& what) {
+[[noreturn]] void failWith(const std::string& what, const std::string& advice) {
     const char* reason = nullptr;
     glfwGetError(&reason);
-    throw UserError(what + (reason ? std::string(": ") + reason : "") +
-                    ". Without a display use: render_client --offscreen --frames N --out DIR");
+    throw UserError(what + (reason ? std::string(": ") + reason : "") + ". " + advice);
 }
 
 }  // namespace
 
-GlfwWindow::Library::Library() {
-    if (!glfwInit()) failWith("cannot open a window");
+GlfwWindow::Library::Library(const std::string& advice) {
+    if (!glfwInit()) failWith("cannot open a window", advice);
 }
 
 GlfwWindow::Library::~Library() {
     glfwTerminate();
 }
 
-GlfwWindow::GlfwWindow(int width, int height, const std::string& title) {
+GlfwWindow::GlfwWindow(int width, int height, const std::string& title, const std::string& advice)
+    : library_(advice) {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
     window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
-    if (!window_) failWith("cannot open a window with OpenGL 3.3");
+    if (!window_) failWith("cannot open a window with OpenGL 3.3", advice);
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
     gl_ = GlApi::load([](const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); });
@@ -97,6 +97,9 @@ void GlfwWindow::listen() {
     });
     glfwSetScrollCallback(window_,
                           [](GLFWwindow* w, double, double y) { of(w).events_.push_back(ScrollEvent{y}); });
+    glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
+        of(w).dropped_.insert(of(w).dropped_.end(), paths, paths + count);
+    });
 }
 
 GlfwWindow::~GlfwWindow() {
@@ -110,6 +113,19 @@ GlfwWindow& GlfwWindow::of(GLFWwindow* window) {
 std::vector<WindowEvent> GlfwWindow::takeEvents() {
     glfwPollEvents();
     return std::exchange(events_, {});
+}
+
+std::vector<std::string> GlfwWindow::takeDropped() {
+    return std::exchange(dropped_, {});
+}
+
+std::string GlfwWindow::clipboard() const {
+    const char* const text = glfwGetClipboardString(window_);
+    return text ? text : "";
+}
+
+void GlfwWindow::setClipboard(const std::string& text) {
+    glfwSetClipboardString(window_, text.c_str());
 }
 
 bool GlfwWindow::shouldClose() const {

@@ -16,9 +16,9 @@ namespace bonemill {
 
 class GlfwWindow {
   public:
-    // The size counts in screen coordinates. Throws UserError, naming --offscreen, when there is no
-    // display or no OpenGL 3.3.
-    GlfwWindow(int width, int height, const std::string& title);
+    // The size counts in screen coordinates. Throws UserError, ending with `advice`, when there is no display
+    // or no OpenGL 3.3.
+    GlfwWindow(int width, int height, const std::string& title, const std::string& advice);
     GlfwWindow(const GlfwWindow&) = delete;
     GlfwWindow& operator=(const GlfwWindow&) = delete;
     ~GlfwWindow();
@@ -28,6 +28,12 @@ class GlfwWindow {
     // Returns what happened since the last call, oldest first. Never waits.
     std::vector<WindowEvent> takeEvents();
     bool shouldClose() const;
+
+    // Returns the paths of files and folders that were dropped onto the window since the last call.
+    std::vector<std::string> takeDropped();
+    // The display's clipboard; empty: it holds no text.
+    std::string clipboard() const;
+    void setClipboard(const std::string& text);
 
     // The picture has so many pixels, 0 x 0 while the window is minimised.
     int pixelWidth() const;
@@ -43,7 +49,7 @@ class GlfwWindow {
 
   private:
     struct Library {  // glfwInit and glfwTerminate
-        Library();
+        explicit Library(const std::string& advice);
         ~Library();
     };
     static GlfwWindow& of(GLFWwindow* window);
@@ -57,6 +63,7 @@ class GlfwWindow {
     bool shows_crosshair_ = false;
     GlApi gl_;
     std::vector<WindowEvent> events_;
+    std::vector<std::string> dropped_;
     PixelPoint mouse_;  // of the last event: the mouse itself may be elsewhere by the time it is handled
 };
 
