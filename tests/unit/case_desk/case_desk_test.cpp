@@ -1,4 +1,4 @@
-#include "case_window/desk/case_desk.h"
+#include "render_client/case_window/desk/case_desk.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "case_window/desk/case_desk.h"
+#include "render_client/case_window/desk/case_desk.h"
 #include "tests/unit/volume_import/dicom_bytes.h"
 
 namespace bonemill::test {

@@ -1,4 +1,4 @@
-#include "case_window/desk/scan_pane.h"
+#include "render_client/case_window/desk/scan_pane.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "case_window/desk/scan_slice.h"
+#include "render_client/case_window/desk/scan_slice.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "case_window/desk/scan_pane.h"
+#include "render_client/case_window/desk/scan_pane.h"
 #include "tests/unit/volume_import/grid_scan.h"
 
 namespace bonemill {

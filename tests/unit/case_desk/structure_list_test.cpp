@@ -1,4 +1,4 @@
-#include "case_window/desk/structure_list.h"
+#include "render_client/case_window/desk/structure_list.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The window of make-case without a window: whoever clicks from top to bottom has a case.
-#include "case_window/screen/case_screen.h"
+#include "render_client/case_window/screen/case_screen.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "case_window/screen/case_screen.h"
+#include "render_client/case_window/screen/case_screen.h"
 #include "render_client/hud/text_scale.h"
 #include "tests/support/places.h"
 #include "tests/unit/case_desk/desk_scan.h"

@@ -1,4 +1,4 @@
-#include "case_window/desk/coarse_bone.h"
+#include "render_client/case_window/desk/coarse_bone.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "case_window/desk/worker.h"
+#include "render_client/case_window/desk/worker.h"
 
 #include <chrono>
 #include <utility>

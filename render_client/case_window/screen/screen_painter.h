@@ -5,9 +5,9 @@
 
 #include <array>
 
-#include "case_window/desk/scan_slice.h"
-#include "case_window/screen/bone_painter.h"
-#include "case_window/screen/case_screen.h"
+#include "render_client/case_window/desk/scan_slice.h"
+#include "render_client/case_window/screen/bone_painter.h"
+#include "render_client/case_window/screen/case_screen.h"
 #include "render_client/imgui/imgui_painter.h"
 
 namespace bonemill {

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "case_window/desk/case_desk.h"
-#include "case_window/screen/control_places.h"
+#include "render_client/case_window/desk/case_desk.h"
+#include "render_client/case_window/screen/control_places.h"
 
 namespace bonemill {
 

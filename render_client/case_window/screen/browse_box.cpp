@@ -1,4 +1,4 @@
-#include "case_window/screen/browse_box.h"
+#include "render_client/case_window/screen/browse_box.h"
 
 #include <imgui.h>
 

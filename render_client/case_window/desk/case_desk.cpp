@@ -1,14 +1,14 @@
-#include "case_window/desk/case_desk.h"
+#include "render_client/case_window/desk/case_desk.h"
 
 #include <algorithm>
 #include <cmath>
 #include <new>
 #include <utility>
 
-#include "case_window/desk/coarse_bone.h"
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/volume/import/import_volume.h"
+#include "render_client/case_window/desk/coarse_bone.h"
 
 namespace bonemill {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <optional>
 
-#include "case_window/desk/case_desk.h"
 #include "render_client/camera/orbit_camera.h"
+#include "render_client/case_window/desk/case_desk.h"
 #include "render_client/model/node_store.h"
 #include "render_client/model/tool_mesh.h"
 

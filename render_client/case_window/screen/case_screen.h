@@ -10,10 +10,10 @@
 #include <optional>
 #include <string>
 
-#include "case_window/desk/case_desk.h"
-#include "case_window/screen/browse_box.h"
-#include "case_window/screen/control_places.h"
 #include "render_client/camera/orbit_camera.h"
+#include "render_client/case_window/desk/case_desk.h"
+#include "render_client/case_window/screen/browse_box.h"
+#include "render_client/case_window/screen/control_places.h"
 #include "render_client/imgui/imgui_stage.h"
 
 struct ImVec2;

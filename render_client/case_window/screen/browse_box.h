@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "case_window/desk/folder_view.h"
-#include "case_window/screen/control_places.h"
+#include "render_client/case_window/desk/folder_view.h"
+#include "render_client/case_window/screen/control_places.h"
 
 namespace bonemill {
 

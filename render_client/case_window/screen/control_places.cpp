@@ -1,4 +1,4 @@
-#include "case_window/screen/control_places.h"
+#include "render_client/case_window/screen/control_places.h"
 
 #include <imgui.h>
 

@@ -1,4 +1,4 @@
-#include "case_window/screen/case_screen.h"
+#include "render_client/case_window/screen/case_screen.h"
 
 #include <imgui.h>
 

@@ -12,14 +12,14 @@
 #include <string>
 #include <vector>
 
-#include "case_window/desk/scan_pane.h"
-#include "case_window/desk/structure_list.h"
-#include "case_window/desk/worker.h"
 #include "common/geometry/node_mesh.h"
 #include "haptic_server/casework/case_plan.h"
 #include "haptic_server/volume/import/series_rows.h"
 #include "haptic_server/volume/import/value_histogram.h"
 #include "render_client/camera/view_settings.h"
+#include "render_client/case_window/desk/scan_pane.h"
+#include "render_client/case_window/desk/structure_list.h"
+#include "render_client/case_window/desk/worker.h"
 
 namespace bonemill {
 

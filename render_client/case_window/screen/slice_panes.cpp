@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
-#include "case_window/screen/case_screen.h"
 #include "common/units.h"
 #include "haptic_server/volume/import/printed_text.h"
+#include "render_client/case_window/screen/case_screen.h"
 #include "render_client/model/mesh_difference.h"
 
 namespace bonemill {

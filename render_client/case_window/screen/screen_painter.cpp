@@ -1,4 +1,4 @@
-#include "case_window/screen/screen_painter.h"
+#include "render_client/case_window/screen/screen_painter.h"
 
 #include <imgui.h>
 

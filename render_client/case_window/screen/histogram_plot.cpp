@@ -1,4 +1,4 @@
-#include "case_window/screen/histogram_plot.h"
+#include "render_client/case_window/screen/histogram_plot.h"
 
 #include <imgui.h>
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstring>
 
-#include "case_window/screen/case_screen.h"
-#include "case_window/screen/histogram_plot.h"
 #include "common/units.h"
 #include "haptic_server/volume/import/printed_text.h"
+#include "render_client/case_window/screen/case_screen.h"
+#include "render_client/case_window/screen/histogram_plot.h"
 
 namespace bonemill {
 namespace {

@@ -1,4 +1,4 @@
-#include "case_window/screen/bone_painter.h"
+#include "render_client/case_window/screen/bone_painter.h"
 
 #include <algorithm>
 

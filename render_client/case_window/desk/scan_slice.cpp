@@ -1,4 +1,4 @@
-#include "case_window/desk/scan_slice.h"
+#include "render_client/case_window/desk/scan_slice.h"
 
 #include <algorithm>
 #include <cmath>

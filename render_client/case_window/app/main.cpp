@@ -7,12 +7,12 @@
 #include <thread>
 #include <utility>
 
-#include "case_window/screen/screen_painter.h"
 #include "common/cli/command_line.h"
 #include "common/cli/version.h"
 #include "common/run_program.h"
 #include "haptic_server/casework/case_options.h"
 #include "haptic_server/volume/import/import_program.h"
+#include "render_client/case_window/screen/screen_painter.h"
 #include "render_client/hud/text_scale.h"
 #include "render_client/window/glfw_window.h"
 

@@ -1,4 +1,4 @@
-#include "case_window/desk/folder_view.h"
+#include "render_client/case_window/desk/folder_view.h"
 
 #include <algorithm>
 #include <array>

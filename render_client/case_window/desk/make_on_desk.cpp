@@ -1,9 +1,9 @@
 // The last step of the desk: the case is made.
 #include <sstream>
 
-#include "case_window/desk/case_desk.h"
 #include "haptic_server/casework/case_options.h"
 #include "haptic_server/casework/make_case.h"
+#include "render_client/case_window/desk/case_desk.h"
 
 namespace bonemill {
 
