@@ -14,6 +14,7 @@
 #include "haptic_server/volume/import/protected_distance.h"
 #include "haptic_server/volume/import/resample_labels.h"
 #include "haptic_server/volume/import/segment_text.h"
+#include "haptic_server/volume/import/volume_text.h"
 
 namespace bonemill {
 namespace {
@@ -82,9 +83,9 @@ double protectedReachOf(const scene::Scene& scene) {
 std::string textOf(const ResampledLabels& labels, const VolumeGeometry& file, const std::string& label_path) {
     std::ostringstream text;
     text.precision(3);
-    text << label_path << ": labels of " << file.dims.transpose() << " voxels of "
-         << (file.spacing * kPerMillimetre).transpose() << " mm, resampled; they cover "
-         << 100 * labels.covered << " % of the volume";
+    text << label_path << ": labels of " << edgesText(file.dims.cast<double>()) << " voxels of "
+         << edgesText(file.spacing * kPerMillimetre) << " mm, resampled; they cover " << 100 * labels.covered
+         << " % of the volume";
     return text.str();
 }
 

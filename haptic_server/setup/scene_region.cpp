@@ -18,6 +18,7 @@
 #include "haptic_server/volume/import/far_air.h"
 #include "haptic_server/volume/import/region.h"
 #include "haptic_server/volume/import/thin_walls.h"
+#include "haptic_server/volume/import/volume_text.h"
 
 namespace bonemill {
 namespace {
@@ -127,9 +128,9 @@ RawVolume resampled(const LoadedScene& loaded, const RawVolume& scan, std::vecto
     const double deblur_mm = loaded.scene.volume().region().deblur_mm();
     const std::string deblurred = deblur_mm > 0 ? ", a blur of " + rounded(deblur_mm) + " mm taken back" : "";
     std::ostringstream text;
-    text << "region of " << region.dims.transpose() << " voxels of " << rounded(voxel.edge * kPerMillimetre)
-         << " mm (" << voxel.why << "), resampled from voxels of "
-         << (scan.geometry.spacing * kPerMillimetre).transpose() << " mm by cubic B-spline" << deblurred
+    text << "region of " << edgesText(region.dims.cast<double>()) << " voxels of "
+         << rounded(voxel.edge * kPerMillimetre) << " mm (" << voxel.why << "), resampled from voxels of "
+         << edgesText(scan.geometry.spacing * kPerMillimetre) << " mm by cubic B-spline" << deblurred
          << "; the rest is shown, but neither felt nor milled";
     remarks.push_back(text.str());
     return resampleRegion(scan, region, bandOf(scan), deblur_mm * kMillimetre);
@@ -148,7 +149,7 @@ VoxelVolume wholeOf(const RawVolume& scan, int coarse, const DensityMapping& map
     std::ostringstream text;
     text << "the scan has " << rounded(voxelsOf(scan.geometry) / 1e6)
          << " million voxels: around the region it is shown, and searched for pieces, with voxels of "
-         << (coarse * scan.geometry.spacing * kPerMillimetre).transpose() << " mm";
+         << edgesText(coarse * scan.geometry.spacing * kPerMillimetre) << " mm";
     remarks.push_back(text.str());
     return densifyNearBone(coarser(scan, coarse), mapping);
 }

@@ -10,4 +10,8 @@ std::string volumeText(double cubic_metres) {
     return printed(cubic_mm < 100 ? "%.3g mm^3" : "%.0f mm^3", cubic_mm);
 }
 
+std::string edgesText(const Eigen::Vector3d& edges) {
+    return printed("%.4g x %.4g x %.4g", edges.x(), edges.y(), edges.z());
+}
+
 }  // namespace bonemill

@@ -108,7 +108,7 @@ TEST_F(SceneMaterials, ThatNoVoxelHasAreSaidSo) {
 TEST_F(SceneMaterials, LabelsOfAnotherGridAreResampledAndThatIsSaid) {
     const Simulation simulation = makeSimulation(sceneOf("short.nrrd", kMaterials));
     EXPECT_TRUE(std::ranges::any_of(simulation.remarks, [](const std::string& remark) {
-        return remark.find("short.nrrd: labels of 20 18 15 voxels") != std::string::npos &&
+        return remark.find("short.nrrd: labels of 20 x 18 x 15 voxels") != std::string::npos &&
                remark.find("cover 93.8 %") != std::string::npos;
     }));
     const BoneProperties& properties = *simulation.tick.effects.properties;
