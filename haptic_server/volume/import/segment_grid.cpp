@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "common/user_error.h"
 #include "haptic_server/volume/import/printed_text.h"
@@ -12,7 +14,8 @@ namespace {
 
 constexpr char kWayOut[] = "; load it in 3D Slicer and export it as .seg.nrrd";
 constexpr double kSameSliceMm = 1e-3;
-constexpr double kMostOffStep = 0.1;  // of a step: scanners round
+constexpr double kMostOffStep = 0.1;   // of a step: scanners round
+constexpr double kMostOffPlace = 0.2;  // of a step: the offs of many steps do not add up
 constexpr int kMostSegmentSlices = 8192;
 constexpr double kMostTilt = 1;  // sideways per way along the normal: 45 degrees
 constexpr double kMostAsidePixels = 16384;
@@ -56,8 +59,21 @@ std::vector<double> slicesAlong(const std::vector<Offset>& offsets) {
     return slices;
 }
 
-// How many steps each slice is from the first; nothing if that fits no step.
-std::optional<std::vector<int>> countsOf(const std::vector<double>& slices, double step) {
+struct SliceStack {
+    std::vector<int> counts;  // of steps from the first slice to each
+    double step;
+};
+
+// Whether each slice is where so many even steps lead to.
+bool isEven(const SliceStack& stack, const std::vector<double>& slices) {
+    for (size_t n = 0; n < slices.size(); ++n)
+        if (std::abs((slices[n] - slices.front()) / stack.step - stack.counts[n]) > kMostOffPlace)
+            return false;
+    return true;
+}
+
+// Nothing if the slices do not fit a step of about that length.
+std::optional<SliceStack> stackOfStep(const std::vector<double>& slices, double step) {
     std::vector<int> counts{0};
     for (size_t n = 1; n < slices.size(); ++n) {
         const double gap = (slices[n] - slices[n - 1]) / step, whole = std::max(1.0, std::round(gap));
@@ -65,13 +81,10 @@ std::optional<std::vector<int>> countsOf(const std::vector<double>& slices, doub
         counts.push_back(counts.back() + int(whole));
         if (counts.back() >= kMostSegmentSlices) return std::nullopt;
     }
-    return counts;
+    const int all = counts.back();
+    SliceStack stack{std::move(counts), all > 0 ? (slices.back() - slices.front()) / all : step};
+    return isEven(stack, slices) ? std::optional(std::move(stack)) : std::nullopt;
 }
-
-struct SliceStack {
-    std::vector<int> counts;
-    double step;
-};
 
 SliceStack sliceStackOf(const std::vector<double>& slices, const SliceSteps& steps, const std::string& file) {
     std::vector<double> choices;
@@ -83,10 +96,7 @@ SliceStack sliceStackOf(const std::vector<double>& slices, const SliceSteps& ste
     if (choices.empty())
         refuseFrames(file, "holds one slice, and does not say how far it is to the next one");
     for (const double step : choices)
-        if (auto counts = countsOf(slices, step)) {
-            const int all = counts->back();
-            return {std::move(*counts), all > 0 ? (slices.back() - slices.front()) / all : step};
-        }
+        if (auto stack = stackOfStep(slices, step)) return std::move(*stack);
     refuseFrames(file, "its slices are unevenly far apart, or more than " +
                            std::to_string(kMostSegmentSlices) +
                            " steps (smallest: " + printed("%.4g", smallest) + " mm)");
@@ -114,7 +124,8 @@ SegmentGrid segmentGridOf(const std::vector<DicomPlace>& frames, const Eigen::Ve
     SegmentGrid grid;
     Eigen::Vector2i low = Eigen::Vector2i::Zero(), high = low;
     for (const Offset& offset : offsets) {
-        const auto slice = std::ranges::lower_bound(slices, offset.along - kSameSliceMm) - slices.begin();
+        // The last one that is not behind it is what it was taken for.
+        const auto slice = std::ranges::upper_bound(slices, offset.along) - slices.begin() - 1;
         const Eigen::Vector2i aside = offset.aside.array().round().cast<int>();
         grid.places.push_back({stack.counts[size_t(slice)], aside});
         low = low.cwiseMin(aside);

@@ -219,6 +219,34 @@ TEST_F(DicomSeg, ofOneSliceIsAsThickAsItSays) {
     EXPECT_NEAR(imported(file).geometry.spacing.z(), 1.5e-3, 1e-9);
 }
 
+// A micrometre is no step, whichever of the frames comes first.
+TEST_F(DicomSeg, ofNearlyTheSamePlaceIsOneSlice) {
+    DicomSegmentation file{.spacing_between = "2", .segments = {{1, "a"}, {2, "b"}, {3, "c"}}, .frames = {}};
+    const std::vector<uint8_t> all(12, 1), left = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+    const std::vector<uint8_t> right = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    file.frames.push_back({2, "0\\0\\0", left});
+    file.frames.push_back({1, "0\\0\\-1e-19", all});
+    file.frames.push_back({3, "0\\0\\0.001", right});
+    for (const char* const below : {"-2", "-4", "-6", "-8", "-10", "-12", "-14"})
+        file.frames.push_back({1, std::string("0\\0\\") + below, all});
+    const RawVolume raw = imported(file);
+    ASSERT_EQ(raw.geometry.dims, Eigen::Vector3i(4, 3, 8));
+    forEachIndex({Eigen::Vector3i::Zero(), {3, 2, 7}}, [&](const Eigen::Vector3i& v) {
+        EXPECT_TRUE(isOf(raw, v, "a")) << v.transpose();
+        EXPECT_EQ(isOf(raw, v, "b"), v.z() == 7 && v.x() == 0) << v.transpose();
+        EXPECT_EQ(isOf(raw, v, "c"), v.z() == 7 && v.x() == 3) << v.transpose();
+    });
+}
+
+// Each gap is a step or nearly so, and slices in the middle would lie three steps from where they are.
+TEST_F(DicomSeg, whoseStepChangesIsRefused) {
+    DicomSegmentation file{.spacing_between = "2", .segments = {{1, "a"}}, .frames = {}};
+    double z = 0;
+    for (int slice = 0; slice < 60; ++slice, z += slice < 30 ? 2.19 : 1.81)
+        file.frames.push_back({1, decimals({0, 0, z}), std::vector<uint8_t>(12, 1)});
+    expectRefused(file, {"a.dcm", "unevenly far apart"});
+}
+
 TEST_F(DicomSeg, hasNamesInUtf8) {
     DicomSegmentation file = plainFile();
     file.segments[0].label =
