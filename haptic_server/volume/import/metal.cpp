@@ -20,13 +20,18 @@ constexpr double kMostAroundHu = 2200;  // mean of what a small piece touches: e
 constexpr double kLeastClipped = 0.05;  // of the metal's voxels have the highest value
 constexpr size_t kMostNamed = 3;
 
-// The voxels at or above a value, in the order of their indices.
+bool areTooMany(size_t metal, size_t all) {
+    return double(metal) > kMostShare * double(all);
+}
+
+// The voxels at or above a value, in the order of their indices; no further than until they are too many.
 template <class Samples>
 std::vector<size_t> voxelsFrom(Samples samples, size_t row, double value, double high) {
     using Sample = typename Samples::value_type;
     const auto low = Sample(value), most = Sample(high);
     std::vector<size_t> found;
-    for (size_t first = 0; first < samples.size(); first += row) {
+    for (size_t first = 0; first < samples.size() && !areTooMany(found.size(), samples.size());
+         first += row) {
         const auto of_row = samples.subspan(first, std::min(row, samples.size() - first));
         size_t count = 0;
         for (const Sample v : of_row) count += v >= low && v <= most;
@@ -183,7 +188,7 @@ Metal findMetal(const RawVolume& scan) {
     const std::vector<size_t> voxels = scan.values.visit([&](auto samples) {
         return voxelsFrom(samples, size_t(scan.geometry.dims.x()), *water + kMetalHu, high);
     });
-    if (double(voxels.size()) > kMostShare * double(scan.values.size())) return {};
+    if (areTooMany(voxels.size(), scan.values.size())) return {};
     Metal metal{.pieces = piecesOf(scan, voxels, *water),
                 .water = *water,
                 .highest = high - *water,

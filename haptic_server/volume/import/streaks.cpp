@@ -15,6 +15,7 @@ constexpr double kStep = 3e-3, kGrid = 1e-3;       // m: between the two of a pa
 constexpr double kRing = 5e-3, kFarthest = 60e-3;  // m
 constexpr int kRings = int(kFarthest / kRing);
 constexpr int kMostSlices = 16, kMostBeside = 4;
+constexpr size_t kMostBoxes = 64;                   // more take minutes
 constexpr int kLeastApart = 2;                      // slices: what is nearer may show some of the metal
 constexpr double kLeastPairs = 100;                 // in a ring
 constexpr double kWorse = 1.5, kLeastIndexHu = 30;  // than slices without metal: anatomy differs by less
@@ -93,7 +94,7 @@ struct Slices {
     }
 };
 
-// The slices that are joined to those of the first box by others, and the boxes in there.
+// The slices that are joined to those of the first box by others, and the largest boxes in there.
 struct Group {
     int first, last;
     Boxes boxes;
@@ -109,7 +110,8 @@ struct Group {
             }
         }
         for (const IndexBox& box : metal)
-            if (box.min.z() >= first && box.max.z() <= last) boxes.push_back(box);
+            if (boxes.size() < kMostBoxes && box.min.z() >= first && box.max.z() <= last)
+                boxes.push_back(box);
     }
 };
 

@@ -24,8 +24,8 @@ struct Streaks {
 };
 
 // `metal` are boxes of its pieces, the largest first; the slices of that one are looked at, with those that
-// join them. `water` is the value of 0 HU. Nothing comes where there is too little soft tissue around the
-// metal, or no slice without it.
+// join them, and distances are from the largest 64 in there. `water` is the value of 0 HU. Nothing comes
+// where there is too little soft tissue around the metal, or no slice without it.
 std::optional<Streaks> measureStreaks(const RawVolume& scan, double water, std::span<const IndexBox> metal);
 
 }  // namespace bonemill

@@ -216,6 +216,24 @@ TEST(Metal, IsNotLookedForOnUnknownScales) {
         << "half of it";
 }
 
+// Shot, or a fault of the scan's: it is looked at as far as the largest pieces go.
+TEST(Metal, MayBeInVeryManyPieces) {
+    const VolumeGeometry grid = gridOf({240, 240, 20});
+    std::vector<float> values(grid.voxelCount(), 40);
+    size_t count = 0;
+    for (int k = 4; k < 16; k += 3)
+        for (int j = 1; j < 239; j += 3)
+            for (int i = 1; i < 239; i += 3, ++count)
+                for (const int z : {k, k + 1}) values[indexOf(grid, {i, j, z})] = 3071;
+    values[0] = -1000;
+    RawVolume scan;
+    scan.geometry = grid;
+    scan.values.append(std::span<const float>(values));
+    const Metal metal = findMetal(scan);
+    EXPECT_EQ(metal.pieces.size(), count);
+    EXPECT_TRUE(metal.streaks);
+}
+
 // Fillings on both sides: told apart, the larger one first, with the slices of that one.
 TEST(Metal, MayBeInPieces) {
     const auto in = [](const Eigen::Vector3d& p, double x, double z, double r) {
