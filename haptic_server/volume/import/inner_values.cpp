@@ -27,11 +27,18 @@ std::vector<T> largestAlong(const std::vector<T>& values, size_t stride, size_t 
     return largest;
 }
 
+// Nothing lies between the surface and the voxels of a region that is no finer than the scan.
+Eigen::Array3i reachOf(const Eigen::Vector3d& scan_spacing, const Eigen::Vector3d& spacing) {
+    constexpr double kFiner = 1 + 1e-6;
+    const Eigen::Array3d ratio = scan_spacing.array() / spacing.array();
+    return (ratio > kFiner).select((ratio / 2).round(), 0.0).cast<int>();
+}
+
 }  // namespace
 
 RawValues innerValues(const RawVolume& region, double iso_value, const Eigen::Vector3d& scan_spacing) {
     const VolumeGeometry& grid = region.geometry;
-    const Eigen::Array3i reach = (scan_spacing.array() / (2 * grid.spacing.array())).round().cast<int>();
+    const Eigen::Array3i reach = reachOf(scan_spacing, grid.spacing);
     return region.values.visit([&]<class T>(std::span<const T> samples) {
         std::vector<T> largest(samples.begin(), samples.end());
         size_t stride = 1;

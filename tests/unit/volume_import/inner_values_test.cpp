@@ -64,13 +64,15 @@ TEST(InnerValues, TakeNothingFromWhatIsNoNumber) {
     EXPECT_TRUE(std::isnan(at(inner, dims, {4, 0, 0})));
 }
 
-TEST(InnerValues, OfVoxelsAsCoarseAsTheScanAreTheirOwn) {
+TEST(InnerValues, OfVoxelsNoFinerThanTheScansAreTheirOwn) {
     const Eigen::Vector3i dims(9, 9, 9);
     const auto value = [](const Eigen::Vector3i& v) {
         return float((v.x() * 37 + v.y() * 11 + v.z() * 5) % 900);
     };
     const RawVolume region = regionOf(value, dims);
-    EXPECT_TRUE(innerValues(region, kBoneValue, Eigen::Vector3d::Constant(0.2e-3)) == region.values);
+    for (const double scan : {0.2e-3, 0.25e-3})
+        EXPECT_TRUE(innerValues(region, kBoneValue, Eigen::Vector3d::Constant(scan)) == region.values)
+            << scan;
 }
 
 }  // namespace
