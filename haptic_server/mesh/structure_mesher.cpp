@@ -13,8 +13,10 @@ namespace bonemill {
 namespace {
 
 constexpr int64_t kMostSamples = int64_t(1)
-                                 << 25;  // of a structure's box; a larger one is looked at coarsely
-constexpr float kMostMoved = 0.5f;       // voxels of the labels per axis, by smoothing
+                                 << 25;   // of a structure's box; a larger one is looked at coarsely
+constexpr float kMostMoved = 0.5f;        // voxels of the labels per axis, by smoothing
+constexpr float kAround = 1.5f;           // voxels of the labels, that count for how full it is
+constexpr float kMostOfFullness = 1.25f;  // the same, where the structure is thin
 constexpr float kNearestToSample = 0.1f;
 constexpr double kSamplesPerLabel = 2;  // per axis, of labels on coarser voxels: structures of one voxel stay
 constexpr float kSimplified = 0.06f;    // voxels that the surface may move by fewer triangles
@@ -25,6 +27,7 @@ constexpr float kShrink = 0.5f, kGrow = -0.508f;
 
 struct Surface {
     std::vector<Eigen::Vector3f> positions;  // V, m
+    std::vector<float> fullness;             // share of the box around each that is inside: flat 0.5
     std::vector<uint32_t> indices;
 };
 
@@ -46,11 +49,13 @@ std::array<IndexBox, kMostMaterials + 1> boxesOf(const BoneProperties& propertie
 class StructureSurface {
   public:
     StructureSurface(const BoneProperties& properties, MaterialId material, const IndexBox& box,
-                     const Eigen::Vector3d& spacing, int least_stride)
+                     const Eigen::Vector3d& spacing, int least_stride, float label_edge)
         : stride_(strideOf(box, least_stride)),
           first_(box.min.array() - stride_),
           size_((box.max - box.min) / stride_ + Eigen::Vector3i::Constant(4)),
           step_((spacing * stride_).cast<float>()),
+          grain_(step_.cwiseMax(label_edge)),
+          around_((kAround * grain_.array() / step_.array()).cast<int>()),
           share_(size_t(size_.cast<int64_t>().prod())) {
         size_t at = 0;
         forEachIndex({Eigen::Vector3i::Zero(), size_.array() - 1}, [&](const Eigen::Vector3i& sample) {
@@ -63,6 +68,7 @@ class StructureSurface {
     }
 
     const Eigen::Vector3f& step() const { return step_; }
+    const Eigen::Vector3f& grain() const { return grain_; }  // the labels' voxels
 
     Surface make() {
         forEachIndex({Eigen::Vector3i::Zero(), size_.array() - 2}, [&](const Eigen::Vector3i& cell) {
@@ -105,13 +111,27 @@ class StructureSurface {
                                                .matrix()
                                                .cwiseProduct(step_ / float(stride_));
             surface_.positions.push_back(origin + sample.cwiseProduct(step_));
+            surface_.fullness.push_back(
+                fullnessAt(cell + Eigen::Vector3i(c & 1, c >> 1 & 1, c >> 2 & 1), edge.axis));
         }
         return found->second;
     }
 
+    // Of the edge that begins at this sample. On voxels of their own labels move as on a flat side.
+    float fullnessAt(const Eigen::Vector3i& sample, int axis) const {
+        if (around_.maxCoeff() <= 1) return 0.5f;
+        IndexBox box{sample - around_, sample + around_};
+        box.min[axis] += 1;
+        int count = 0;
+        forEachIndex(box.clamped(Eigen::Vector3i::Zero(), size_.array() - 1),
+                     [&](const Eigen::Vector3i& at) { count += isInside(indexOf(at)); });
+        return float(count) / float(box.count());
+    }
+
     int stride_;
     Eigen::Vector3i first_, size_;
-    Eigen::Vector3f step_;
+    Eigen::Vector3f step_, grain_;
+    Eigen::Vector3i around_;
     std::vector<float> share_;  // of each sample's voxels that are of the material
     std::unordered_map<size_t, uint32_t> vertex_of_edge_;
     Surface surface_;
@@ -132,12 +152,12 @@ struct Neighbours {
     }
 };
 
-// The labels' voxels are `grain`, and the triangles as long as `step`.
+// The labels' voxels are `grain`, and the triangles as long as `step`. Thin parts move less: what is as thin
+// as a label would become a line.
 void smooth(Surface& surface, const Eigen::Vector3f& step, const Eigen::Vector3f& grain) {
     const Neighbours around(surface);
     const std::vector<Eigen::Vector3f> start = surface.positions;
     std::vector<Eigen::Vector3f> moved(start.size());
-    const Eigen::Array3f most = kMostMoved * grain.array();
     const float finer = (grain.array() / step.array()).maxCoeff();
     const int passes = int(std::lround(kPasses * finer * finer));  // what spreads takes so long
     for (int pass = 0; pass < 2 * passes; ++pass) {
@@ -149,6 +169,8 @@ void smooth(Surface& surface, const Eigen::Vector3f& step, const Eigen::Vector3f
             const Eigen::Vector3f& p = surface.positions[v];
             const Eigen::Vector3f middle = sum / float(around.first[v + 1] - around.first[v]);
             const Eigen::Array3f away = (p + factor * (middle - p) - start[v]).array();
+            const Eigen::Array3f most =
+                std::min(kMostMoved, kMostOfFullness * surface.fullness[v]) * grain.array();
             moved[v] = start[v] + away.max(-most).min(most).matrix();
         }
         surface.positions.swap(moved);
@@ -212,10 +234,10 @@ std::vector<NodeMesh> meshStructures(const BoneProperties& properties, const Mat
     std::vector<NodeMesh> meshes;
     for (size_t id = 1; id < materials.size(); ++id) {
         if (!materials[id].is_protected || boxes[id].isEmpty()) continue;
-        StructureSurface samples(properties, MaterialId(id), boxes[id], spacing, stride);
+        StructureSurface samples(properties, MaterialId(id), boxes[id], spacing, stride, float(label_edge));
         Surface surface = samples.make();
         if (surface.indices.empty()) continue;
-        smooth(surface, samples.step(), samples.step().cwiseMax(float(label_edge)));
+        smooth(surface, samples.step(), samples.grain());
         const std::vector<Eigen::Vector3f> normals = normalsOf(surface);
         simplify(surface, kSimplified * samples.step().minCoeff());
         meshes.push_back(packed(MaterialId(id), surface, normals));

@@ -4,9 +4,9 @@
 // Marching cubes over "is the voxel of this material" gives a surface of stairs half-way between voxels.
 // Taubin's filter (1995) smooths it without shrinking it, and no vertex leaves the cell that it came from:
 // the surface stays within half a voxel per axis of where the labels put it. Of labels that
-// were drawn on coarser voxels it is their voxels that count: finer ones would show their stairs. Then
-// triangles are taken away while that moves the surface by less than a part of a voxel, and in any case down
-// to kMostStructureTriangles.
+// were drawn on coarser voxels it is their voxels that count: finer ones would show their stairs; what is
+// thin moves less, or it would become a line. Then triangles are taken away while that moves the surface by
+// less than a part of a voxel, and in any case down to kMostStructureTriangles.
 //
 // It is not RT-safe (it allocates), but thread-safe.
 #pragma once

@@ -147,5 +147,28 @@ TEST(StructureMesher, LabelsOfCoarseVoxelsHaveNoStairsOnFineOnes) {
     EXPECT_LT(here.worst_angle, 0.4 * stairs.worst_angle);
 }
 
+double volumeOf(const NodeMesh& mesh) {
+    double volume = 0;
+    for (size_t t = 0; t < mesh.indices.size(); t += 3) {
+        const auto corner = [&](size_t n) { return placeOf(mesh, mesh.vertices[mesh.indices[t + n]]); };
+        volume += corner(0).dot(corner(1).cross(corner(2))) / 6;
+    }
+    return volume;
+}
+
+// Smoothing would shrink it to a line.
+TEST(StructureMesher, ANerveOfOneLabelsThicknessIsStillThere) {
+    const Vector3d fine = Vector3d::Constant(0.25e-3);
+    VoxelVolume volume(test::boxGeometry(Eigen::Vector3i(64, 24, 24), fine), 1000);
+    const BoneProperties properties(volume, [&](const Eigen::Vector3i& v) {
+        const bool is_nerve = (v.array() >= 8).all() && v.x() < 56 && v.y() < 12 && v.z() < 12;
+        return is_nerve ? kStructure : MaterialId(1);
+    });
+    const auto meshes = meshStructures(properties, oneProtected(), fine, 1e-3);
+    ASSERT_EQ(meshes.size(), 1u);
+    EXPECT_GT(volumeOf(meshes[0]), 0.5 * 12e-9);
+    EXPECT_LT(volumeOf(meshes[0]), 12e-9);
+}
+
 }  // namespace
 }  // namespace bonemill
