@@ -15,6 +15,7 @@
 #include "common/user_error.h"
 #include "haptic_server/casework/case_figures.h"
 #include "haptic_server/casework/case_scene.h"
+#include "haptic_server/setup/scene_region.h"
 #include "haptic_server/setup/scene_setup.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/nrrd_stream.h"
@@ -115,6 +116,32 @@ void checkLabels(const CaseRequest& request, const std::vector<CaseLabel>& label
             "segments");
 }
 
+bool isUtf8(const std::string& text) {
+    try {
+        return !nlohmann::json(text).dump().empty();
+    } catch (const nlohmann::json::type_error&) {
+        return false;
+    }
+}
+
+// Before anything is read: what is typed goes into texts that are UTF-8, and the folder's name into one of a
+// picture beside the others.
+void requireTexts(const CaseRequest& request) {
+    std::vector<std::pair<std::string, std::string>> texts = {{"--title", request.title},
+                                                              {"--task", request.task},
+                                                              {"--credit", request.credit},
+                                                              {"--out", request.out}};
+    for (const std::string& word : request.label_words) texts.emplace_back("--label", word);
+    for (const auto& [option, text] : texts)
+        if (!isUtf8(text))
+            throw UserError(option + ": the text is not UTF-8; type it in a terminal that writes it");
+    const std::string name = fs::path(request.out).lexically_normal().filename().string();
+    for (const char* const picture : {"preview", "pieces", "histogram"})
+        if (name == picture)
+            throw UserError("--out " + request.out +
+                            ": a case of this name would have two pictures of one name");
+}
+
 ImportOptions optionsOf(const CaseRequest& request) {
     ImportOptions options{request.series, request.acquisition};
     if (const auto& mm = request.spacing_mm; !mm.empty())
@@ -125,6 +152,7 @@ ImportOptions optionsOf(const CaseRequest& request) {
 }  // namespace
 
 void makeCase(const CaseRequest& request, const std::string& version, std::ostream& out) {
+    requireTexts(request);
     std::vector<CaseLabel> labels = labelsOf(request.label_words);
     checkLabels(request, labels);
     const std::vector<scene::Tool> tools = toolsOfFile(request.tools);
@@ -133,6 +161,12 @@ void makeCase(const CaseRequest& request, const std::string& version, std::ostre
     out << scan.description << '\n';
     const CasePlan plan = planCase(scan, request);
     for (const std::string& remark : plan.remarks) out << remark << '\n';
+    if (plan.region && !request.drop_pieces.empty() && hasCoarsePieces(scan.geometry))
+        throw UserError(
+            "--drop-piece: a scan this large has its pieces counted on coarser voxels when only a part of it "
+            "is "
+            "milled; leave it away, and write drop_piece with the numbers of --describe-scene into the "
+            "scene");
     if (!request.figures.empty()) writeFigures(request.figures, scan, plan);
     writeVolume(folder / kScanOfCase, scan);
     if (!request.labels.empty()) {

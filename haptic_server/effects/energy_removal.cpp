@@ -143,6 +143,8 @@ double EnergyRemoval::spendContacts(const EffectTick& tick, const BoneModel& bon
     if (config_.threshold_pressure > 0) weighRegions(tick);
     if (turns_ > 1 && turn_ == 0) shareLeaves(tick);
     double energy = 0;
+    LeafId leaf = ~LeafId(0);  // of the contact before
+    bool is_its_turn = true;
     for (size_t n = 0; n < tick.contacts.size(); ++n) {
         if (!tick.is_on_burr[n]) continue;
         const SurfaceContact& contact = tick.contacts[n];
@@ -153,7 +155,9 @@ double EnergyRemoval::spendContacts(const EffectTick& tick, const BoneModel& bon
         const double of_contact = burr.friction * speed * above * tick.dt;
         energy += of_contact;
         const PatchId patch = tick.candidates->patch[contact.candidate];
-        if (turns_ > 1 && leaf_turns_.turnOf(patch.leaf, turns_) != turn_) continue;
+        if (turns_ > 1 && patch.leaf != leaf) is_its_turn = leaf_turns_.turnOf(patch.leaf, turns_) == turn_;
+        leaf = patch.leaf;
+        if (!is_its_turn) continue;
         shift_.add(bone, patch, of_contact * double(turns_), double(contact.depth));
     }
     removal_power_ = energy / tick.dt;

@@ -18,6 +18,8 @@ constexpr float kMostMoved = 0.5f;        // voxels of the labels per axis, by s
 constexpr float kAround = 1.5f;           // voxels of the labels, that count for how full it is
 constexpr float kMostOfFullness = 1.25f;  // the same, where the structure is thin
 constexpr float kNearestToSample = 0.1f;
+constexpr int kMostStride = 16;         // voxels
+constexpr float kMostFiner = 3;         // labels in steps: what spreads farther takes too long
 constexpr double kSamplesPerLabel = 2;  // per axis, of labels on coarser voxels: structures of one voxel stay
 constexpr float kSimplified = 0.06f;    // voxels that the surface may move by fewer triangles
 // A pass shrinks by the first factor and grows by the second: what bends slower than 1/kShrink + 1/kGrow
@@ -158,7 +160,7 @@ void smooth(Surface& surface, const Eigen::Vector3f& step, const Eigen::Vector3f
     const Neighbours around(surface);
     const std::vector<Eigen::Vector3f> start = surface.positions;
     std::vector<Eigen::Vector3f> moved(start.size());
-    const float finer = (grain.array() / step.array()).maxCoeff();
+    const float finer = std::min(kMostFiner, (grain.array() / step.array()).maxCoeff());
     const int passes = int(std::lround(kPasses * finer * finer));  // what spreads takes so long
     for (int pass = 0; pass < 2 * passes; ++pass) {
         const float factor = pass % 2 == 0 ? kShrink : kGrow;
@@ -229,6 +231,8 @@ NodeMesh packed(MaterialId material, const Surface& surface, const std::vector<E
 
 std::vector<NodeMesh> meshStructures(const BoneProperties& properties, const MaterialTable& materials,
                                      const Eigen::Vector3d& spacing, double label_edge) {
+    // Labels that are much coarser are looked at as if they were not.
+    label_edge = std::min(label_edge, kSamplesPerLabel * kMostStride * spacing.maxCoeff());
     const int stride = std::max(1, int(std::lround(label_edge / (kSamplesPerLabel * spacing.maxCoeff()))));
     const auto boxes = boxesOf(properties);
     std::vector<NodeMesh> meshes;

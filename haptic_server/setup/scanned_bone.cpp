@@ -84,18 +84,22 @@ ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
     CutScan cut = cutRegion(loaded, std::move(scan.raw), scan.mapping, scan.remarks);
     remarkMetal(loaded, scan.metal, whole, cut.surroundings.volume, scan.used, scan.remarks, scan.warnings);
     const bool lacks_axes = cut.region.lacks_patient_axes;
-    RawVolume inner{.geometry = cut.region.geometry, .values = {}, .description = {}};
-    if (wantsProperties(loaded.scene))
-        inner.values = innerValues(cut.region, scan.mapping.iso_value, whole.spacing);
-    ScannedMaterials materials = scannedMaterialsOf(loaded, inner, scan.remarks);
-    const auto is_kept = keptTissueOf(loaded, materials.ids, inner.geometry);
+    const double iso = scan.mapping.iso_value;
+    RawVolume at_surface{.geometry = cut.region.geometry, .values = {}, .description = {}};
+    RawValues inner;
+    if (wantsProperties(loaded.scene)) {
+        inner = innerValues(cut.region, iso, whole.spacing);
+        at_surface.values = surfaceValues(cut.region, inner, iso, whole.spacing);
+    }
+    ScannedMaterials materials = scannedMaterialsOf(loaded, at_surface, scan.remarks);
+    const auto is_kept = keptTissueOf(loaded, materials.ids, at_surface.geometry);
     VoxelVolume volume = densifyNearBone(std::move(cut.region), scan.mapping, is_kept);
     removeSpecks(volume, whole);
     clearFarFromBone(volume, is_kept);
     return {std::move(volume),
             scan.mapping,
             std::move(materials),
-            std::move(inner.values),
+            std::move(inner),
             std::make_shared<const Surroundings>(std::move(cut.surroundings)),
             lacks_axes,
             std::move(scan.remarks),

@@ -60,10 +60,10 @@ bool choosesPieces(const scene::Scene& scene) {
 }
 
 void dropPieces(const LoadedScene& loaded, VoxelVolume& volume, const IndexBox& region,
-                std::vector<std::string>& remarks, const PieceView& view) {
+                std::vector<std::string>& remarks, const DroppedVoxels& of_dropped) {
     if (!choosesPieces(loaded.scene)) return;
     const BonePieces pieces(volume);
-    const std::vector<bool> is_dropped = droppedOf(loaded, pieces, region, view.scan_voxels);
+    const std::vector<bool> is_dropped = droppedOf(loaded, pieces, region, of_dropped.scan_voxels);
     if (!std::ranges::count(is_dropped, false))
         refuseField(loaded, "volume",
                     pieces.list().empty() ? ": no voxel reaches the iso-value"
@@ -72,7 +72,7 @@ void dropPieces(const LoadedScene& loaded, VoxelVolume& volume, const IndexBox& 
     const std::string dropped = list(pieces, is_dropped, true, volume.geometry(), "; ", kMostRemarked);
     remarks.push_back("kept " + list(pieces, is_dropped, false, volume.geometry(), "; ", kMostRemarked) +
                       (dropped.empty() ? "" : "; dropped " + dropped));
-    pieces.drop(volume, is_dropped, view.see);
+    pieces.drop(volume, is_dropped, of_dropped.see);
 }
 
 std::string listPieces(const VoxelVolume& volume) {

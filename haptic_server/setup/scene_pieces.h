@@ -12,15 +12,16 @@ namespace bonemill {
 // Does the scene say anything of pieces?
 bool choosesPieces(const scene::Scene& scene);
 
-// By smallest_piece_voxels, keep_pieces and drop_piece; `region` is empty without a volume.region. The remark
-// lists the largest pieces that were kept and that were dropped, with number, size and place. Throws
-// UserError if none would be left, or a number is of no piece.
-struct PieceView {
+// How the pieces that go are told of.
+struct DroppedVoxels {
     BonePieces::See see = {};  // gets each voxel that goes
     int scan_voxels = 1;       // so many of the scan are one of the volume
 };
+// By smallest_piece_voxels, keep_pieces and drop_piece; `region` is empty without a volume.region. The remark
+// lists the largest pieces that were kept and that were dropped, with number, size and place. Throws
+// UserError if none would be left, or a number is of no piece.
 void dropPieces(const LoadedScene& loaded, VoxelVolume& volume, const IndexBox& region,
-                std::vector<std::string>& remarks, const PieceView& view = {});
+                std::vector<std::string>& remarks, const DroppedVoxels& of_dropped = {});
 
 // Lists the largest pieces, one line each, with the numbers that volume.drop_piece takes.
 std::string listPieces(const VoxelVolume& volume);

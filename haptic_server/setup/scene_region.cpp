@@ -204,6 +204,10 @@ CutScan cutRegion(const LoadedScene& loaded, RawVolume scan, const DensityMappin
     return {std::move(region), {std::move(whole), X_VS, {Eigen::Vector3d::Zero(), end}, bone}};
 }
 
+bool hasCoarsePieces(const VolumeGeometry& scan) {
+    return coarseFactorOf(scan) > 1;
+}
+
 void removeSpecks(VoxelVolume& region, const VolumeGeometry& scan) {
     constexpr double kSpeck = 4;  // voxels of the scan
     removeSmallPieces(region, uint32_t(kSpeck * scan.spacing.prod() / region.voxelVolume()));

@@ -28,6 +28,10 @@ struct CutScan {
 CutScan cutRegion(const LoadedScene& loaded, RawVolume scan, const DensityMapping& mapping,
                   std::vector<std::string>& remarks);
 
+// Of a scan this large the pieces are those of coarser voxels where there is a region, with numbers of their
+// own.
+bool hasCoarsePieces(const VolumeGeometry& scan);
+
 // Resampling leaves specks beside pieces that were dropped: what is smaller than a few of the scan's voxels
 // goes.
 void removeSpecks(VoxelVolume& region, const VolumeGeometry& scan);

@@ -62,7 +62,7 @@ class BoneBricks {
     BoneBricks(const VoxelVolume& volume, std::span<const T> samples, const DensityOf<T>& density,
                const std::function<bool(size_t)>& is_kept)
         : bricks_(volume.bricks()), has_bone_(bricks_.brickCount()), is_far_(bricks_.brickCount()) {
-        const Eigen::Vector3i dims = volume.dims();
+        const Eigen::Vector3i& dims = volume.dims();
         std::vector<uint8_t> is_bone(size_t(dims.x()));
         const T* row = samples.data();
         for (int k = 0; k < dims.z(); ++k)

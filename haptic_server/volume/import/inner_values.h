@@ -16,4 +16,9 @@ namespace bonemill {
 // values of the region's voxels.
 RawValues innerValues(const RawVolume& region, double iso_value, const Eigen::Vector3d& scan_spacing);
 
+// Which material a voxel is of: of bone with something else within that reach what `inner` says, of all other
+// voxels their own value, so that materials grow into each other nowhere but at the surface.
+RawValues surfaceValues(const RawVolume& region, const RawValues& inner, double iso_value,
+                        const Eigen::Vector3d& scan_spacing);
+
 }  // namespace bonemill

@@ -112,17 +112,20 @@ std::optional<double> boneAbove(const Histogram& h, double air, double tissue, d
 }
 
 // Bone denser than the scale goes piles up at its end, where it looks like a material. It is none if more of
-// it lies on the way there.
-bool isCutOff(const Histogram& h, const Mode& below, const Mode& last) {
-    if (last.bin + 1 != h.count.size()) return false;
-    const double tissue = peakValue(h, below), end = h.centre(last.bin);
+// it lies on the way there. That can only be said where air is seen, about as far below tissue: a scale that
+// is cut off at both ends says nothing.
+bool isLastCutOff(const Histogram& h, const std::vector<Mode>& modes) {
+    constexpr double kAirBelow = 0.8;  // of the way from tissue to the end
+    if (modes.size() < 3 || modes.back().bin + 1 != h.count.size()) return false;
+    const double tissue = peakValue(h, modes[modes.size() - 2]), end = h.centre(modes.back().bin);
+    if (tissue - peakValue(h, modes.front()) < kAirBelow * (end - tissue)) return false;
     const double heap = h.count.back();
     return h.sumAbove(tissue + kBoneAboveTissue * (end - tissue)) - heap > heap;
 }
 
 // Of a scan of the trunk most is soft tissue, and air is no material of its own.
 std::optional<double> boneAboveTissue(const Histogram& h, std::vector<Mode> modes) {
-    if (modes.size() > 1 && isCutOff(h, modes[modes.size() - 2], modes.back())) modes.pop_back();
+    if (isLastCutOff(h, modes)) modes.pop_back();
     const auto background = std::ranges::max_element(modes, {}, &Mode::mass);
     const auto above = std::ranges::max_element(background + 1, modes.end(), {}, &Mode::mass);
     if (above != modes.end())

@@ -77,7 +77,7 @@ topics::TriangleMesh arrowOf(const Eigen::Vector3f& tip, const Eigen::Vector3f& 
 
 }  // namespace
 
-BonePainter::BonePainter(const GlApi& gl)
+BonePreview::BonePreview(const GlApi& gl)
     : gl_(gl),
       bone_program_(gl, "bone of the case", shaders::kMeshVertex, kFragmentShader),
       mark_program_(gl, "marks of the case", shaders::kToolVertex, kFragmentShader),
@@ -90,12 +90,12 @@ BonePainter::BonePainter(const GlApi& gl)
       depth_(gl),
       texture_(gl) {}
 
-bool BonePainter::isSame(const Seen& now) const {
+bool BonePreview::isSame(const Seen& now) const {
     return seen_.surface_version == now.surface_version && seen_.clip_from_W == now.clip_from_W &&
            seen_.width == now.width && seen_.height == now.height && seen_.marks == now.marks;
 }
 
-void BonePainter::paint(const CaseDesk& desk, const OrbitCamera& orbit, int width, int height) {
+void BonePreview::paint(const CaseDesk& desk, const OrbitCamera& orbit, int width, int height) {
     if (!desk.scan() || width < 1 || height < 1) return;
     const Camera camera = orbit.view();
     const Eigen::AlignedBox3d box = desk.scanBox();
@@ -114,7 +114,7 @@ void BonePainter::paint(const CaseDesk& desk, const OrbitCamera& orbit, int widt
     draw(desk, camera, width, height);
 }
 
-void BonePainter::makeTargets(int width, int height) {
+void BonePreview::makeTargets(int width, int height) {
     GLint most = 0;
     gl_.GetIntegerv(GL_MAX_SAMPLES, &most);
     const GLint samples = std::min(most, kSamples);
@@ -135,7 +135,7 @@ void BonePainter::makeTargets(int width, int height) {
         throw GlError("the driver refuses the picture of the bone");
 }
 
-void BonePainter::makeMarks(const CaseMarks& marks) {
+void BonePreview::makeMarks(const CaseMarks& marks) {
     box_.set(marks.region_W ? edgesOf(marks.region_W->cast<float>()) : topics::TriangleMesh(),
              topics::SceneInfo::NO_HANDPIECE);
     arrow_.set(marks.start_W && marks.hand_W
@@ -144,14 +144,14 @@ void BonePainter::makeMarks(const CaseMarks& marks) {
                topics::SceneInfo::NO_HANDPIECE);
 }
 
-void BonePainter::setCamera(const Program& program, const Eigen::Matrix4f& camera_from_model,
+void BonePreview::setCamera(const Program& program, const Eigen::Matrix4f& camera_from_model,
                             const Eigen::Matrix4f& clip_from_camera) const {
     program.use();
     program.set("camera_from_model", camera_from_model);
     program.set("clip_from_camera", clip_from_camera);
 }
 
-void BonePainter::drawMarks(float opacity) const {
+void BonePreview::drawMarks(float opacity) const {
     mark_program_.set("opacity", opacity);
     mark_program_.set("tint", kBoxTint);
     if (!box_.isEmpty()) box_.draw();
@@ -159,7 +159,7 @@ void BonePainter::drawMarks(float opacity) const {
     if (!arrow_.isEmpty()) arrow_.draw();
 }
 
-void BonePainter::draw(const CaseDesk& desk, const Camera& camera, int width, int height) {
+void BonePreview::draw(const CaseDesk& desk, const Camera& camera, int width, int height) {
     const Eigen::AlignedBox3d box = desk.scanBox();
     const DepthRange range = camera.depthRange(box.center(), box.sizes().norm());
     const Eigen::Matrix4f clip = camera.clipFromCamera(double(width) / height, range);

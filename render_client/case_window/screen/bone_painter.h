@@ -12,10 +12,10 @@
 
 namespace bonemill {
 
-class BonePainter {
+class BonePreview {
   public:
     // Throws GlError.
-    explicit BonePainter(const GlApi& gl);
+    explicit BonePreview(const GlApi& gl);
 
     // Draws a picture of this size (pixels), if something of it has changed. Leaves framebuffer 0 bound.
     // Throws GlError.

@@ -31,7 +31,7 @@ class ScreenPainter {
 
     const GlApi& gl_;
     ImGuiPainter painter_;
-    BonePainter bone_;
+    BonePreview bone_;
     std::array<GlTexture, 3> textures_;
     std::array<SeenSlice, 3> seen_;
 };

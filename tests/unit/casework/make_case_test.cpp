@@ -191,6 +191,15 @@ TEST_F(MakeCase, NamesThoseWhoAskForIt) {
     EXPECT_EQ(json["credit"], request_.credit);
 }
 
+TEST_F(MakeCase, RefusesTextsThatCannotBeWrittenBeforeItReads) {
+    request_.scan = folder_ / "nothing.nrrd";
+    request_.credit = "M\xfcller";
+    expectUserError([&] { make(); }, {"--credit", "UTF-8"});
+    request_.credit.clear();
+    request_.out = folder_ / "pieces";
+    expectUserError([&] { make(); }, {"two pictures of one name"});
+}
+
 TEST_F(MakeCase, MakesNoneThatNoSessionCouldStart) {
     request_.at_mm = {12, 20, 20};  // the nerve is elsewhere
     expectUserError([&] { make(); }, {"finds nothing to protect"});

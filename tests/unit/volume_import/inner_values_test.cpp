@@ -75,5 +75,28 @@ TEST(InnerValues, OfVoxelsNoFinerThanTheScansAreTheirOwn) {
             << scan;
 }
 
+// 0.64 mm of scan are 2.56 voxels: half of them is one voxel, and not two.
+TEST(InnerValues, ReachNoFartherThanHalfAScanVoxel) {
+    const Eigen::Vector3i dims(9, 1, 1);
+    const auto ramp = [](const Eigen::Vector3i& v) { return 400.5f + 100 * float(v.x()); };
+    const RawValues inner = innerValues(regionOf(ramp, dims), kBoneValue, Eigen::Vector3d::Constant(0.64e-3));
+    for (int x = 0; x < 8; ++x) EXPECT_EQ(at(inner, dims, {x, 0, 0}), ramp({x + 1, 0, 0}));
+}
+
+// Air up to 2, a hard shell from 5 on, a soft core from 9 on; two voxels are half of a scan voxel.
+TEST(SurfaceValues, AreTheInnerOnesAtTheSurfaceAndTheirOwnBelow) {
+    const Eigen::Vector3i dims(16, 3, 3);
+    const std::vector<float> profile = {-900, -900, -100, 310,   600,   1200,  1200, 1200.5,
+                                        900,  500,  500,  500.5, 500.5, 500.5, 500,  500};
+    const auto value = [&](const Eigen::Vector3i& v) { return profile[size_t(v.x())]; };
+    const RawVolume region = regionOf(value, dims);
+    const Eigen::Vector3d scan = Eigen::Vector3d::Constant(1e-3);
+    const RawValues inner = innerValues(region, kBoneValue, scan);
+    const RawValues surface = surfaceValues(region, inner, kBoneValue, scan);
+    for (int x = 0; x < 16; ++x)
+        EXPECT_EQ(at(surface, dims, {x, 1, 1}), x == 3 || x == 4 ? 1200 : profile[size_t(x)]) << x;
+    EXPECT_EQ(at(inner, dims, {9, 1, 1}), 1200.5f) << "hardness has the densest in reach everywhere";
+}
+
 }  // namespace
 }  // namespace bonemill
