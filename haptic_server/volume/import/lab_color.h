@@ -5,8 +5,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
+
+#include "common/math/pinned_math.h"
 
 namespace bonemill {
 
@@ -30,7 +31,8 @@ inline Eigen::Vector3d colorOfLab(const std::array<uint16_t, 3>& stored) {
         1.4052427;
     return (to_linear * xyz).unaryExpr([](double linear) {
         if (!(linear > 0)) return 0.0;
-        const double shown = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+        const double shown =
+            linear <= 0.0031308 ? 12.92 * linear : 1.055 * pinned::pow(linear, 1 / 2.4) - 0.055;
         return std::min(shown, 1.0);
     });
 }

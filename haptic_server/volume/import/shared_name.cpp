@@ -21,16 +21,29 @@ char* file_being_read = nullptr;  // shared with the child
 std::atomic<bool> is_ending = false;
 thread_local char file_of_thread[kNameBytes];
 
-// A thread whose stack is used up needs another one to say what it was at.
-void provideHandlersStack() {
-    constexpr size_t kStackBytes = 64 << 10;
-    thread_local std::unique_ptr<char[]> stack;
-    if (stack) return;
-    stack.reset(new (std::nothrow) char[kStackBytes]);
-    if (!stack) return;
-    const stack_t handlers{.ss_sp = stack.get(), .ss_flags = 0, .ss_size = kStackBytes};
-    sigaltstack(&handlers, nullptr);
-}
+// A thread whose stack is used up needs another one to say what it was at. A thread that has one keeps it,
+// and nobody else takes this one away when the thread ends.
+class HandlersStack {
+  public:
+    HandlersStack() {
+        stack_t now{};
+        if (sigaltstack(nullptr, &now) != 0 || (now.ss_flags & SS_DISABLE) == 0) return;
+        memory_.reset(new (std::nothrow) char[kBytes]);
+        if (!memory_) return;
+        const stack_t handlers{.ss_sp = memory_.get(), .ss_flags = 0, .ss_size = kBytes};
+        sigaltstack(&handlers, nullptr);
+    }
+    ~HandlersStack() {
+        const stack_t none{.ss_sp = nullptr, .ss_flags = SS_DISABLE, .ss_size = 0};
+        if (memory_) sigaltstack(&none, nullptr);
+    }
+    HandlersStack(const HandlersStack&) = delete;
+    HandlersStack& operator=(const HandlersStack&) = delete;
+
+  private:
+    static constexpr size_t kBytes = 64 << 10;
+    std::unique_ptr<char[]> memory_;
+};
 
 void mapName(int file) {
     void* page = mmap(nullptr, kNameBytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
@@ -71,7 +84,7 @@ void shareNameOfFileBeingRead(int file) {
 
 void noteFileBeingRead(const std::filesystem::path& file) noexcept {
     if (!file_being_read) return;
-    provideHandlersStack();
+    static thread_local const HandlersStack stack;
     std::strncpy(file_of_thread, file.c_str(), kNameBytes - 1);
     if (!is_ending) std::memcpy(file_being_read, file_of_thread, kNameBytes);
 }

@@ -54,7 +54,7 @@ double distanceTo(const Boxes& boxes, int i, int j, const Eigen::Vector3d& spaci
     for (const IndexBox& box : boxes) {
         const double x = std::max({box.min.x() - i, i - box.max.x(), 0}) * spacing.x();
         const double y = std::max({box.min.y() - j, j - box.max.y(), 0}) * spacing.y();
-        nearest = std::min(nearest, std::hypot(x, y));
+        nearest = std::min(nearest, std::sqrt(x * x + y * y));
     }
     return nearest;
 }
