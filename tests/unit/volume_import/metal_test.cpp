@@ -40,7 +40,7 @@ struct Phantom {
     // Tissue of 40 HU in air, with a rod of bone along z, and metal.
     RawVolume scan(const VolumeGeometry& grid = gridOf()) const {
         std::mt19937 random(5);
-        std::normal_distribution<double> grain(0, noise_hu);
+        std::normal_distribution<double> grain(0, std::max(noise_hu, 1e-9));
         RawVolume scan = scanOf(grid, [&](const Eigen::Vector3d& p) {
             const double in_metal = radius > 0 ? shareIn((p - middle).norm() - radius) : 0;
             const double in_bone =
