@@ -84,7 +84,7 @@ void shareNameOfFileBeingRead(int file) {
 
 void noteFileBeingRead(const std::filesystem::path& file) noexcept {
     if (!file_being_read) return;
-    static thread_local const HandlersStack stack;
+    thread_local HandlersStack stack;
     std::strncpy(file_of_thread, file.c_str(), kNameBytes - 1);
     if (!is_ending) std::memcpy(file_being_read, file_of_thread, kNameBytes);
 }
