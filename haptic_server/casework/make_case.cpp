@@ -142,6 +142,15 @@ void requireTexts(const CaseRequest& request) {
                             ": a case of this name would have two pictures of one name");
 }
 
+void checkDroppedPieces(const CaseRequest& request, const VolumeGeometry& scan) {
+    if (!request.at_mm.empty() && !request.drop_pieces.empty() && hasCoarsePieces(scan))
+        throw UserError(
+            "--drop-piece: a scan this large has its pieces counted on coarser voxels when only a part of it "
+            "is "
+            "milled; leave it away, and write drop_piece with the numbers of --describe-scene into the "
+            "scene");
+}
+
 ImportOptions optionsOf(const CaseRequest& request) {
     ImportOptions options{request.series, request.acquisition};
     if (const auto& mm = request.spacing_mm; !mm.empty())
@@ -159,14 +168,9 @@ void makeCase(const CaseRequest& request, const std::string& version, std::ostre
     CaseFolder folder(request.out);
     const RawVolume scan = importVolume(request.scan, optionsOf(request));
     out << scan.description << '\n';
+    checkDroppedPieces(request, scan.geometry);
     const CasePlan plan = planCase(scan, request);
     for (const std::string& remark : plan.remarks) out << remark << '\n';
-    if (plan.region && !request.drop_pieces.empty() && hasCoarsePieces(scan.geometry))
-        throw UserError(
-            "--drop-piece: a scan this large has its pieces counted on coarser voxels when only a part of it "
-            "is "
-            "milled; leave it away, and write drop_piece with the numbers of --describe-scene into the "
-            "scene");
     if (!request.figures.empty()) writeFigures(request.figures, scan, plan);
     writeVolume(folder / kScanOfCase, scan);
     if (!request.labels.empty()) {

@@ -72,15 +72,16 @@ class BoneBricks {
             }
         BrickId id = 0;
         forEachIndex(bricks_.allBricks(), [&](const Eigen::Vector3i& brick) {
-            is_far_[id++] = !anyAround(brick, [&](BrickId near) { return has_bone_[near] != 0; }) &&
-                            !ownsAny(volume, brick, is_kept);
+            is_far_[id++] = !anyBrickAround(bricks_, brick, [&](BrickId near) {
+                return has_bone_[near] != 0;
+            }) && !ownsAny(volume, brick, is_kept);
         });
     }
 
     bool isFar(int x, int y, int z) const { return is_far_[bricks_.brickAt(x, y, z)] != 0; }
     // Nothing that it holds, its neighbours' voxels included, is near bone.
     bool isAir(const Eigen::Vector3i& brick) const {
-        return !anyAround(brick, [&](BrickId near) { return is_far_[near] == 0; });
+        return !anyBrickAround(bricks_, brick, [&](BrickId near) { return is_far_[near] == 0; });
     }
 
   private:
@@ -101,15 +102,6 @@ class BoneBricks {
             for (int z = zs.first; z <= zs.last; ++z)
                 for (int y = ys.first; y <= ys.last; ++y) has_bone_[bricks_.brickAt(x, y, z)] = 1;
         }
-    }
-    template <class Is>
-    bool anyAround(const Eigen::Vector3i& brick, Is&& is) const {
-        const IndexBox all = bricks_.allBricks();
-        bool is_any = false;
-        forEachIndex(
-            IndexBox{brick, brick}.grown(1).clamped(all.min, all.max),
-            [&](const Eigen::Vector3i& b) { is_any = is_any || is(bricks_.brickAt(b.x(), b.y(), b.z())); });
-        return is_any;
     }
 
     BrickStore bricks_;  // how they lie; it has no memory of its own

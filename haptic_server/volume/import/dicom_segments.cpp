@@ -36,10 +36,8 @@ const gdcm::Tag kSegmentGroup(0x0062, 0x000a), kReferencedSegment(0x0062, 0x000b
 const gdcm::Tag kMeasuresGroup(0x0028, 0x9110), kSpacingBetween(0x0018, 0x0088), kThickness(0x0018, 0x0050);
 const gdcm::Tag kSegmentPixels(0x7fe0, 0x0010);
 
-constexpr char kSlicerWay[] = "; load it in 3D Slicer and export it as .seg.nrrd";
-
 [[noreturn]] void refuseFile(const std::filesystem::path& file, const std::string& why) {
-    throw UserError(file.string() + ": " + why + kSlicerWay);
+    throw UserError(file.string() + ": " + why + kWayOverSlicer);
 }
 
 // The values of all frames, row by row.

@@ -22,14 +22,6 @@ Bricks bricksWithBone(const VoxelVolume& volume) {
     return has_bone;
 }
 
-bool isFar(const BrickStore& bricks, const Bricks& has_bone, const Eigen::Vector3i& brick) {
-    bool is_far = true;
-    const IndexBox all = bricks.allBricks();
-    forEachIndex(IndexBox{brick, brick}.grown(1).clamped(all.min, all.max),
-                 [&](const Eigen::Vector3i& b) { is_far &= !has_bone[bricks.brickAt(b.x(), b.y(), b.z())]; });
-    return is_far;
-}
-
 // Those that no other brick owns.
 IndexBox voxelsOf(const VoxelVolume& volume, const Eigen::Vector3i& brick) {
     const Eigen::Vector3i first = brick.array() * kBrickCells - 1;
@@ -66,8 +58,9 @@ bool ownsAny(const VoxelVolume& volume, const Eigen::Vector3i& brick,
 void clearFarFromBone(VoxelVolume& volume, const std::function<bool(size_t)>& is_kept) {
     const Bricks has_bone = bricksWithBone(volume);
     forEachIndex(volume.bricks().allBricks(), [&](const Eigen::Vector3i& brick) {
-        if (isFar(volume.bricks(), has_bone, brick) && !ownsAny(volume, brick, is_kept))
-            clearVoxels(volume, brick);
+        const bool is_near =
+            anyBrickAround(volume.bricks(), brick, [&](BrickId near) { return has_bone[near] != 0; });
+        if (!is_near && !ownsAny(volume, brick, is_kept)) clearVoxels(volume, brick);
     });
     volume.shareUniformBricks();
 }

@@ -9,6 +9,17 @@
 
 namespace bonemill {
 
+// Does is(brick) hold for this brick or one of its neighbours?
+template <class Is>
+bool anyBrickAround(const BrickStore& bricks, const Eigen::Vector3i& brick, Is&& is) {
+    const IndexBox all = bricks.allBricks();
+    bool is_any = false;
+    forEachIndex(IndexBox{brick, brick}.grown(1).clamped(all.min, all.max), [&](const Eigen::Vector3i& b) {
+        is_any = is_any || is(bricks.brickAt(b.x(), b.y(), b.z()));
+    });
+    return is_any;
+}
+
 // Does the brick own a voxel that is_kept(index, x fastest)? Without is_kept it does not.
 bool ownsAny(const VoxelVolume& volume, const Eigen::Vector3i& brick,
              const std::function<bool(size_t)>& is_kept);

@@ -12,7 +12,6 @@
 namespace bonemill {
 namespace {
 
-constexpr char kWayOut[] = "; load it in 3D Slicer and export it as .seg.nrrd";
 constexpr double kSameSliceMm = 1e-3;
 constexpr double kMostOffStep = 0.1;   // of a step: scanners round
 constexpr double kMostOffPlace = 0.2;  // of a step: the offs of many steps do not add up
@@ -21,7 +20,7 @@ constexpr double kMostTilt = 1;  // sideways per way along the normal: 45 degree
 constexpr double kMostAsidePixels = 16384;
 
 [[noreturn]] void refuseFrames(const std::string& file, const std::string& why) {
-    throw UserError(file + ": " + why + kWayOut);
+    throw UserError(file + ": " + why + kWayOverSlicer);
 }
 
 struct Offset {

@@ -12,6 +12,9 @@
 
 namespace bonemill {
 
+// What to do with a segmentation that is not read, behind the reason.
+inline constexpr char kWayOverSlicer[] = "; load it in 3D Slicer and export it as .seg.nrrd";
+
 // How far apart slices are, as the file says; a frame's slice may have been left out for it was empty.
 struct SliceSteps {
     std::optional<double> between;    // Spacing Between Slices (0018,0088)
