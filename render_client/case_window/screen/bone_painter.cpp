@@ -100,9 +100,8 @@ void BonePreview::paint(const CaseDesk& desk, const OrbitCamera& orbit, int widt
     const Camera camera = orbit.view();
     const Eigen::AlignedBox3d box = desk.scanBox();
     const DepthRange range = camera.depthRange(box.center(), box.sizes().norm());
-    const Seen now{desk.surfaceVersion(),
-                   camera.clipFromCamera(double(width) / height, range) * camera.X_CW(), desk.marks(), width,
-                   height};
+    const Eigen::Matrix4f X_CW = camera.X_CW(), clip = camera.clipFromCamera(double(width) / height, range);
+    const Seen now{desk.surfaceVersion(), clip * X_CW, desk.marks(), width, height};
     if (isSame(now)) return;
     if (seen_.width != width || seen_.height != height) makeTargets(width, height);
     if (seen_.surface_version != now.surface_version) {
@@ -111,7 +110,7 @@ void BonePreview::paint(const CaseDesk& desk, const OrbitCamera& orbit, int widt
     }
     makeMarks(now.marks);
     seen_ = now;
-    draw(desk, camera, width, height);
+    draw(desk, X_CW, clip, width, height);
 }
 
 void BonePreview::makeTargets(int width, int height) {
@@ -159,10 +158,8 @@ void BonePreview::drawMarks(float opacity) const {
     if (!arrow_.isEmpty()) arrow_.draw();
 }
 
-void BonePreview::draw(const CaseDesk& desk, const Camera& camera, int width, int height) {
-    const Eigen::AlignedBox3d box = desk.scanBox();
-    const DepthRange range = camera.depthRange(box.center(), box.sizes().norm());
-    const Eigen::Matrix4f clip = camera.clipFromCamera(double(width) / height, range);
+void BonePreview::draw(const CaseDesk& desk, const Eigen::Matrix4f& X_CW,
+                       const Eigen::Matrix4f& clip_from_camera, int width, int height) {
     Eigen::Affine3f X_WV = Eigen::Affine3f::Identity();
     X_WV.linear() = desk.scan()->geometry.X_WV.rotation.toRotationMatrix().cast<float>();
     X_WV.translation() = desk.scan()->geometry.X_WV.position.cast<float>();
@@ -175,12 +172,12 @@ void BonePreview::draw(const CaseDesk& desk, const Camera& camera, int width, in
     gl_.DepthMask(GL_TRUE);
     gl_.ClearColor(0.045f, 0.055f, 0.07f, 1);
     gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    const Eigen::Matrix4f camera_from_V = camera.X_CW() * X_WV.matrix();
-    setCamera(bone_program_, camera_from_V, clip);
+    const Eigen::Matrix4f camera_from_V = X_CW * X_WV.matrix();
+    setCamera(bone_program_, camera_from_V, clip_from_camera);
     bone_program_.set("tint", kBoneTint);
     bone_program_.set("opacity", 1.f);
-    bone_.draw(bone_program_, clip * camera_from_V);
-    setCamera(mark_program_, camera.X_CW(), clip);
+    bone_.draw(bone_program_, clip_from_camera * camera_from_V);
+    setCamera(mark_program_, X_CW, clip_from_camera);
     gl_.DepthFunc(GL_GREATER);  // what lies behind bone shines through
     gl_.DepthMask(GL_FALSE);
     gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);

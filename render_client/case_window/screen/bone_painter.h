@@ -32,7 +32,8 @@ class BonePreview {
     bool isSame(const Seen& now) const;
     void makeTargets(int width, int height);
     void makeMarks(const CaseMarks& marks);
-    void draw(const CaseDesk& desk, const Camera& camera, int width, int height);
+    void draw(const CaseDesk& desk, const Eigen::Matrix4f& X_CW, const Eigen::Matrix4f& clip_from_camera,
+              int width, int height);
     void drawMarks(float opacity) const;
     void setCamera(const Program& program, const Eigen::Matrix4f& camera_from_model,
                    const Eigen::Matrix4f& clip_from_camera) const;
