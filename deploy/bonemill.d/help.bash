@@ -30,7 +30,7 @@ TEXT
 
 network_options() {
     cat <<'TEXT'
-  --profile P       network: one-pc, lab, classroom, or a Cyclone DDS file (docs/network.md)
+  --profile P       network: one-pc, lab, classroom, or a Cyclone DDS file (docs/lab/network.md)
   --interface I     this PC's interface to the others
   --peer ADDRESS    a PC to look for where multicast does not work; may be repeated
   --domain D        DDS domain, 0 (default) to 230

@@ -104,7 +104,8 @@ ChosenDevice deviceOf(const std::string& word, const FollowedScene& scene, const
 
 const char* deviceChoices() {
     return "The hand: auto (the best that is there), simulated (a scripted hand on the emulated ARES), "
-           "ares:ADDRESS:PORT (a controller that speaks docs/ares_link.md), bridge:ADDRESS:PORT (a program "
+           "ares:ADDRESS:PORT (a controller that speaks docs/lab/ares_link.md), bridge:ADDRESS:PORT (a "
+           "program "
            "that speaks "
            "its pose packets), force-dimension, touch, haply, spacemouse, gamepad[:PATH], pointer (the mouse "
            "in a "

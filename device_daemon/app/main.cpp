@@ -1,4 +1,4 @@
-// device_daemon is the device side of the simulator (docs/device.md).
+// device_daemon is the device side of the simulator (docs/lab/device.md).
 #include <sys/stat.h>
 
 #include <iostream>

@@ -1,8 +1,8 @@
 // The weight of what moves with the handle, for an arm that no counterweight holds.
 //
 // The moving parts count as one rigid body on the platform; what the sliders and links weigh must be
-// balanced, or lumped into it. Frames are D and T (docs/frames.md), units kg, m, N, N·m. It is pure and
-// RT-safe.
+// balanced, or lumped into it. Frames are D and T (docs/develop/frames.md), units kg, m, N, N·m. It is pure
+// and RT-safe.
 #pragma once
 
 #include "common/geometry/pose.h"

@@ -1,4 +1,4 @@
-// This is a motion controller with the six axes of ARES behind the UDP wire (docs/ares_link.md).
+// This is a motion controller with the six axes of ARES behind the UDP wire (docs/lab/ares_link.md).
 //
 // Making one throws UserError. Everything else is RT-safe but for the socket's system calls; one thread uses
 // it.

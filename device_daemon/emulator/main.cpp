@@ -1,4 +1,5 @@
-// ares_emulator is an ARES with its motion controller and a hand on it, none of them real (docs/device.md).
+// ares_emulator is an ARES with its motion controller and a hand on it, none of them real
+// (docs/lab/device.md).
 #include <iostream>
 
 #include "common/config/scene_file.h"

@@ -1,7 +1,7 @@
 // The mouse in a viewer's window holds the tool: device_daemon --device pointer.
 //
-// Viewers publish on the topic HandPointer where they want the tool (docs/viewer.md). A thread of this class
-// reads them and hands the newest wish of who holds to the loop through a seqlock; the loop moves a
+// Viewers publish on the topic HandPointer where they want the tool (docs/teach/viewer.md). A thread of this
+// class reads them and hands the newest wish of who holds to the loop through a seqlock; the loop moves a
 // VirtualHandle, which feels the wrench of haptic_server. Wishes are in W; the handle is in D, with
 // X_WD of the scene and the tool moving workspace_scale times as far as the handle.
 //

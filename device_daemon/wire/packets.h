@@ -1,10 +1,10 @@
 // These are the packets between device_daemon (the host) and whoever has the motors: a motion controller with
-// six axes (joint packets), or a program that knows a haptic arm (pose packets). docs/ares_link.md specifies
-// the exchange.
+// six axes (joint packets), or a program that knows a haptic arm (pose packets). docs/lab/ares_link.md
+// specifies the exchange.
 //
 // All numbers are little-endian, floating point is IEEE 754, and every packet ends with the CRC-32 (zlib's)
 // of what is before it. Units are m, N, N·m, s unless a name says otherwise. Frames are D and T
-// (docs/frames.md). The structs are the bytes on the wire.
+// (docs/develop/frames.md). The structs are the bytes on the wire.
 #pragma once
 
 #include <bit>

@@ -1,5 +1,5 @@
-// The accuracy dial says what the haptic loop computes, and how finely. docs/accuracy.md says what each knob
-// buys and costs.
+// The accuracy dial says what the haptic loop computes, and how finely. docs/research/accuracy.md says what
+// each knob buys and costs.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace bonemill {
 
-// Those behind kGradient are of other schools, to compare with (docs/laws.md).
+// Those behind kGradient are of other schools, to compare with (docs/research/laws.md).
 enum class ContactLaw : uint8_t { kThesis2012, kGradient, kProxy3Dof, kVps, kPenaltySdf, kConstraint };
 // The tool's distances come from here: trilinear in its grid, or exact from its shapes (a mesh has only
 // the grid).

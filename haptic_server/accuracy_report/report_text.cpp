@@ -168,12 +168,13 @@ std::string timesText(const ReportData& data) {
            "), one thread, not in real time. The same work runs three times and the shortest time of each "
            "tick "
            "counts, so that "
-           "what other programs take does not; a live session has that on top (docs/realtime.md)." +
+           "what other programs take does not; a live session has that on top (docs/lab/realtime.md)." +
            format(" The scene's tick has %.4g µs.\n\n", kPerMicrosecond * data.tick_period);
 }
 
 std::string otherLawsText() {
-    return "**†** These are other contact laws: thesis_2012, and those of other schools (docs/laws.md). They "
+    return "**†** These are other contact laws: thesis_2012, and those of other schools "
+           "(docs/research/laws.md). They "
            "compute another force. There is no truth of it that a finer "
            "sampling would approach. Their columns of errors show how far they are from the truth of the "
            "gradient law; they take no part in the front and are never proposed.\n\n";

@@ -31,8 +31,9 @@ namespace {
 void addSaveOptions(CLI::App& app, SavePaths& save) {
     app.add_option("--save-volume", save.volume, "at the end: the densities (.nrrd)");
     app.add_option("--save-mesh", save.mesh, "at the end: the surface (.stl or .ply, mm)");
-    app.add_option("--save-difference", save.difference,
-                   "at the end: what was removed (positive) and added (negative) (.nrrd, docs/simulate.md)");
+    app.add_option(
+        "--save-difference", save.difference,
+        "at the end: what was removed (positive) and added (negative) (.nrrd, docs/research/simulate.md)");
 }
 
 void addServerOptions(CLI::App& app, ServerOptions& server) {
@@ -44,7 +45,7 @@ void addServerOptions(CLI::App& app, ServerOptions& server) {
     app.add_option("--domain", server.domain, "DDS domain, 0 to 230");
     dds::addNetworkOptions(app, server.network);
     app.add_option("--from", server.from,
-                   "go on from that moment of a recording: FILE.mcap@SECONDS (docs/replay.md)");
+                   "go on from that moment of a recording: FILE.mcap@SECONDS (docs/teach/replay.md)");
     app.add_option("--seconds", server.seconds,
                    "stop this long after the first tick; 0: run until SIGINT or SIGTERM")
         ->check(within(0, kMostSeconds));
@@ -57,7 +58,7 @@ void addServerOptions(CLI::App& app, ServerOptions& server) {
         ->capture_default_str();
     auto* const recording =
         app.add_option("--recording", server.recording,
-                       "folder for what every session leaves of itself (docs/recording.md); default: "
+                       "folder for what every session leaves of itself (docs/lab/recording.md); default: "
                        "$XDG_STATE_HOME/bonemill/recordings");
     app.add_flag("!--no-recording", server.is_recorded, "leave no recording")->excludes(recording);
     app.add_flag("--record-results", server.records_results,
@@ -129,7 +130,7 @@ void addReplayOptions(CLI::App& app, ReplayOptions& replay) {
 
 void addExportOptions(CLI::App& app, ExportOptions& files) {
     app.add_option("journal", files.journal, "the recorded session (.mcap)")->required();
-    app.add_option("--h5", files.h5, "write everything as HDF5, with units (docs/replay.md)");
+    app.add_option("--h5", files.h5, "write everything as HDF5, with units (docs/teach/replay.md)");
     app.add_option("--csv", files.csv, "write one CSV line per tick, as --trace does");
     app.add_option("--traj", files.traj, "write what went in, for simulate --trajectory");
     app.add_option("--tool-path", files.tool_path,
@@ -222,10 +223,10 @@ int serve(int argc, char** argv) {
         "measure errors and tick times of the accuracy settings in a scene, on this machine");
     addReportOptions(*report_command, options.report);
     CLI::App* const replay_command =
-        app.add_subcommand("replay", "show a recorded session again, as a live one (docs/replay.md)");
+        app.add_subcommand("replay", "show a recorded session again, as a live one (docs/teach/replay.md)");
     addReplayOptions(*replay_command, options.replay);
     CLI::App* const case_command =
-        app.add_subcommand("make-case", "make a training case of a scan (docs/cases.md)");
+        app.add_subcommand("make-case", "make a training case of a scan (docs/teach/cases.md)");
     addCaseOptions(*case_command, options.request);
     CLI::App* const series_command = app.add_subcommand(
         "list-series", "print which DICOM series a folder holds, and which is the best for bone");
@@ -236,7 +237,7 @@ int serve(int argc, char** argv) {
         "forget", "delete what a class' folder holds of one person, and say what was deleted");
     addForgetOptions(*forget_command, options.forget);
     CLI::App* const assess_command = session_command->add_subcommand(
-        "assess", "measure and judge the attempts of a recording anew (docs/assessment.md)");
+        "assess", "measure and judge the attempts of a recording anew (docs/teach/assessment.md)");
     addAssessOptions(*assess_command, options.assess);
     CLI::App* const verify_command =
         session_command->add_subcommand("verify", "run a recording again and compare every bit");

@@ -1,5 +1,6 @@
 // The list of what is measured of technique: each figure's name, version, words and unit, once. What the
-// formulas are stands in docs/assessment.md, and a definition that changes there gets another version here.
+// formulas are stands in docs/teach/assessment.md, and a definition that changes there gets another version
+// here.
 #pragma once
 
 #include <span>

@@ -11,8 +11,8 @@
 
 namespace bonemill {
 
-// One measured number. `id` and `version` name its definition (docs/assessment.md): a definition that changes
-// gets another version, and figures of different versions are never compared.
+// One measured number. `id` and `version` name its definition (docs/teach/assessment.md): a definition that
+// changes gets another version, and figures of different versions are never compared.
 struct Figure {
     std::string id;  // "force.p95"; a figure of one structure or burr ends in its name: "damage.volume:nerve"
     int version = 1;    // of the definition, from 1

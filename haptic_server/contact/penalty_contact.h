@@ -13,8 +13,8 @@ namespace bonemill {
 struct ContactResult {
     Wrench wrench;
     // This is ∂(force, torque)/∂(x, ω) as printed in eq 6-9, and kept wrong where the thesis is
-    // (docs/simulate.md): eq 7 carries + k d n~ although the bone's normals do not turn with the tool, and
-    // eq 8 lacks + F~.
+    // (docs/research/simulate.md): eq 7 carries + k d n~ although the bone's normals do not turn with the
+    // tool, and eq 8 lacks + F~.
     Matrix6d derivative = Matrix6d::Zero();
     uint32_t contacts = 0;
     double max_penetration = 0;  // m

@@ -1,5 +1,5 @@
 // `haptic_server session export`: a recorded session as files for other programs. What its ticks came to is
-// had by running them again (docs/replay.md).
+// had by running them again (docs/teach/replay.md).
 #pragma once
 
 #include <string>

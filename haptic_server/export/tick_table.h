@@ -1,5 +1,5 @@
-// Ticks as the columns of an HDF5 file, with units and frames (docs/replay.md lists them). It is for one
-// normal thread.
+// Ticks as the columns of an HDF5 file, with units and frames (docs/teach/replay.md lists them). It is for
+// one normal thread.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // What went into a session's ticks as a trajectory for `simulate`, which comes to the same bits with it
-// (docs/simulate.md).
+// (docs/research/simulate.md).
 #pragma once
 
 #include <string>

@@ -20,7 +20,7 @@ struct SimulateOptions {
 };
 
 struct SimulateResult {
-    std::string json;                   // object with totals and `state_hash` (docs/simulate.md)
+    std::string json;                   // object with totals and `state_hash` (docs/research/simulate.md)
     std::vector<std::string> problems;  // one message for each file that is not there or not whole
 };
 

@@ -1,7 +1,7 @@
 // Makes test bodies whose surface is known exactly, and their densities on any grid.
 //
 // W is the world (and the written file's LPS frame); B is the body's own frame. Lengths are in m, angles in
-// rad. In B (definitions are repeated in docs/volumes.md):
+// rad. In B (definitions are repeated in docs/teach/volumes.md):
 //   slab       |z| <= thickness / 2, endless in x and y
 //   sphere     |p| <= radius
 //   hole       plate |z| <= thickness / 2 with a round hole x² + y² < radius²

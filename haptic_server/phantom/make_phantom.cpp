@@ -1,5 +1,5 @@
 // Writes phantoms: a tooth as a DICOM CT series, blocks, a vertebra and analytic bodies as
-// NRRD. See docs/volumes.md.
+// NRRD. See docs/teach/volumes.md.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <iostream>
@@ -203,7 +203,7 @@ void addBlock(CLI::App& app, BlockArguments& arguments) {
 
 void addBody(CLI::App& app, BodyArguments& arguments) {
     CLI::App* body =
-        app.add_subcommand("body", "analytic body as NRRD; the exact surfaces are in docs/volumes.md");
+        app.add_subcommand("body", "analytic body as NRRD; the exact surfaces are in docs/teach/volumes.md");
     body->add_option("--kind", arguments.kind, "slab, sphere, hole, wedge or thin-wall")
         ->required()
         ->check(CLI::IsMember({"slab", "sphere", "hole", "wedge", "thin-wall"}));

@@ -1,4 +1,5 @@
-// Shows a recorded session as a live one, to any number of viewers: `haptic_server replay` (docs/replay.md).
+// Shows a recorded session as a live one, to any number of viewers: `haptic_server replay`
+// (docs/teach/replay.md).
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Says which role may order what of the server: the only place that decides it (docs/security.md has the same
-// table). It is thread-safe and does not allocate.
+// Says which role may order what of the server: the only place that decides it (docs/lab/security.md has the
+// same table). It is thread-safe and does not allocate.
 #pragma once
 
 #include <array>
@@ -48,12 +48,13 @@ constexpr bool mayOrder(topics::Viewer::Role role, topics::Command::ActionCase a
 constexpr std::string_view refusalOfRole(topics::Viewer::Role role, topics::Command::ActionCase action) {
     if (mayOrder(role, action)) return "";
     if (action == topics::Command::kShutDown && role != topics::Viewer::VIEWER)
-        return "refused: only an instructor ends the session (docs/security.md)";
+        return "refused: only an instructor ends the session (docs/lab/security.md)";
     if (role == topics::Viewer::EXAMINER)
         return "refused: an examiner leaves bone, tool and device to operator and instructor "
-               "(docs/security.md)";
-    if (role == topics::Viewer::OPERATOR) return "refused: only an instructor may that (docs/security.md)";
-    return "refused: a viewer only looks; an operator may that (docs/security.md)";
+               "(docs/lab/security.md)";
+    if (role == topics::Viewer::OPERATOR)
+        return "refused: only an instructor may that (docs/lab/security.md)";
+    return "refused: a viewer only looks; an operator may that (docs/lab/security.md)";
 }
 
 }  // namespace bonemill

@@ -49,7 +49,7 @@ std::optional<std::string> SessionCommands::carryOut(const topics::Command& comm
     if (controls_.replay) return carryOutInReplay(command);
     switch (command.action_case()) {
         case topics::Command::kReplay:
-            return "refused: this is a live session, not a replay (docs/replay.md)";
+            return "refused: this is a live session, not a replay (docs/teach/replay.md)";
         case topics::Command::kResetVolume:
             return restore(Checkpoints::kScannedBone);
         case topics::Command::kPauseMilling:
@@ -105,7 +105,7 @@ std::optional<std::string> SessionCommands::carryOutInReplay(const topics::Comma
             return "done";
         default:
             return "refused: this is a replay of a recorded session: it is led, not commanded "
-                   "(docs/replay.md)";
+                   "(docs/teach/replay.md)";
     }
 }
 

@@ -24,7 +24,7 @@ namespace bonemill {
 namespace {
 
 constexpr double kLargeBurrShare = 0.125;  // what its tick can bear (docs/measurements.md)
-constexpr double kBurrShare = 0.25;        // docs/volumes.md: voxels of a quarter of the burr's radius
+constexpr double kBurrShare = 0.25;        // docs/teach/volumes.md: voxels of a quarter of the burr's radius
 constexpr double kAirHu = -1000, kSurelyAirHu = -500, kDensestHu = 3071;
 constexpr double kProposedVoxels = 1 << 26;
 constexpr double kMostVoxels = 1 << 28;

@@ -93,7 +93,8 @@ double areaHalfIn(const Burr& burr) {
     return M_PI * (burr.radius + end) * burr.length / 2 + M_PI * end * end;
 }
 
-// A tick in which the solve takes long tests each contact point so often (drills of 5 mm: docs/realtime.md).
+// A tick in which the solve takes long tests each contact point so often (drills of 5 mm:
+// docs/lab/realtime.md).
 constexpr double kTestsOfPoint = 13;
 
 void warnOfManyPoints(Simulation& simulation, const SceneTool& tool) {
@@ -113,7 +114,7 @@ void warnOfManyPoints(Simulation& simulation, const SceneTool& tool) {
 }
 
 // A groove half as deep as the burr's radius R is larger than what was swept by this times (voxel / R)², as
-// docs/effects.md (time_removal) has it measured.
+// docs/teach/effects.md (time_removal) has it measured.
 constexpr double kGrooveExcess = 1.3;
 constexpr double kMostGrooveExcess = 0.1;
 

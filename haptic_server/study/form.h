@@ -1,5 +1,5 @@
-// A questionnaire as a data file (docs/study.md has its fields), and what counts as an answer to it. Pure
-// after reading; any thread may read a form.
+// A questionnaire as a data file (docs/research/study.md has its fields), and what counts as an answer to it.
+// Pure after reading; any thread may read a form.
 #pragma once
 
 #include <map>

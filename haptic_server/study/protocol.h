@@ -1,5 +1,5 @@
-// What a study planned before its first participant: protocol.json of its folder (docs/study.md has its
-// fields). Pure after reading; any thread may read it.
+// What a study planned before its first participant: protocol.json of its folder (docs/research/study.md has
+// its fields). Pure after reading; any thread may read it.
 #pragma once
 
 #include <cstdint>

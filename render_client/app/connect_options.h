@@ -1,4 +1,4 @@
-// Options of render_client --connect, which reaches a session through a gateway (docs/gateway.md).
+// Options of render_client --connect, which reaches a session through a gateway (docs/lab/gateway.md).
 #pragma once
 
 #include <filesystem>

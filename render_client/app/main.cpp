@@ -1,4 +1,4 @@
-// render_client shows a session (docs/viewer.md).
+// render_client shows a session (docs/teach/viewer.md).
 #include <iostream>
 
 #include "common/log/log.h"

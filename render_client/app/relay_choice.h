@@ -1,5 +1,5 @@
 // Options of render_client that have to do with a relay: to be one (--relay), or to be reached through one
-// (--serve with --via). docs/gateway.md says how they meet.
+// (--serve with --via). docs/lab/gateway.md says how they meet.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Options of render_client --serve, which makes it a gateway instead of a viewer (docs/gateway.md).
+// Options of render_client --serve, which makes it a gateway instead of a viewer (docs/lab/gateway.md).
 #pragma once
 
 #include <optional>

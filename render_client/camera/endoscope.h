@@ -1,7 +1,7 @@
 // This camera rides on the tool: beside the shaft it looks past the burr along the tool's axis (-y of T).
 //
-// The frames are W, the world, and T, the tool (docs/frames.md); the units are m and rad. It is for any
-// thread and never throws.
+// The frames are W, the world, and T, the tool (docs/develop/frames.md); the units are m and rad. It is for
+// any thread and never throws.
 #pragma once
 
 #include "common/geometry/pose.h"

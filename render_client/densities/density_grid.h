@@ -1,7 +1,7 @@
 // The grid of the scan's voxels, cut into bricks of equal edge. It is for any thread.
 //
-// Voxel (i, j, k) lies at origin_m + spacing_m ∘ (i, j, k) in the volume frame V (docs/frames.md). Bricks are
-// numbered x fastest; the last ones of an axis may reach beyond the grid.
+// Voxel (i, j, k) lies at origin_m + spacing_m ∘ (i, j, k) in the volume frame V (docs/develop/frames.md).
+// Bricks are numbered x fastest; the last ones of an axis may reach beyond the grid.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// What a gateway and its relay say to each other before they pass bytes on (docs/gateway.md, "Relay"). A
+// What a gateway and its relay say to each other before they pass bytes on (docs/lab/gateway.md, "Relay"). A
 // gateway proves by a shared secret that it is one; guests know nothing of it: their first byte, a TLS
 // record's, tells them apart.
 //

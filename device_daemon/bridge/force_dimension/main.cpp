@@ -1,5 +1,5 @@
 // bonemill_bridge_force_dimension lets device_daemon use an arm of Force Dimension or a Falcon
-// (docs/bridges.md).
+// (docs/lab/bridges.md).
 #include "device_daemon/bridge/common/bridge_main.h"
 #include "device_daemon/bridge/force_dimension/force_dimension_arm.h"
 

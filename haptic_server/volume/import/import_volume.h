@@ -1,6 +1,6 @@
 // Reads a scanned volume from any format we accept; the one entrance for files of bone.
 //
-//   folder                DICOM series (docs/volumes.md: how a series is chosen, ordered and checked)
+//   folder                DICOM series (docs/teach/volumes.md: how a series is chosen, ordered and checked)
 //   .nrrd .nhdr           NRRD, attached or detached, raw/gzip/text, either byte order
 //   .nii .nii.gz          NIfTI-1
 //   .mha .mhd             MetaImage

@@ -1,4 +1,4 @@
-// case_window makes training cases of scans in a window (docs/cases.md).
+// case_window makes training cases of scans in a window (docs/teach/cases.md).
 #include <sys/stat.h>
 
 #include <algorithm>

@@ -41,7 +41,7 @@ Datagram datagramOf(const Packet& packet) {
     return datagram;
 }
 
-// The oracle: it reads bytes at the offsets that docs/ares_link.md names, and knows nothing of the codec.
+// The oracle: it reads bytes at the offsets that docs/lab/ares_link.md names, and knows nothing of the codec.
 template <class T>
 T at(std::span<const std::byte> bytes, size_t offset) {
     T value;

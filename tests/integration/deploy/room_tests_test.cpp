@@ -61,7 +61,7 @@ TEST_F(RoomTests, CodeWithoutATestIsAFailureAndDocumentsAreNot) {
     EXPECT_EQ(code.exit_code, 1);
     EXPECT_NE(code.err.find("no room has render_client/app/main.cpp"), std::string::npos) << code.err;
     EXPECT_EQ(code.out, "");
-    EXPECT_EQ(ask({"--changed", "docs/tool.md"}).exit_code, 0);
+    EXPECT_EQ(ask({"--changed", "docs/teach/tool.md"}).exit_code, 0);
 }
 
 TEST_F(RoomTests, AnUnknownRoomIsAnsweredWithTheList) {

@@ -89,7 +89,7 @@ class SessionCommandsTest : public testing::Test {
 TEST_F(SessionCommandsTest, WhoOnlyLooksChoosesNoSceneAndBeginsNoAttempt) {
     for (const topics::Command& command : {choiceOf("tooth"), startOf("Ann"), stop()})
         EXPECT_EQ(order(command, topics::Viewer::VIEWER),
-                  "refused: a viewer only looks; an operator may that (docs/security.md)");
+                  "refused: a viewer only looks; an operator may that (docs/lab/security.md)");
     EXPECT_FALSE(lesson_.takeOrder());
     EXPECT_FALSE(lesson_.isAttemptRunning());
 }
@@ -251,7 +251,7 @@ TEST_F(SessionCommandsTest, NotesAreForWhoMayCommandAndNotTooOften) {
     erase.set_erase_remark(1);
     for (const topics::Command& command : {note, erase})
         EXPECT_EQ(order(command, topics::Viewer::VIEWER),
-                  "refused: a viewer only looks; an operator may that (docs/security.md)");
+                  "refused: a viewer only looks; an operator may that (docs/lab/security.md)");
     EXPECT_EQ(commands_.remarks().count(), 0u);
     EXPECT_EQ(order(note, topics::Viewer::EXAMINER), "done");
     EXPECT_EQ(order(erase), "done");

@@ -1,5 +1,5 @@
-// Reads real scans where BONEMILL_CT_DATA names a folder that holds them (docs/volumes.md), and is skipped
-// elsewhere. The other files prove the same behaviour with made data.
+// Reads real scans where BONEMILL_CT_DATA names a folder that holds them (docs/teach/volumes.md), and is
+// skipped elsewhere. The other files prove the same behaviour with made data.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
