@@ -2,8 +2,8 @@
 
 #include <iostream>
 
+#include "common/base/user_error.h"
 #include "common/cli/version.h"
-#include "common/user_error.h"
 
 namespace bonemill {
 

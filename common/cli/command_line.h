@@ -17,7 +17,7 @@ void addLogLevelOption(CLI::App& app, std::string& log_level);
 // any core.
 void addRealtimeOptions(CLI::App& app, const std::string& loop, bool& is_strict, int& core);
 
-// For a program that another one of ours starts for itself (common/end_with_parent.h).
+// For a program that another one of ours starts for itself (common/process/end_with_parent.h).
 void addParentOption(CLI::App& app, std::optional<int>& parent);
 
 }  // namespace bonemill

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "common/user_error.h"
+#include "common/base/user_error.h"
 
 namespace bonemill {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "common/base/units.h"
 #include "common/config/field_unit.h"
-#include "common/units.h"
 
 namespace bonemill {
 namespace {

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <vector>
 
+#include "common/base/user_error.h"
 #include "common/config/effect_check.h"
 #include "common/config/field_unit.h"
 #include "common/config/material_check.h"
 #include "common/config/scene_tools.h"
 #include "common/config/task_check.h"
-#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

@@ -7,11 +7,11 @@
 #include <system_error>
 #include <utility>
 
+#include "common/base/user_error.h"
 #include "common/config/detached_data.h"
 #include "common/config/scene_check.h"
 #include "common/config/scene_text.h"
-#include "common/text_encoding.h"
-#include "common/user_error.h"
+#include "common/text/text_encoding.h"
 
 namespace bonemill {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/config/scene_text.h"
-#include "common/require_apart.h"
+#include "common/files/require_apart.h"
 
 namespace bonemill {
 

@@ -1,8 +1,8 @@
 // A scene's vectors and poses as SI vectors and poses; frames are those that the fields name.
 #pragma once
 
+#include "common/base/units.h"
 #include "common/geometry/pose.h"
-#include "common/units.h"
 #include "proto/scene.pb.h"
 
 namespace bonemill {

@@ -2,8 +2,8 @@
 // (common/device_messages).
 #pragma once
 
+#include "common/base/units.h"
 #include "common/device_messages/device_messages.h"
-#include "common/units.h"
 #include "proto/scene.pb.h"
 
 namespace bonemill {

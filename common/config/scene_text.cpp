@@ -10,7 +10,7 @@
 #include <set>
 #include <vector>
 
-#include "common/user_error.h"
+#include "common/base/user_error.h"
 
 namespace bonemill {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "common/user_error.h"
+#include "common/base/user_error.h"
 
 namespace bonemill {
 

@@ -2,7 +2,7 @@
 
 #include <dds/dds.h>
 
-#include "common/user_error.h"
+#include "common/base/user_error.h"
 
 namespace bonemill::dds {
 

@@ -7,9 +7,9 @@
 #include <mutex>
 #include <string_view>
 
+#include "common/base/units.h"
 #include "common/log/log_limit.h"
 #include "common/rt/clock.h"
-#include "common/units.h"
 
 namespace bonemill::dds {
 namespace {

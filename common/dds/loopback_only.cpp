@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-#include "common/user_error.h"
+#include "common/base/user_error.h"
 
 namespace bonemill::dds {
 namespace {

@@ -8,11 +8,11 @@
 #include <fstream>
 #include <sstream>
 
+#include "common/base/user_error.h"
 #include "common/dds/network_interfaces.h"
 #include "common/dds/participant.h"
-#include "common/require_file.h"
+#include "common/files/require_file.h"
 #include "common/security/security_folder.h"
-#include "common/user_error.h"
 #include "profiles.h"
 
 namespace bonemill::dds {

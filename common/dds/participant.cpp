@@ -8,12 +8,12 @@
 #include <mutex>
 #include <optional>
 
+#include "common/base/user_error.h"
 #include "common/dds/log_sink.h"
 #include "common/dds/loopback_only.h"
 #include "common/dds/network.h"
 #include "common/dds/qos.h"
-#include "common/process_limits.h"
-#include "common/user_error.h"
+#include "common/process/process_limits.h"
 
 #ifdef __SANITIZE_THREAD__
 // Debian's Cyclone is not instrumented and synchronises with atomics of its own, which ThreadSanitizer cannot

@@ -54,8 +54,8 @@ struct SceneNotice {
 };
 
 // This is what moves with the handle, and how late the device is. The server fits the coupling to it
-// (haptic_server/tick/device_fit.h). Without a mass the rest of translation is not known, without an inertia
-// that of rotation.
+// (haptic_server/core/tick/device_fit.h). Without a mass the rest of translation is not known, without an
+// inertia that of rotation.
 struct HandleDynamics {
     double mass;             // kg
     double damping;          // N·s/m, viscous

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <new>
 
-#include "common/require_file.h"
-#include "common/user_error.h"
+#include "common/base/user_error.h"
+#include "common/files/require_file.h"
 
 namespace bonemill {
 

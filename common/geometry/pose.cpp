@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "common/assert.h"
+#include "common/base/assert.h"
 #include "common/math/pinned_math.h"
 
 namespace bonemill {

@@ -11,10 +11,10 @@
 #include <string>
 #include <utility>
 
+#include "common/base/units.h"
+#include "common/base/user_error.h"
 #include "common/ipc/link_layout.h"
 #include "common/rt/clock.h"
-#include "common/units.h"
-#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

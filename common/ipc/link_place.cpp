@@ -6,7 +6,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "common/user_error.h"
+#include "common/base/user_error.h"
 
 namespace bonemill {
 namespace {

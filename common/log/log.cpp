@@ -3,8 +3,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "common/base/user_error.h"
 #include "common/rt/realtime.h"
-#include "common/user_error.h"
 
 namespace bonemill {
 

@@ -2,9 +2,9 @@
 
 #include <fstream>
 
-#include "common/require_file.h"
-#include "common/user_error.h"
-#include "common/whole_file.h"
+#include "common/base/user_error.h"
+#include "common/files/require_file.h"
+#include "common/files/whole_file.h"
 
 namespace bonemill::mcap {
 namespace {

@@ -6,7 +6,7 @@
 #include <new>
 #include <utility>
 
-#include "common/assert.h"
+#include "common/base/assert.h"
 #include "common/mcap/mcap_bytes.h"
 
 namespace bonemill::mcap {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "common/units.h"
+#include "common/base/units.h"
 
 namespace bonemill {
 

@@ -2,7 +2,7 @@
 
 #include <cerrno>
 
-#include "common/assert.h"
+#include "common/base/assert.h"
 #include "common/rt/clock.h"
 
 namespace bonemill {

@@ -5,7 +5,7 @@
 #include <future>
 #include <utility>
 
-#include "common/user_error.h"
+#include "common/base/user_error.h"
 
 namespace bonemill {
 namespace {

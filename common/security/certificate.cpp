@@ -9,7 +9,7 @@
 
 #include <utility>
 
-#include "common/user_error.h"
+#include "common/base/user_error.h"
 
 namespace bonemill {
 namespace {

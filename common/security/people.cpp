@@ -2,7 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "common/user_error.h"
+#include "common/base/user_error.h"
 
 namespace bonemill {
 namespace {

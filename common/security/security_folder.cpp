@@ -4,8 +4,8 @@
 
 #include <array>
 
+#include "common/base/user_error.h"
 #include "common/security/signed_document.h"
-#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "common/user_error.h"
+#include "common/base/user_error.h"
 
 namespace bonemill {
 namespace {

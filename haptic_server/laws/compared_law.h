@@ -10,10 +10,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "haptic_server/contact/contact_configs.h"
-#include "haptic_server/coupling/energy_coupling.h"
-#include "haptic_server/coupling/virtual_coupling.h"
-#include "haptic_server/spo/spo_model.h"
+#include "haptic_server/core/contact/contact_configs.h"
+#include "haptic_server/core/coupling/energy_coupling.h"
+#include "haptic_server/core/coupling/virtual_coupling.h"
+#include "haptic_server/core/spo/spo_model.h"
 
 namespace bonemill {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "common/geometry/bounded_vector.h"
-#include "haptic_server/contact/into_tool.h"
-#include "haptic_server/contact/tool_box.h"
+#include "haptic_server/core/contact/into_tool.h"
+#include "haptic_server/core/contact/tool_box.h"
 
 namespace bonemill {
 

@@ -12,8 +12,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "haptic_server/spo/spo_model.h"
-#include "haptic_server/tool/tool_field.h"
+#include "haptic_server/core/spo/spo_model.h"
+#include "haptic_server/core/tool/tool_field.h"
 
 namespace bonemill {
 

@@ -6,9 +6,9 @@
 // environments", SIGGRAPH 1997. docs/research/laws.md says what it is good for.
 #pragma once
 
+#include "haptic_server/core/tool/shape_field.h"
 #include "haptic_server/laws/blocked_motion.h"
 #include "haptic_server/laws/compared_law.h"
-#include "haptic_server/tool/shape_field.h"
 
 namespace bonemill {
 

@@ -3,9 +3,9 @@
 // Barbič and James 2008). It is RT-safe.
 #pragma once
 
-#include "haptic_server/coupling/energy_coupling.h"
-#include "haptic_server/coupling/virtual_coupling.h"
-#include "haptic_server/spo/spo_model.h"
+#include "haptic_server/core/coupling/energy_coupling.h"
+#include "haptic_server/core/coupling/virtual_coupling.h"
+#include "haptic_server/core/spo/spo_model.h"
 
 namespace bonemill {
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "haptic_server/tool/tool_field.h"
+#include "haptic_server/core/tool/tool_field.h"
 
 namespace bonemill {
 

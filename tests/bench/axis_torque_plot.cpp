@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/units.h"
+#include "common/base/units.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"
 #include "tests/support/typical_effects.h"

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "common/density/density_codec.h"
-#include "common/units.h"
-#include "haptic_server/densities/density_source.h"
-#include "haptic_server/setup/scene_setup.h"
+#include "common/base/units.h"
+#include "common/density_codec/density_codec.h"
+#include "haptic_server/scene/setup/scene_setup.h"
+#include "haptic_server/surface/density_stream/density_source.h"
 #include "tests/bench/bench_output.h"
 #include "tests/support/places.h"
 

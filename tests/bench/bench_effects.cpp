@@ -3,9 +3,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "common/units.h"
-#include "haptic_server/offline/effect_cost.h"
-#include "haptic_server/setup/scene_setup.h"
+#include "common/base/units.h"
+#include "haptic_server/lab/offline/effect_cost.h"
+#include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/half_block.h"
 #include "tests/support/every_effect_scene.h"

@@ -10,9 +10,9 @@
 #include <sstream>
 #include <thread>
 
+#include "common/base/user_error.h"
 #include "common/rt/clock.h"
-#include "common/user_error.h"
-#include "render_client/secrets/secrets.h"
+#include "render_client/web/secrets/secrets.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/processor_time.h"
 #include "tests/support/dds_session.h"

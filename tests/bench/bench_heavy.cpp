@@ -8,14 +8,14 @@
 #include <cstdio>
 #include <memory>
 
+#include "common/base/units.h"
 #include "common/rt/clock.h"
-#include "common/units.h"
-#include "device_daemon/emulator/scenario.h"
-#include "haptic_server/bone/bone_history.h"
-#include "haptic_server/record/fault_names.h"
-#include "haptic_server/record/tick_times.h"
-#include "haptic_server/setup/scene_setup.h"
-#include "haptic_server/tick/fixed_tick.h"
+#include "device_daemon/ares/emulator/scenario.h"
+#include "haptic_server/core/bone/bone_history.h"
+#include "haptic_server/core/tick/fixed_tick.h"
+#include "haptic_server/recording/statistics/fault_names.h"
+#include "haptic_server/recording/statistics/tick_times.h"
+#include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/half_block.h"
 #include "tests/support/every_effect_scene.h"

@@ -12,11 +12,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/units.h"
-#include "common/user_error.h"
-#include "haptic_server/accuracy_report/timed_run.h"
-#include "haptic_server/record/tick_times.h"
-#include "haptic_server/tool/build/build_tool.h"
+#include "common/base/units.h"
+#include "common/base/user_error.h"
+#include "haptic_server/lab/accuracy_report/timed_run.h"
+#include "haptic_server/recording/statistics/tick_times.h"
+#include "haptic_server/scene/tool_build/build_tool.h"
 #include "tests/bench/bench_output.h"
 #include "tests/support/contact_scene.h"
 

@@ -4,11 +4,11 @@
 #include <memory>
 
 #include "common/rt/clock.h"
-#include "haptic_server/mesh/mesher.h"
-#include "haptic_server/tick/fixed_tick.h"
-#include "haptic_server/tool/build/build_tool.h"
-#include "haptic_server/volume/import/densify.h"
-#include "haptic_server/volume/import/import_volume.h"
+#include "haptic_server/core/tick/fixed_tick.h"
+#include "haptic_server/scans/densify/densify.h"
+#include "haptic_server/scans/import/import_volume.h"
+#include "haptic_server/scene/tool_build/build_tool.h"
+#include "haptic_server/surface/mesh/mesher.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/leaf_cells.h"
 #include "tests/support/scripted_io.h"

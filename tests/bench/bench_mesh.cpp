@@ -5,14 +5,14 @@
 #include <fstream>
 #include <random>
 
+#include "common/base/units.h"
+#include "common/base/user_error.h"
 #include "common/rt/clock.h"
-#include "common/units.h"
-#include "common/user_error.h"
-#include "haptic_server/bone/bone_model.h"
-#include "haptic_server/mesh/mesher.h"
-#include "haptic_server/milling/timed_milling.h"
-#include "haptic_server/volume/import/densify.h"
-#include "haptic_server/volume/import/import_volume.h"
+#include "haptic_server/core/bone/bone_model.h"
+#include "haptic_server/core/milling/timed_milling.h"
+#include "haptic_server/scans/densify/densify.h"
+#include "haptic_server/scans/import/import_volume.h"
+#include "haptic_server/surface/mesh/mesher.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/leaf_cells.h"
 #include "tests/support/places.h"

@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <fstream>
 
+#include "common/base/user_error.h"
 #include "common/rt/clock.h"
-#include "common/user_error.h"
-#include "haptic_server/record/bone_files.h"
+#include "haptic_server/recording/statistics/bone_files.h"
 
 namespace bonemill::bench {
 namespace {

@@ -10,10 +10,10 @@
 
 #include "common/rt/clock.h"
 #include "common/rt/latency_histogram.h"
-#include "haptic_server/phantom/tooth_phantom.h"
-#include "haptic_server/tick/fixed_tick.h"
-#include "haptic_server/tool/build/build_tool.h"
-#include "haptic_server/volume/import/densify.h"
+#include "haptic_server/cases/phantom/tooth_phantom.h"
+#include "haptic_server/core/tick/fixed_tick.h"
+#include "haptic_server/scans/densify/densify.h"
+#include "haptic_server/scene/tool_build/build_tool.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/typical_effects.h"
 

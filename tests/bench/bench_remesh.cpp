@@ -6,12 +6,12 @@
 #include <memory>
 #include <thread>
 
-#include "common/mesh/mesh_codec.h"
+#include "common/mesh_codec/mesh_codec.h"
 #include "common/rt/clock.h"
-#include "haptic_server/mesh/mesh_rounds.h"
-#include "haptic_server/record/fault_names.h"
-#include "haptic_server/tick/fixed_tick.h"
-#include "haptic_server/tool/build/build_tool.h"
+#include "haptic_server/core/tick/fixed_tick.h"
+#include "haptic_server/recording/statistics/fault_names.h"
+#include "haptic_server/scene/tool_build/build_tool.h"
+#include "haptic_server/surface/mesh/mesh_rounds.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/corridor_run.h"
 

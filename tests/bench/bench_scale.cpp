@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <fstream>
 
-#include "common/units.h"
-#include "haptic_server/accuracy_report/plot.h"
-#include "haptic_server/record/bone_files.h"
+#include "common/base/units.h"
+#include "haptic_server/lab/accuracy_report/plot.h"
+#include "haptic_server/recording/statistics/bone_files.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/bench_tick.h"
 

@@ -10,14 +10,14 @@
 #include <sstream>
 #include <thread>
 
-#include "common/mesh/mesh_codec.h"
+#include "common/base/user_error.h"
+#include "common/mesh_codec/mesh_codec.h"
 #include "common/rt/clock.h"
-#include "common/user_error.h"
-#include "haptic_server/bone/bone_model.h"
-#include "haptic_server/mesh/mesher.h"
-#include "haptic_server/volume/import/densify.h"
-#include "haptic_server/volume/import/import_volume.h"
-#include "render_client/subscribe/scene_subscriber.h"
+#include "haptic_server/core/bone/bone_model.h"
+#include "haptic_server/scans/densify/densify.h"
+#include "haptic_server/scans/import/import_volume.h"
+#include "haptic_server/surface/mesh/mesher.h"
+#include "render_client/link/subscribe/scene_subscriber.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/leaf_cells.h"
 #include "tests/bench/processor_time.h"

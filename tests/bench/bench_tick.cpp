@@ -2,13 +2,13 @@
 
 #include <cstdio>
 
+#include "common/base/units.h"
+#include "common/base/user_error.h"
 #include "common/rt/clock.h"
-#include "common/units.h"
-#include "common/user_error.h"
-#include "haptic_server/record/fault_names.h"
-#include "haptic_server/tick/fixed_tick.h"
-#include "haptic_server/tick/tick_budget.h"
-#include "haptic_server/tool/build/build_tool.h"
+#include "haptic_server/core/tick/fixed_tick.h"
+#include "haptic_server/core/tick/tick_budget.h"
+#include "haptic_server/recording/statistics/fault_names.h"
+#include "haptic_server/scene/tool_build/build_tool.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/half_block.h"
 #include "tests/bench/leaf_cells.h"

@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "haptic_server/accuracy/accuracy_settings.h"
+#include "haptic_server/core/accuracy/accuracy_settings.h"
 #include "tests/bench/tick_figures.h"
 
 namespace bonemill::bench {

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "common/units.h"
-#include "common/user_error.h"
-#include "haptic_server/phantom/dicom_series_writer.h"
+#include "common/base/units.h"
+#include "common/base/user_error.h"
+#include "haptic_server/cases/phantom_dicom/dicom_series_writer.h"
 
 namespace bonemill::bench {
 namespace {

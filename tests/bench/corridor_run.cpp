@@ -4,11 +4,11 @@
 #include <thread>
 
 #include "common/rt/clock.h"
-#include "haptic_server/phantom/tooth_phantom.h"
-#include "haptic_server/record/fault_names.h"
-#include "haptic_server/tick/tick_budget.h"
-#include "haptic_server/volume/import/densify.h"
-#include "haptic_server/volume/import/far_air.h"
+#include "haptic_server/cases/phantom/tooth_phantom.h"
+#include "haptic_server/core/tick/tick_budget.h"
+#include "haptic_server/recording/statistics/fault_names.h"
+#include "haptic_server/scans/densify/densify.h"
+#include "haptic_server/scans/densify/far_air.h"
 #include "tests/bench/bench_output.h"
 #include "tests/support/typical_effects.h"
 

@@ -8,9 +8,9 @@
 #include "common/rt/periodic_timer.h"
 #include "common/rt/realtime.h"
 #include "common/rt/spsc_ring.h"
-#include "haptic_server/bone/bone_model.h"
-#include "haptic_server/tick/tick_config.h"
-#include "haptic_server/tick/tick_io.h"
+#include "haptic_server/core/bone/bone_model.h"
+#include "haptic_server/core/tick/tick_config.h"
+#include "haptic_server/core/tick/tick_io.h"
 
 namespace bonemill::bench {
 

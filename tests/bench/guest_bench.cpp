@@ -10,15 +10,15 @@
 #include <unordered_set>
 #include <vector>
 
+#include "common/base/units.h"
+#include "common/base/user_error.h"
 #include "common/cli/command_line.h"
-#include "common/mesh/mesh_codec.h"
-#include "common/run_program.h"
-#include "common/units.h"
-#include "common/user_error.h"
+#include "common/mesh_codec/mesh_codec.h"
+#include "common/process/run_program.h"
 #include "proto/gateway.pb.h"
-#include "render_client/connect/web_socket_client.h"
-#include "render_client/subscribe/remote_session.h"
-#include "render_client/tcp/listen.h"
+#include "render_client/link/subscribe/remote_session.h"
+#include "render_client/web/connect/web_socket_client.h"
+#include "render_client/web/tcp/listen.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/processor_time.h"
 

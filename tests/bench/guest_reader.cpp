@@ -5,11 +5,11 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "common/base/user_error.h"
 #include "common/rt/clock.h"
-#include "common/user_error.h"
-#include "render_client/connect/gateway_session.h"
-#include "render_client/subscribe/cut_to_screen.h"
-#include "render_client/subscribe/scene_subscriber.h"
+#include "render_client/link/subscribe/cut_to_screen.h"
+#include "render_client/link/subscribe/scene_subscriber.h"
+#include "render_client/web/connect/gateway_session.h"
 
 namespace {
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "haptic_server/tick/tick_io.h"
-#include "haptic_server/volume/voxel_volume.h"
+#include "haptic_server/core/tick/tick_io.h"
+#include "haptic_server/core/volume/voxel_volume.h"
 
 namespace bonemill::bench {
 

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "common/user_error.h"
+#include "common/base/user_error.h"
 #include "tests/bench/bench_densities.h"
 #include "tests/bench/bench_effects.h"
 #include "tests/bench/bench_guests.h"

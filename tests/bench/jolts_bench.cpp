@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "common/units.h"
+#include "common/base/units.h"
 #include "tests/stability/jolts.h"
 
 namespace bonemill::test {

@@ -12,13 +12,13 @@
 #include <cstdio>
 #include <cstring>
 
+#include "common/base/user_error.h"
 #include "common/ipc/device_link.h"
 #include "common/rt/clock.h"
 #include "common/rt/periodic_timer.h"
 #include "common/rt/realtime_thread.h"
-#include "common/user_error.h"
-#include "device_daemon/driver/udp_joint_device.h"
-#include "device_daemon/wire/controller_link.h"
+#include "device_daemon/ares/driver/udp_joint_device.h"
+#include "device_daemon/ares/wire/controller_link.h"
 #include "tests/bench/bench_output.h"
 
 namespace bonemill::bench {

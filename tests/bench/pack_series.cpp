@@ -2,7 +2,7 @@
 #include <gdcmImageReader.h>
 #include <gdcmImageWriter.h>
 
-#include "common/user_error.h"
+#include "common/base/user_error.h"
 #include "tests/bench/big_scans.h"
 
 namespace bonemill::bench {

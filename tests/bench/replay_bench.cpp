@@ -9,8 +9,8 @@
 #include <random>
 
 #include "common/rt/clock.h"
-#include "haptic_server/replay/keyframes.h"
-#include "haptic_server/rerun/rerun.h"
+#include "haptic_server/recording/rerun/rerun.h"
+#include "haptic_server/server/replay/keyframes.h"
 #include "tests/bench/processor_time.h"
 #include "tests/support/recorded_session.h"
 #include "tests/support/temporary_folder.h"

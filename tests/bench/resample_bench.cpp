@@ -9,11 +9,11 @@
 #include <map>
 #include <random>
 
-#include "common/units.h"
-#include "haptic_server/mesh/leaf_mesher.h"
-#include "haptic_server/phantom/analytic_body.h"
-#include "haptic_server/volume/import/densify.h"
-#include "haptic_server/volume/import/region.h"
+#include "common/base/units.h"
+#include "haptic_server/cases/phantom/analytic_body.h"
+#include "haptic_server/scans/densify/densify.h"
+#include "haptic_server/scans/densify/region.h"
+#include "haptic_server/surface/mesh/leaf_mesher.h"
 #include "tests/support/contact_scene.h"
 
 namespace bonemill {

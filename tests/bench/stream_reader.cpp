@@ -8,9 +8,9 @@
 #include <iostream>
 #include <memory>
 
+#include "common/base/units.h"
 #include "common/rt/clock.h"
-#include "common/units.h"
-#include "render_client/subscribe/scene_subscriber.h"
+#include "render_client/link/subscribe/scene_subscriber.h"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render_client/gl/gl_api.h"
+#include "render_client/look/gl/gl_api.h"
 
 namespace bonemill::test {
 

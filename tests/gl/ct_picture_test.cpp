@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "render_client/offscreen/osmesa_context.h"
-#include "render_client/slices/grey_window.h"
+#include "render_client/look/offscreen/osmesa_context.h"
+#include "render_client/look/slices/grey_window.h"
 #include "tests/gl/altered_shaders.h"
 #include "tests/gl/golden.h"
 #include "tests/gl/scanned_block.h"

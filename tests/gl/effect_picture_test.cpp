@@ -1,7 +1,7 @@
 // Compares one picture per visual effect with those in the repository, and checks what hiding them must do.
 #include <gtest/gtest.h>
 
-#include "render_client/offscreen/osmesa_context.h"
+#include "render_client/look/offscreen/osmesa_context.h"
 #include "tests/gl/golden.h"
 #include "tests/gl/milled_scene.h"
 #include "tests/gl/milling_session.h"

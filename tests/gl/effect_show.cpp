@@ -11,8 +11,8 @@
 #include <numeric>
 #include <vector>
 
-#include "haptic_server/phantom/tooth_phantom.h"
-#include "render_client/offscreen/osmesa_context.h"
+#include "haptic_server/cases/phantom/tooth_phantom.h"
+#include "render_client/look/offscreen/osmesa_context.h"
 #include "tests/gl/milling_session.h"
 
 namespace bonemill {

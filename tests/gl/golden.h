@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "render_client/offscreen/picture.h"
+#include "render_client/look/offscreen/picture.h"
 
 namespace bonemill::test {
 

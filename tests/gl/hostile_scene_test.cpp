@@ -1,9 +1,9 @@
 // Whatever the parsers let through is drawn without harm.
 #include <gtest/gtest.h>
 
-#include "render_client/offscreen/osmesa_context.h"
-#include "render_client/scene/render_scene.h"
-#include "render_client/subscribe/payloads.h"
+#include "render_client/link/subscribe/payloads.h"
+#include "render_client/look/offscreen/osmesa_context.h"
+#include "render_client/look/render_scene/render_scene.h"
 #include "tests/gl/synthetic_scene.h"
 #include "tests/support/mutated_bytes.h"
 #include "tests/support/synthetic_nodes.h"

@@ -2,7 +2,7 @@
 // the cavity.
 #pragma once
 
-#include "render_client/scene/render_scene.h"
+#include "render_client/look/render_scene/render_scene.h"
 #include "tests/gl/synthetic_scene.h"
 
 namespace bonemill::test {

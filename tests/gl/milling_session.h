@@ -6,9 +6,9 @@
 #include <cmath>
 #include <functional>
 
-#include "common/units.h"
-#include "haptic_server/mesh/leaf_mesher.h"
-#include "render_client/scene/render_scene.h"
+#include "common/base/units.h"
+#include "haptic_server/surface/mesh/leaf_mesher.h"
+#include "render_client/look/render_scene/render_scene.h"
 #include "tests/gl/synthetic_scene.h"
 
 namespace bonemill::test {

@@ -1,8 +1,8 @@
-#include "render_client/scene/node_intake.h"
+#include "render_client/look/render_scene/node_intake.h"
 
 #include <gtest/gtest.h>
 
-#include "render_client/offscreen/osmesa_context.h"
+#include "render_client/look/offscreen/osmesa_context.h"
 #include "tests/gl/milled_scene.h"
 
 namespace bonemill {

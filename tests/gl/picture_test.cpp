@@ -1,8 +1,8 @@
-#include "render_client/offscreen/picture.h"
+#include "render_client/look/offscreen/picture.h"
 
 #include <gtest/gtest.h>
 
-#include "common/user_error.h"
+#include "common/base/user_error.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bonemill {

@@ -1,8 +1,8 @@
-#include "render_client/gl/program.h"
+#include "render_client/look/gl/program.h"
 
 #include <gtest/gtest.h>
 
-#include "render_client/offscreen/osmesa_context.h"
+#include "render_client/look/offscreen/osmesa_context.h"
 
 namespace bonemill {
 namespace {

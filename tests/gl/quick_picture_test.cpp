@@ -3,8 +3,8 @@
 
 #include <random>
 
-#include "render_client/offscreen/osmesa_context.h"
-#include "render_client/scene/render_scene.h"
+#include "render_client/look/offscreen/osmesa_context.h"
+#include "render_client/look/render_scene/render_scene.h"
 #include "tests/gl/synthetic_scene.h"
 
 namespace bonemill {

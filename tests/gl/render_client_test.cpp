@@ -10,7 +10,7 @@
 #include <fstream>
 #include <thread>
 
-#include "haptic_server/publish/publisher.h"
+#include "haptic_server/server/publish/publisher.h"
 #include "tests/gl/synthetic_scene.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/places.h"

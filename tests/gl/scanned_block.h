@@ -2,7 +2,7 @@
 // dense grain on one side, so that no mirrored picture looks the same.
 #pragma once
 
-#include "render_client/densities/density_store.h"
+#include "render_client/link/density_store/density_store.h"
 #include "tests/gl/milled_scene.h"
 
 namespace bonemill::test {

@@ -5,9 +5,9 @@
 #include <array>
 #include <memory>
 
-#include "render_client/controls/help_rows.h"
-#include "render_client/offscreen/osmesa_context.h"
-#include "render_client/scene/render_scene.h"
+#include "render_client/hand/controls/help_rows.h"
+#include "render_client/look/offscreen/osmesa_context.h"
+#include "render_client/look/render_scene/render_scene.h"
 #include "tests/gl/synthetic_scene.h"
 
 namespace bonemill {

@@ -10,8 +10,8 @@
 #include <iostream>
 #include <vector>
 
-#include "render_client/audio/milling_synth.h"
-#include "render_client/audio/wav_file.h"
+#include "render_client/sound/milling_synth.h"
+#include "render_client/sound/wav_file.h"
 
 namespace bonemill {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "render_client/offscreen/osmesa_context.h"
+#include "render_client/look/offscreen/osmesa_context.h"
 #include "tests/gl/milled_scene.h"
 
 namespace bonemill::test {

@@ -1,7 +1,7 @@
 // Closes the loop of the real tick with the device daemon's emulated ARES, its kinematics, limits and delay.
-#include "device_daemon/ares/ares_device.h"
-#include "device_daemon/driver/ares_emulator.h"
-#include "device_daemon/loop/device_loop.h"
+#include "device_daemon/ares/ares_device/ares_device.h"
+#include "device_daemon/ares/driver/ares_emulator.h"
+#include "device_daemon/control/device_loop/device_loop.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"

@@ -1,7 +1,7 @@
 // Takes volumes that no scanner should deliver: whatever comes out is finite and within the limits.
 #include <random>
 
-#include "haptic_server/volume/import/densify.h"
+#include "haptic_server/scans/densify/densify.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"

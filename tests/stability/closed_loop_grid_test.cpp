@@ -1,7 +1,7 @@
 // Closes the loop against a plane and in a hole, over devices, hands, delays and encoders.
 #include <cstdio>
 
-#include "common/units.h"
+#include "common/base/units.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/core/tick/haptic_tick.h"
 #include "tests/stability/plant.h"
 #include "tests/stability/scene.h"
 

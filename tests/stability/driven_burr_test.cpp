@@ -1,6 +1,6 @@
 // Asks what happens in contact to a burr that is driven: run-up, stall, pedal, pause, whirl, another tool.
-#include "common/units.h"
-#include "haptic_server/bone/bone_history.h"
+#include "common/base/units.h"
+#include "haptic_server/core/bone/bone_history.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/energy_meter.h"

@@ -1,7 +1,7 @@
 // Several hard cases share these bodies; each comes with the pose where its tool starts.
 #pragma once
 
-#include "common/units.h"
+#include "common/base/units.h"
 #include "tests/stability/scene.h"
 
 namespace bonemill::test {

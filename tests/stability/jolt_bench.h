@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "haptic_server/bone/bone_history.h"
+#include "haptic_server/core/bone/bone_history.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/jolts.h"
 

@@ -1,5 +1,5 @@
 // On closed paths without milling no energy comes from nowhere, with every tick run or with some dropped.
-#include "common/units.h"
+#include "common/base/units.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/energy_meter.h"

@@ -1,5 +1,5 @@
 // At the maximum push the tool stays on its side of the bone and the force within its limit.
-#include "common/units.h"
+#include "common/base/units.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"

@@ -10,7 +10,7 @@
 #pragma once
 
 #include "common/geometry/pose.h"
-#include "device_daemon/driver/ares_emulator.h"
+#include "device_daemon/ares/driver/ares_emulator.h"
 
 namespace bonemill::test {
 

@@ -1,5 +1,5 @@
 // The closed loop at rest under load has no limit cycle and no buzz.
-#include "common/units.h"
+#include "common/base/units.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"

@@ -1,5 +1,5 @@
 // The tool is changed for a larger or smaller one while it presses on the bone.
-#include "common/units.h"
+#include "common/base/units.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "haptic_server/tick/hand_side.h"
-#include "haptic_server/tick/tick_io.h"
+#include "haptic_server/core/tick/hand_side.h"
+#include "haptic_server/core/tick/tick_io.h"
 
 namespace bonemill::test {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "haptic_server/bone/bone_model.h"
-#include "haptic_server/mesh/mesh_check.h"
+#include "haptic_server/core/bone/bone_model.h"
+#include "haptic_server/surface/mesh/mesh_check.h"
 #include "tests/support/voxel_fields.h"
 
 namespace bonemill::test {

@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "haptic_server/bone/bone_model.h"
-#include "haptic_server/spo/gradient_model.h"
+#include "haptic_server/core/bone/bone_model.h"
+#include "haptic_server/core/spo/gradient_model.h"
 #include "tests/support/test_bodies.h"
 
 namespace bonemill::test {

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "haptic_server/effects/burr_speed.h"
+#include "haptic_server/core/effects/burr_speed.h"
 #include "tests/support/random_direction.h"
 
 namespace bonemill::test {

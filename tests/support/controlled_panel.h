@@ -1,7 +1,7 @@
 // It is a viewer's controls with the panel, as the tests that click and draw it need them.
 #pragma once
 
-#include "render_client/panel/panel.h"
+#include "render_client/panel/panel/panel.h"
 #include "tests/support/controlled_viewer.h"
 
 namespace bonemill::test {

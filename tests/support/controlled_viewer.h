@@ -2,10 +2,10 @@
 #pragma once
 
 #include "proto/topics.pb.h"
-#include "render_client/camera/orbit_camera.h"
-#include "render_client/camera/view_settings.h"
-#include "render_client/controls/session_view.h"
-#include "render_client/controls/viewer_controls.h"
+#include "render_client/hand/controls/session_view.h"
+#include "render_client/hand/controls/viewer_controls.h"
+#include "render_client/look/camera/orbit_camera.h"
+#include "render_client/look/camera/view_settings.h"
 
 namespace bonemill::test {
 

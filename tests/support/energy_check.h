@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "haptic_server/coupling/energy_coupling.h"
+#include "haptic_server/core/coupling/energy_coupling.h"
 
 namespace bonemill::test {
 

@@ -2,9 +2,9 @@
 
 #include <fstream>
 
+#include "common/base/units.h"
 #include "common/config/viewer_effects.h"
-#include "common/units.h"
-#include "haptic_server/volume/import/nrrd_writer.h"
+#include "haptic_server/scans/nrrd/nrrd_writer.h"
 
 namespace bonemill::test {
 namespace {

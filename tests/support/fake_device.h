@@ -1,7 +1,7 @@
 // A haptic device whose reading a test sets, and which remembers what it was ordered.
 #pragma once
 
-#include "device_daemon/haptic_device/haptic_device.h"
+#include "device_daemon/control/haptic_device/haptic_device.h"
 
 namespace bonemill::test {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render_client/hud/hud.h"
+#include "render_client/look/hud/hud.h"
 
 namespace bonemill::test {
 

@@ -1,7 +1,7 @@
 // Gives the settings of a tick that mills and adds by time, as most tests of the tick want it.
 #pragma once
 
-#include "haptic_server/tick/tick_config.h"
+#include "haptic_server/core/tick/tick_config.h"
 #include "tests/support/typical_effects.h"
 
 namespace bonemill::test {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "haptic_server/mesh/mesh_check.h"
-#include "haptic_server/tick/fixed_tick.h"
+#include "haptic_server/core/tick/fixed_tick.h"
+#include "haptic_server/surface/mesh/mesh_check.h"
 #include "tests/support/test_bodies.h"
 #include "tests/support/typical_effects.h"
 #include "tests/support/voxel_fields.h"

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "haptic_server/volume/index_box.h"
-#include "tests/unit/volume_import/dicom_elements.h"
+#include "haptic_server/core/volume/index_box.h"
+#include "tests/unit/haptic_server/scans/import/dicom_elements.h"
 
 namespace bonemill::test {
 

@@ -7,14 +7,14 @@
 
 #include "common/config/scene_file.h"
 #include "common/rt/clock.h"
-#include "haptic_server/bone/checkpoints.h"
-#include "haptic_server/journal/build_facts.h"
-#include "haptic_server/journal/journal.h"
-#include "haptic_server/record/state_hash.h"
-#include "haptic_server/setup/scene_effects.h"
-#include "haptic_server/setup/scene_setup.h"
-#include "haptic_server/tick/haptic_tick.h"
-#include "haptic_server/volume/import/nrrd_writer.h"
+#include "haptic_server/core/bone/checkpoints.h"
+#include "haptic_server/core/tick/haptic_tick.h"
+#include "haptic_server/recording/journal/build_facts.h"
+#include "haptic_server/recording/journal/journal.h"
+#include "haptic_server/recording/statistics/state_hash.h"
+#include "haptic_server/scans/nrrd/nrrd_writer.h"
+#include "haptic_server/scene/setup/scene_effects.h"
+#include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/support/test_bodies.h"
 
 namespace bonemill::test {

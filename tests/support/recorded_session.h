@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "haptic_server/volume/voxel_volume.h"
+#include "haptic_server/core/volume/voxel_volume.h"
 
 namespace bonemill::test {
 

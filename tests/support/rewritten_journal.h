@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "common/mcap/mcap_writer.h"
-#include "haptic_server/journal/journal_reader.h"
-#include "haptic_server/journal/journal_schemas.h"
+#include "haptic_server/recording/journal/journal_reader.h"
+#include "haptic_server/recording/journal/journal_schemas.h"
 
 namespace bonemill::test {
 

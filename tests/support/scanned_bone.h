@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "haptic_server/bone/bone_history.h"
-#include "haptic_server/volume/bone_properties.h"
+#include "haptic_server/core/bone/bone_history.h"
+#include "haptic_server/core/volume/bone_properties.h"
 #include "tests/support/ct_brick.h"
 
 namespace bonemill::test {

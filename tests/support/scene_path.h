@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/config/scene_geometry.h"
-#include "haptic_server/tick/tick_io.h"
+#include "haptic_server/core/tick/tick_io.h"
 #include "proto/scene.pb.h"
 
 namespace bonemill::test {

@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "common/base/units.h"
 #include "common/rt/clock.h"
-#include "common/units.h"
-#include "haptic_server/tick/tick_io.h"
+#include "haptic_server/core/tick/tick_io.h"
 
 namespace bonemill::test {
 

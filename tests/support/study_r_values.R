@@ -1,7 +1,7 @@
 #!/usr/bin/env Rscript
-# Writes the values that tests/unit/study_statistics compares with, as R and its packages compute them:
+# Writes the values that tests/unit/haptic_server/teaching/study_statistics compares with, as R and its packages compute them:
 #
-#   tests/support/study_r_values.R >tests/unit/study_statistics/r_values.txt
+#   tests/support/study_r_values.R >tests/unit/haptic_server/teaching/study_statistics/r_values.txt
 #
 # It needs r-base-core, r-cran-coin, r-cran-exactranktests and r-cran-boot (deploy/packages-bench.txt). One line is a
 # name, then its numbers with all their digits.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/geometry/node_mesh.h"
-#include "haptic_server/telemetry/tick_record.h"
+#include "haptic_server/core/telemetry/tick_record.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <functional>
 
-#include "haptic_server/bone/bone_model.h"
-#include "haptic_server/tool/tool_model.h"
+#include "haptic_server/core/bone/bone_model.h"
+#include "haptic_server/core/tool/tool_model.h"
 
 namespace bonemill::test {
 

@@ -1,8 +1,9 @@
 // The effects have the figures that the tests count on. They are those of a scene that lists the effect and
-// says no more (tests/unit/setup/scene_burr_effects_test.cpp), but that bone is equally hard at any density.
+// says no more (tests/unit/haptic_server/scene/setup/scene_burr_effects_test.cpp), but that bone is equally
+// hard at any density.
 #pragma once
 
-#include "haptic_server/effects/effect_configs.h"
+#include "haptic_server/core/effects/effect_configs.h"
 
 namespace bonemill::test {
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "haptic_server/mesh/leaf_mesher.h"
+#include "haptic_server/surface/mesh/leaf_mesher.h"
 
 namespace bonemill::test {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "common/units.h"
+#include "common/base/units.h"
 
 namespace bonemill {
 namespace {

@@ -11,11 +11,11 @@
 #include <memory>
 #include <optional>
 
-#include "haptic_server/assessment/figure.h"
+#include "haptic_server/assessment/measures/figure.h"
 #include "haptic_server/assessment/product/judged_task.h"
 #include "haptic_server/assessment/product/signed_field.h"
-#include "haptic_server/effects/burr_probes.h"
-#include "haptic_server/volume/voxel_volume.h"
+#include "haptic_server/core/effects/burr_probes.h"
+#include "haptic_server/core/volume/voxel_volume.h"
 
 namespace bonemill {
 

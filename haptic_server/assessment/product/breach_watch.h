@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "haptic_server/assessment/product/breach.h"
-#include "haptic_server/telemetry/tick_record.h"
+#include "haptic_server/core/telemetry/tick_record.h"
 
 namespace bonemill {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "common/units.h"
+#include "common/base/units.h"
 #include "haptic_server/assessment/product/weighted_sample.h"
 
 namespace bonemill {

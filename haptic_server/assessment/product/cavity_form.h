@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "haptic_server/assessment/figure.h"
+#include "haptic_server/assessment/measures/figure.h"
 #include "haptic_server/assessment/product/cut_surface.h"
 
 namespace bonemill {

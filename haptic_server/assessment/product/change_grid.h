@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "haptic_server/assessment/product/judged_task.h"
-#include "haptic_server/volume/voxel_volume.h"
+#include "haptic_server/core/volume/voxel_volume.h"
 
 namespace bonemill {
 

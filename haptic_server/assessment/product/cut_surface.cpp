@@ -1,6 +1,6 @@
 #include "haptic_server/assessment/product/cut_surface.h"
 
-#include "haptic_server/mesh/leaf_mesher.h"
+#include "haptic_server/surface/mesh/leaf_mesher.h"
 
 namespace bonemill {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "haptic_server/assessment/written_unit.h"
+#include "haptic_server/assessment/measures/written_unit.h"
 
 namespace bonemill {
 namespace {

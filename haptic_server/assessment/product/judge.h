@@ -2,7 +2,7 @@
 // only where the teacher gave weights.
 #pragma once
 
-#include "haptic_server/assessment/figure.h"
+#include "haptic_server/assessment/measures/figure.h"
 #include "haptic_server/assessment/product/judged_task.h"
 
 namespace bonemill {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "haptic_server/assessment/expert_path.h"
+#include "haptic_server/assessment/measures/expert_path.h"
 #include "haptic_server/assessment/product/zones.h"
-#include "haptic_server/volume/bone_properties.h"
-#include "haptic_server/volume/voxel_ids.h"
+#include "haptic_server/core/volume/bone_properties.h"
+#include "haptic_server/core/volume/voxel_ids.h"
 
 namespace bonemill {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "common/units.h"
+#include "common/base/units.h"
 
 namespace bonemill {
 namespace {

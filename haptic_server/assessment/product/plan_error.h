@@ -2,7 +2,7 @@
 // line, by their moments.
 #pragma once
 
-#include "haptic_server/assessment/figure.h"
+#include "haptic_server/assessment/measures/figure.h"
 #include "haptic_server/assessment/product/breach.h"
 #include "haptic_server/assessment/product/change_grid.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "haptic_server/assessment/product/judged_task.h"
-#include "haptic_server/volume/leaf_lattice.h"
+#include "haptic_server/core/volume/leaf_lattice.h"
 
 namespace bonemill {
 

@@ -1,6 +1,6 @@
 #include "haptic_server/assessment/product/signed_field.h"
 
-#include "haptic_server/volume/import/distance_transform.h"
+#include "haptic_server/scans/densify/distance_transform.h"
 
 namespace bonemill {
 

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "haptic_server/volume/index_box.h"
+#include "haptic_server/core/volume/index_box.h"
 
 namespace bonemill {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "common/units.h"
+#include "common/base/units.h"
 
 namespace bonemill {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "common/units.h"
+#include "common/base/units.h"
 
 namespace bonemill {
 namespace {

@@ -1,11 +1,11 @@
 // Looks at the pixels of make-case's window, drawn off screen by the very code of the window.
 #include <gtest/gtest.h>
 
-#include "render_client/case_window/desk/scan_slice.h"
-#include "render_client/case_window/screen/screen_painter.h"
-#include "render_client/offscreen/osmesa_context.h"
+#include "render_client/case_window/case_desk/scan_slice.h"
+#include "render_client/case_window/case_screen/screen_painter.h"
+#include "render_client/look/offscreen/osmesa_context.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/unit/case_screen/clicked_screen.h"
+#include "tests/unit/render_client/case_window/case_screen/clicked_screen.h"
 
 namespace bonemill {
 namespace {

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <functional>
 
-#include "haptic_server/setup/scene_setup.h"
+#include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/gl/window/virtual_display.h"
 #include "tests/support/process.h"
-#include "tests/unit/case_screen/clicked_screen.h"
+#include "tests/unit/render_client/case_window/case_screen/clicked_screen.h"
 
 namespace bonemill {
 namespace {

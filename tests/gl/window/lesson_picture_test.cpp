@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "render_client/offscreen/osmesa_context.h"
-#include "render_client/panel/panel_painter.h"
+#include "render_client/look/offscreen/osmesa_context.h"
+#include "render_client/panel/panel/panel_painter.h"
 #include "tests/gl/golden.h"
 #include "tests/support/class_lesson.h"
 #include "tests/support/controlled_panel.h"

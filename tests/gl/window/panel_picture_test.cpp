@@ -3,8 +3,8 @@
 
 #include <cstdlib>
 
-#include "render_client/offscreen/osmesa_context.h"
-#include "render_client/panel/panel_painter.h"
+#include "render_client/look/offscreen/osmesa_context.h"
+#include "render_client/panel/panel/panel_painter.h"
 #include "tests/support/controlled_panel.h"
 
 namespace bonemill {

@@ -7,10 +7,10 @@
 #include <random>
 #include <set>
 
+#include "common/base/units.h"
 #include "common/device_messages/device_state.h"
-#include "common/units.h"
-#include "device_daemon/virtual_handle/handle_device.h"
-#include "render_client/subscribe/scene_subscriber.h"
+#include "device_daemon/hands/virtual_handle/handle_device.h"
+#include "render_client/link/subscribe/scene_subscriber.h"
 #include "tests/gl/window/mouse_session.h"
 #include "tests/support/dds_session.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/device_messages/device_messages.h"
-#include "haptic_server/publish/publisher.h"
+#include "haptic_server/server/publish/publisher.h"
 #include "tests/gl/milled_scene.h"
 #include "tests/support/dds_session.h"
 

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "common/device_messages/device_messages.h"
-#include "device_daemon/pointer/hand_wish.h"
-#include "render_client/controls/tool_hold.h"
-#include "render_client/subscribe/scene_subscriber.h"
+#include "device_daemon/hands/pointer/hand_wish.h"
+#include "render_client/hand/controls/tool_hold.h"
+#include "render_client/link/subscribe/scene_subscriber.h"
 #include "tests/gl/window/mouse_session.h"
 #include "tests/gl/window/shown_session.h"
 

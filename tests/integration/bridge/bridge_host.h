@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "device_daemon/wire/drive_state.h"
-#include "device_daemon/wire/host_link.h"
+#include "device_daemon/ares/wire/drive_state.h"
+#include "device_daemon/ares/wire/host_link.h"
 #include "tests/support/process.h"
 
 namespace bonemill::test {

@@ -17,7 +17,7 @@ using wire::DriveState;
 class ExampleBridge : public testing::TestWithParam<const char*> {
   protected:
     static std::vector<std::string> command() {
-        const std::string examples = test::sourceDir() + "/device_daemon/bridge/examples/";
+        const std::string examples = test::sourceDir() + "/device_daemon/bridges/examples/";
         if (GetParam() == std::string("python")) return {"/usr/bin/python3", examples + "spring_bridge.py"};
         return {test::helperDir() + "/spring_bridge"};
     }

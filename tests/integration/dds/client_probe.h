@@ -4,7 +4,7 @@
 #include <chrono>
 #include <map>
 
-#include "render_client/subscribe/scene_subscriber.h"
+#include "render_client/link/subscribe/scene_subscriber.h"
 #include "tests/support/dds_session.h"
 
 namespace bonemill {

@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "common/rt/clock.h"
-#include "haptic_server/bone/bone_model.h"
-#include "haptic_server/mesh/mesh_check.h"
-#include "haptic_server/mesh/mesh_rounds.h"
-#include "haptic_server/milling/timed_milling.h"
-#include "haptic_server/publish/byte_budget.h"
-#include "haptic_server/publish/publisher.h"
+#include "haptic_server/core/bone/bone_model.h"
+#include "haptic_server/core/milling/timed_milling.h"
+#include "haptic_server/server/publish/byte_budget.h"
+#include "haptic_server/server/publish/publisher.h"
+#include "haptic_server/surface/mesh/mesh_check.h"
+#include "haptic_server/surface/mesh/mesh_rounds.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/contact_scene.h"
 #include "tests/support/test_bodies.h"

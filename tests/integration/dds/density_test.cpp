@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "common/rt/clock.h"
-#include "haptic_server/densities/density_publisher.h"
-#include "haptic_server/publish/publisher.h"
+#include "haptic_server/server/publish/publisher.h"
+#include "haptic_server/surface/density_stream/density_publisher.h"
 #include "tests/integration/dds/child_process.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/scanned_bone.h"

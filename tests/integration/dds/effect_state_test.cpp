@@ -3,7 +3,7 @@
 
 #include <thread>
 
-#include "haptic_server/publish/publisher.h"
+#include "haptic_server/server/publish/publisher.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/synthetic_nodes.h"
 

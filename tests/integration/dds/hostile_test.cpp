@@ -6,9 +6,9 @@
 #include <memory>
 #include <thread>
 
-#include "common/mesh/mesh_codec.h"
-#include "haptic_server/publish/other_server.h"
-#include "haptic_server/publish/publisher.h"
+#include "common/mesh_codec/mesh_codec.h"
+#include "haptic_server/server/publish/other_server.h"
+#include "haptic_server/server/publish/publisher.h"
 #include "tests/integration/dds/child_process.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/synthetic_nodes.h"

@@ -1,7 +1,7 @@
 // What can be taught, with the pictures of its scenes, which come by themselves and once.
 #include <gtest/gtest.h>
 
-#include "haptic_server/publish/publisher.h"
+#include "haptic_server/server/publish/publisher.h"
 #include "tests/integration/dds/client_probe.h"
 
 namespace bonemill {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "common/dds/remark_bounds.h"
-#include "common/mesh/mesh_codec.h"
-#include "haptic_server/publish/publisher.h"
+#include "common/mesh_codec/mesh_codec.h"
+#include "haptic_server/server/publish/publisher.h"
 #include "tests/integration/dds/child_process.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/synthetic_nodes.h"

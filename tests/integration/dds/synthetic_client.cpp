@@ -2,7 +2,7 @@
 // has changed.
 #include <iostream>
 
-#include "render_client/subscribe/scene_subscriber.h"
+#include "render_client/link/subscribe/scene_subscriber.h"
 
 int main(int, char** argv) {
     using namespace bonemill;

@@ -10,7 +10,7 @@
 #include <iostream>
 #include <sstream>
 
-#include "haptic_server/publish/publisher.h"
+#include "haptic_server/server/publish/publisher.h"
 #include "tests/support/synthetic_nodes.h"
 
 namespace {

@@ -6,9 +6,9 @@
 #include <memory>
 #include <thread>
 
-#include "haptic_server/publish/publisher.h"
-#include "render_client/subscribe/scene_subscriber.h"
-#include "render_client/subscribe/session_list.h"
+#include "haptic_server/server/publish/publisher.h"
+#include "render_client/link/subscribe/scene_subscriber.h"
+#include "render_client/link/subscribe/session_list.h"
 #include "tests/support/dds_session.h"
 
 namespace bonemill {

@@ -14,11 +14,11 @@ using test::Finished;
 constexpr const char* kRooms =
     "room ground common\n"
     "room rt common/rt\n"
-    "room milling haptic_server/milling\n"
-    "room telemetry haptic_server/telemetry\n"
+    "room milling haptic_server/core/milling\n"
+    "room telemetry haptic_server/core/telemetry\n"
     "room topics_proto proto/topics.proto topics_tests\n"
-    "test rt_tests tests/unit/rt unit bonemill::rt,bonemill::ground\n"
-    "test milling_tests tests/unit/milling unit bonemill::milling,bonemill::telemetry\n"
+    "test rt_tests tests/unit/common/rt unit bonemill::rt,bonemill::ground\n"
+    "test milling_tests tests/unit/haptic_server/core/milling unit bonemill::milling,bonemill::telemetry\n"
     "test milling_properties tests/property/milling property bonemill::milling\n"
     "test milling_integration tests/integration/milling integration bonemill::milling\n"
     "test topics_tests tests/integration/dds integration bonemill::topics_proto\n";
@@ -41,14 +41,14 @@ class RoomTests : public testing::Test {
 
 TEST_F(RoomTests, ARoomHasItsQuickTests) {
     expectTests({"milling"}, "milling_properties\nmilling_tests\n");
-    expectTests({"haptic_server/milling/"}, "milling_properties\nmilling_tests\n");
+    expectTests({"haptic_server/core/milling/"}, "milling_properties\nmilling_tests\n");
     expectTests({"telemetry"}, "milling_tests\n");
     expectTests({"rt", "topics_proto"}, "rt_tests\ntopics_tests\n");
 }
 
 TEST_F(RoomTests, AChangedFileHasTheTestsOfItsRoom) {
     expectTests({"--changed", "haptic_server/milling/burr_limit.cpp"}, "milling_properties\nmilling_tests\n");
-    expectTests({"--changed", "common/units.h"}, "rt_tests\n");
+    expectTests({"--changed", "common/base/units.h"}, "rt_tests\n");
     expectTests({"--changed", "proto/topics.proto", "README.md"}, "topics_tests\n");
 }
 
@@ -57,9 +57,10 @@ TEST_F(RoomTests, AChangedTestIsRunWhateverItsLabel) {
 }
 
 TEST_F(RoomTests, CodeWithoutATestIsAFailureAndDocumentsAreNot) {
-    const Finished code = ask({"--changed", "render_client/app/main.cpp"});
+    const Finished code = ask({"--changed", "render_client/apps/render_client/main.cpp"});
     EXPECT_EQ(code.exit_code, 1);
-    EXPECT_NE(code.err.find("no room has render_client/app/main.cpp"), std::string::npos) << code.err;
+    EXPECT_NE(code.err.find("no room has render_client/apps/render_client/main.cpp"), std::string::npos)
+        << code.err;
     EXPECT_EQ(code.out, "");
     EXPECT_EQ(ask({"--changed", "docs/teach/tool.md"}).exit_code, 0);
 }

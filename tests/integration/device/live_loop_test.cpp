@@ -17,7 +17,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "haptic_server/telemetry/tick_record.h"
+#include "haptic_server/core/telemetry/tick_record.h"
 #include "tests/integration/device/live_loop_trace.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/process.h"

@@ -10,7 +10,7 @@
 
 #include "common/rt/clock.h"
 #include "common/rt/realtime.h"
-#include "device_daemon/wire/drive_state.h"
+#include "device_daemon/ares/wire/drive_state.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 

@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "device_daemon/wire/codec.h"
-#include "device_daemon/wire/udp_socket.h"
+#include "device_daemon/ares/wire/codec.h"
+#include "device_daemon/ares/wire/udp_socket.h"
 
 namespace bonemill::test {
 

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "common/units.h"
-#include "haptic_server/offline/run_path.h"
-#include "haptic_server/record/state_hash.h"
-#include "haptic_server/setup/scene_setup.h"
+#include "common/base/units.h"
+#include "haptic_server/lab/offline/run_path.h"
+#include "haptic_server/recording/statistics/state_hash.h"
+#include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/support/every_effect_scene.h"
 #include "tests/support/temporary_folder.h"
 

@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <new>
 
-#include "haptic_server/effects/make_effects.h"
-#include "haptic_server/setup/scene_setup.h"
-#include "haptic_server/tick/fixed_tick.h"
+#include "haptic_server/core/effects/make_effects.h"
+#include "haptic_server/core/tick/fixed_tick.h"
+#include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/support/every_effect_scene.h"
 #include "tests/support/temporary_folder.h"
 

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "common/units.h"
-#include "haptic_server/offline/run_path.h"
-#include "haptic_server/phantom/tooth_phantom.h"
-#include "haptic_server/record/bone_files.h"
-#include "haptic_server/record/fault_names.h"
-#include "haptic_server/setup/scene_setup.h"
-#include "haptic_server/volume/import/import_volume.h"
+#include "common/base/units.h"
+#include "haptic_server/cases/phantom/tooth_phantom.h"
+#include "haptic_server/lab/offline/run_path.h"
+#include "haptic_server/recording/statistics/bone_files.h"
+#include "haptic_server/recording/statistics/fault_names.h"
+#include "haptic_server/scans/import/import_volume.h"
+#include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/scene_path.h"

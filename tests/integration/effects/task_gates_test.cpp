@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/units.h"
-#include "haptic_server/offline/run_path.h"
-#include "haptic_server/offline/task_run.h"
-#include "haptic_server/volume/import/nrrd_writer.h"
+#include "common/base/units.h"
+#include "haptic_server/lab/offline/run_path.h"
+#include "haptic_server/lab/offline/task_run.h"
+#include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/scene_path.h"

@@ -1,5 +1,5 @@
 // Guests see what the server shows, and the server hears them as the guest list knows them.
-#include "haptic_server/session/remark_book.h"
+#include "haptic_server/teaching/lessons/remark_book.h"
 #include "tests/integration/gateway/gateway_guest.h"
 
 namespace bonemill::gateway {

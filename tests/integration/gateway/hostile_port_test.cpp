@@ -11,7 +11,7 @@
 #include <random>
 #include <thread>
 
-#include "render_client/tcp/dial.h"
+#include "render_client/web/tcp/dial.h"
 #include "tests/integration/gateway/gateway_guest.h"
 #include "tests/support/mutated_bytes.h"
 

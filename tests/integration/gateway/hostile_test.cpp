@@ -6,8 +6,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "common/user_error.h"
-#include "render_client/tcp/listen.h"
+#include "common/base/user_error.h"
+#include "render_client/web/tcp/listen.h"
 #include "tests/integration/gateway/gateway_guest.h"
 
 namespace bonemill::gateway {

@@ -1,7 +1,7 @@
 // Guests who come through a relay find the gateway as those do who come directly; the relay learns nothing.
 #include <fstream>
 
-#include "common/user_error.h"
+#include "common/base/user_error.h"
 #include "tests/integration/gateway/gateway_guest.h"
 #include "tests/integration/gateway/relayed_gateway.h"
 #include "tests/integration/gateway/remote_viewer.h"

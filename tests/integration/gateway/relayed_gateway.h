@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "render_client/connect/tls_socket.h"
+#include "render_client/web/connect/tls_socket.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"

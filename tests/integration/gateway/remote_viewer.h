@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "render_client/connect/gateway_session.h"
-#include "render_client/subscribe/scene_subscriber.h"
+#include "render_client/link/subscribe/scene_subscriber.h"
+#include "render_client/web/connect/gateway_session.h"
 
 namespace bonemill::gateway {
 

@@ -1,8 +1,8 @@
 // A viewer behind a gateway is a viewer as any other.
 #include <gtest/gtest.h>
 
-#include "common/user_error.h"
-#include "render_client/subscribe/command_words.h"
+#include "common/base/user_error.h"
+#include "render_client/link/subscribe/command_words.h"
 #include "tests/integration/gateway/gateway_guest.h"
 #include "tests/integration/gateway/remote_viewer.h"
 

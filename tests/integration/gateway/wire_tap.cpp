@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "render_client/tcp/listen.h"
+#include "render_client/web/tcp/listen.h"
 
 namespace bonemill::test {
 namespace {

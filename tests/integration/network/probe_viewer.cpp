@@ -7,8 +7,8 @@
 
 #include "common/cli/command_line.h"
 #include "common/dds/network_cli.h"
-#include "common/run_program.h"
-#include "render_client/subscribe/scene_subscriber.h"
+#include "common/process/run_program.h"
+#include "render_client/link/subscribe/scene_subscriber.h"
 
 namespace {
 

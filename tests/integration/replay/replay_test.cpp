@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <map>
 
-#include "render_client/subscribe/scene_subscriber.h"
+#include "render_client/link/subscribe/scene_subscriber.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/process.h"
 #include "tests/support/recorded_session.h"

@@ -17,7 +17,7 @@
 #include "common/cli/command_line.h"
 #include "common/dds/network.h"
 #include "common/dds/topic_traits.h"
-#include "common/run_program.h"
+#include "common/process/run_program.h"
 #include "common/security/security_folder.h"
 #include "proto/topics.pb.h"
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "haptic_server/accuracy/accuracy_settings.h"
-#include "haptic_server/telemetry/tick_record.h"
+#include "haptic_server/core/accuracy/accuracy_settings.h"
+#include "haptic_server/core/telemetry/tick_record.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/process.h"
 

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include "haptic_server/mesh/mesher.h"
-#include "haptic_server/record/state_hash.h"
-#include "haptic_server/setup/scene_setup.h"
+#include "haptic_server/recording/statistics/state_hash.h"
+#include "haptic_server/scene/setup/scene_setup.h"
+#include "haptic_server/surface/mesh/mesher.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/node_meshes.h"
 #include "tests/support/ply_reader.h"

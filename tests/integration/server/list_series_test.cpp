@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/process.h"
-#include "tests/unit/volume_import/dicom_bytes.h"
+#include "tests/unit/haptic_server/scans/import/dicom_bytes.h"
 
 namespace bonemill {
 namespace {

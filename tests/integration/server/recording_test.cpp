@@ -13,12 +13,12 @@
 #include <thread>
 
 #include "common/mcap/mcap_writer.h"
-#include "haptic_server/journal/bone_states.h"
-#include "haptic_server/journal/journal_reader.h"
-#include "haptic_server/offline/verify_journal.h"
-#include "haptic_server/rerun/recorded_scene.h"
-#include "haptic_server/setup/scene_setup.h"
-#include "haptic_server/telemetry/tick_record.h"
+#include "haptic_server/core/telemetry/tick_record.h"
+#include "haptic_server/recording/journal/bone_states.h"
+#include "haptic_server/recording/journal/journal_reader.h"
+#include "haptic_server/recording/rerun/recorded_scene.h"
+#include "haptic_server/recording/rerun/verify_journal.h"
+#include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/every_effect_scene.h"
 #include "tests/support/places.h"

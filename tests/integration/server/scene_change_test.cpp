@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "common/device_messages/device_state.h"
-#include "common/lesson/attempts_csv.h"
-#include "haptic_server/session/attempt_keeper.h"
+#include "common/lesson_csv/attempts_csv.h"
+#include "haptic_server/server/session/attempt_keeper.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/process.h"
 

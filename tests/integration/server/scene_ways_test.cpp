@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/scene_file.h"
-#include "device_daemon/app/device_setup.h"
-#include "device_daemon/emulator/scenario.h"
+#include "device_daemon/ares/emulator/scenario.h"
+#include "device_daemon/device_setup/device_setup.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 

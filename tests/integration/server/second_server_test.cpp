@@ -1,8 +1,8 @@
 // A session that has a server refuses the second before that one has shown anything.
 #include <gtest/gtest.h>
 
-#include "haptic_server/publish/publisher.h"
-#include "render_client/subscribe/scene_subscriber.h"
+#include "haptic_server/server/publish/publisher.h"
+#include "render_client/link/subscribe/scene_subscriber.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/process.h"
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "haptic_server/telemetry/tick_record.h"
+#include "haptic_server/core/telemetry/tick_record.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"

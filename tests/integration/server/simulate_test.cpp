@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "common/units.h"
-#include "haptic_server/kernels/kernels.h"
-#include "haptic_server/setup/scene_setup.h"
-#include "haptic_server/volume/import/import_volume.h"
+#include "common/base/units.h"
+#include "haptic_server/core/kernels/kernels.h"
+#include "haptic_server/scans/import/import_volume.h"
+#include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/support/ply_reader.h"
 #include "tests/support/process.h"
 

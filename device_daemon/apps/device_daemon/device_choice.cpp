@@ -1,0 +1,123 @@
+#include "device_daemon/apps/device_daemon/device_choice.h"
+
+#include <spdlog/spdlog.h>
+
+#include <charconv>
+
+#include "common/base/user_error.h"
+#include "device_daemon/apps/device_daemon/found_devices.h"
+#include "device_daemon/apps/device_daemon/pedalled_device.h"
+#include "device_daemon/ares/ares_device/wired_ares.h"
+#include "device_daemon/ares/driver/udp_pose_device.h"
+#include "device_daemon/hands/input/gamepad_device.h"
+#include "device_daemon/hands/input/spacemouse_device.h"
+#include "device_daemon/hands/pointer/pointer_device.h"
+
+namespace bonemill {
+namespace {
+
+constexpr char kThisMachine[] = "127.0.0.1";
+
+// Splits "127.0.0.1:5000". Throws UserError.
+UdpDeviceConfig wireTo(const std::string& word, const std::string& endpoint) {
+    const size_t colon = endpoint.rfind(':');
+    uint16_t port = 0;
+    const char* const end = endpoint.data() + endpoint.size();
+    const bool has_port = colon != std::string::npos &&
+                          std::from_chars(endpoint.data() + colon + 1, end, port).ptr == end && port != 0;
+    if (!has_port)
+        throw UserError("--device " + word + ": give address and port, as in " + word + ":192.168.1.5:5000");
+    const std::string address = endpoint.substr(0, colon);
+    const bool is_here = address.rfind("127.", 0) == 0;
+    return {.controller = wire::endpointOf(address, port),
+            .socket = wire::UdpSocket(wire::endpointOf(is_here ? kThisMachine : "0.0.0.0", 0))};
+}
+
+// A program of the daemon's own, and the way to it; it listens to nobody else.
+struct OwnProgram {
+    OwnProgram(const std::string& name, std::vector<std::string> words) {
+        words.insert(words.end(), {"--host-port", std::to_string(wire.socket.local().port)});
+        program = std::make_unique<ChildProgram>(name, std::move(words));
+        wire.controller = wire::endpointOf(kThisMachine, program->port());
+    }
+    UdpDeviceConfig wire{.controller = {}};
+    std::unique_ptr<ChildProgram> program;
+};
+
+ChosenDevice simulated(const FollowedScene& scene, const DaemonOptions& options) {
+    std::vector<std::string> words{"--scene", scene.file, "--log-level", options.log_level};
+    if (options.seconds) words.insert(words.end(), {"--seconds", std::to_string(*options.seconds)});
+    if (options.hold) words.push_back("--hold");
+    // Its host may be late now and then, and nobody is hurt by it.
+    if (options.is_strict_realtime)
+        words.push_back("--strict-rt");
+    else
+        words.insert(words.end(), {"--watchdog-ms", "30"});
+    OwnProgram own("ares_emulator", words);
+    own.program->listens();
+    auto device = std::make_unique<WiredAres>(scene.setup.simulated_ares, std::move(own.wire));
+    return {std::move(own.program), std::move(device), true};
+}
+
+ChosenDevice bridged(const std::string& program_name) {
+    OwnProgram own(program_name, {});
+    auto device = std::make_unique<UdpPoseDevice>(std::move(own.wire));
+    return {.program = std::move(own.program), .device = std::move(device), .is_of_scene = false};
+}
+
+ChosenDevice pointer(const FollowedScene& scene, const DaemonOptions& options) {
+    const DeviceSetup& setup = scene.setup;
+    return {nullptr, std::make_unique<PointerDevice>(PointerConfig{.domain = options.domain,
+                                                                   .session = options.session,
+                                                                   .epoch = scene.epoch,
+                                                                   .X_WD = setup.X_WD,
+                                                                   .workspace_scale = setup.workspace_scale,
+                                                                   .X_DT_start = setup.X_DT_start})};
+}
+
+// Only some kinds take an address or a path behind their name.
+ChosenDevice deviceOf(const std::string& word, const FollowedScene& scene, const DaemonOptions& options) {
+    const DeviceSetup& setup = scene.setup;
+    const std::string kind = word.substr(0, word.find(':'));
+    const std::string place = kind.size() < word.size() ? word.substr(kind.size() + 1) : "";
+    spdlog::info("the hand is {}", word);
+    if (kind == "ares") return {nullptr, std::make_unique<WiredAres>(setup.ares, wireTo(kind, place))};
+    if (kind == "bridge")
+        return {.program = nullptr,
+                .device = std::make_unique<UdpPoseDevice>(wireTo(kind, place)),
+                .is_of_scene = false};
+    if (kind == "gamepad")
+        return {nullptr, std::make_unique<GamepadDevice>(setup.rates, setup.X_DT_start, gamepadAt(place))};
+    if (!place.empty())
+        throw UserError("--device " + word + ": only ares, bridge and gamepad take more than a word");
+    if (kind == "simulated") return simulated(scene, options);
+    if (kind == "force-dimension") return bridged("bonemill_bridge_force_dimension");
+    if (kind == "touch") return bridged("bonemill_bridge_touch");
+    if (kind == "haply") return bridged("bonemill_bridge_haply");
+    if (kind == "spacemouse")
+        return {nullptr, std::make_unique<SpaceMouseDevice>(setup.rates, setup.X_DT_start)};
+    if (kind == "pointer") return pointer(scene, options);
+    throw UserError("--device " + word + ": there is no such device (see device_daemon --help)");
+}
+
+}  // namespace
+
+const char* deviceChoices() {
+    return "The hand: auto (the best that is there), simulated (a scripted hand on the emulated ARES), "
+           "ares:ADDRESS:PORT (a controller that speaks docs/lab/ares_link.md), bridge:ADDRESS:PORT (a "
+           "program "
+           "that speaks "
+           "its pose packets), force-dimension, touch, haply, spacemouse, gamepad[:PATH], pointer (the mouse "
+           "in a "
+           "viewer)";
+}
+
+ChosenDevice chooseDevice(const FollowedScene& scene, const DaemonOptions& options) {
+    ChosenDevice chosen =
+        deviceOf(options.device == "auto" ? bestOf(foundDevices()) : options.device, scene, options);
+    if (!options.pedal.empty())
+        chosen.device = std::make_unique<PedalledDevice>(std::move(chosen.device), options.pedal);
+    return chosen;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,85 @@
+// This is the controller's side of the wire, without a socket and without a clock: it answers the host that
+// asks, believes that host's commands, and lets force flow only while all is well.
+//
+// A host is adopted when there is none, or when the same one, silent for longer than the watchdog, asks anew.
+// The controller calls take() for what comes, then step() once per period, then asks commandInForce(). Times
+// are CLOCK_MONOTONIC ns. It is RT-safe, for one thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "device_daemon/ares/wire/codec.h"
+#include "device_daemon/ares/wire/drive_state.h"
+#include "device_daemon/ares/wire/packet_flow.h"
+#include "device_daemon/ares/wire/udp_socket.h"
+
+namespace bonemill::wire {
+
+// A host that is silent for so long gets no more states, and another one may take its place.
+inline constexpr int64_t kForgetHostAfterNs = 1'000'000'000;
+
+enum class Taken {
+    kNothing,  // it was not for us
+    kRequest,  // the description is to be sent
+    kCommand,
+};
+
+template <class Packets>
+class ControllerSession {
+  public:
+    using State = typename Packets::State;
+    using Command = typename Packets::Command;
+
+    // `description` says what the controller is; its watchdog is in force unless a host wants another one.
+    explicit ControllerSession(const Describe& description) noexcept;
+
+    Taken take(std::span<const std::byte> bytes, const Endpoint& source, int64_t now_ns) noexcept;
+
+    // One period: `device_faults` (Fault bits) are those that the controller knows of now; silence and
+    // lateness of the host are added here. `is_powered`: the motors could be switched on.
+    void step(uint32_t device_faults, bool is_powered, int64_t now_ns) noexcept;
+
+    // The command that the motors shall follow; null when they shall be damped, which is whenever anything
+    // speaks against force.
+    const Command* commandInForce(int64_t now_ns) const noexcept;
+    // The newest command of this session; zero before the first. For what moves no motor.
+    const Command& newestCommand() const noexcept { return command_; }
+
+    // Complete packets for sending. The caller has filled in a state's inputs, mode and measurements.
+    const Describe& sealDescription() noexcept;
+    void seal(State& state, int64_t now_ns) noexcept;
+
+    bool hasHost() const noexcept { return has_host_; }
+    const Endpoint& host() const noexcept { return host_; }
+    const DriveStateMachine& drive() const noexcept { return drive_; }
+    const FlowStatistics& statistics() const noexcept { return flow_.statistics(); }
+    uint64_t watchdogTrips() const noexcept { return watchdog_trips_; }
+
+  private:
+    Taken takeRequest(std::span<const std::byte> bytes, const Endpoint& source, int64_t now_ns) noexcept;
+    Taken takeCommand(std::span<const std::byte> bytes, const Endpoint& source, int64_t now_ns) noexcept;
+    void adopt(const DescribeRequest& request, const Endpoint& source, int64_t now_ns) noexcept;
+    bool isSilent(int64_t now_ns) const noexcept;
+    uint32_t linkFaults(int64_t now_ns) const noexcept;
+
+    Describe description_;
+    uint32_t own_watchdog_us_;
+    uint32_t sequence_ = 0;  // of the newest packet sent; it goes on from session to session
+    bool has_host_ = false;
+    Endpoint host_;
+    uint32_t session_ = 0;
+    int64_t heard_ns_ = 0;  // from the host
+    bool has_command_ = false;
+    Command command_{};
+    uint64_t lost_before_ = 0;  // commands, when the session began
+    uint64_t watchdog_trips_ = 0;
+    DriveStateMachine drive_;
+    PacketFlow flow_;
+};
+
+extern template class ControllerSession<JointPackets>;
+extern template class ControllerSession<PosePackets>;
+
+}  // namespace bonemill::wire

@@ -1,0 +1,95 @@
+// This is the host's side of the wire, without a socket and without a clock: it asks a controller for its
+// description, believes what that controller then says, and makes the commands that answer it.
+//
+// A session has a random number and lasts until the controller is silent for longer than the watchdog; then
+// the host asks again under another number, for ever. Times are CLOCK_MONOTONIC ns. It is RT-safe after
+// construction, for one thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "common/base/units.h"
+#include "device_daemon/ares/wire/codec.h"
+#include "device_daemon/ares/wire/packet_flow.h"
+#include "device_daemon/ares/wire/udp_socket.h"
+
+namespace bonemill::wire {
+
+inline constexpr int64_t kAskEveryNs = 100 * kNsPerMillisecond;
+
+struct HostSessionConfig {
+    Endpoint controller;
+    uint32_t watchdog_us = 0;  // that the host asks for; 0: the controller's own
+    uint64_t seed = 0;         // of the session numbers; it should differ from run to run
+};
+
+template <class Packets>
+class HostSession {
+  public:
+    using State = typename Packets::State;
+    using Command = typename Packets::Command;
+
+    explicit HostSession(const HostSessionConfig& config) noexcept;
+
+    // Takes a datagram. True says that it was a new state.
+    bool take(std::span<const std::byte> bytes, const Endpoint& source, int64_t now_ns) noexcept;
+
+    // Returns the question that is to be sent now, or null. It is called in every period, once what has come
+    // was taken: here a link that is lost begins to ask again.
+    const DescribeRequest* requestDue(int64_t now_ns) noexcept;
+
+    // Completes a command (header, reflected sequence, host's time) for sending. False, before a description
+    // has come, says that there is nobody to send it to.
+    bool seal(Command& command, int64_t now_ns) noexcept;
+
+    // The controller has described itself in this session.
+    bool isDescribed() const noexcept { return is_described_; }
+    // The field for which the newest description was refused; null: none was.
+    const char* refusedFigure() const noexcept { return refused_figure_; }
+    // It is silent for longer than the watchdog, or there is none.
+    bool isLost(int64_t now_ns) const noexcept;
+    // Both directions have proved themselves in this session.
+    bool isTrusted() const noexcept { return is_described_ && flow_.isTrusted(); }
+    bool tooManyLate() const noexcept { return is_described_ && flow_.tooManyLate(); }
+
+    // The newest state, of this session or an earlier one; zero before the first.
+    const State& state() const noexcept { return state_; }
+    // The same of descriptions, whose count tells when there is another one.
+    const Describe& description() const noexcept { return description_; }
+    uint32_t descriptionCount() const noexcept { return description_count_; }
+    // True if a state has come in this session.
+    bool hasState() const noexcept { return has_state_; }
+
+    const Endpoint& controller() const noexcept { return config_.controller; }
+    const FlowStatistics& statistics() const noexcept { return flow_.statistics(); }
+    uint64_t lossCount() const noexcept { return loss_count_; }
+
+  private:
+    bool takeState(std::span<const std::byte> bytes, int64_t now_ns) noexcept;
+    void takeDescription(std::span<const std::byte> bytes, int64_t now_ns) noexcept;
+    void beginToAsk() noexcept;
+    uint32_t nextSessionNumber() noexcept;
+
+    HostSessionConfig config_;
+    uint64_t random_;
+    uint32_t session_ = 0;
+    uint32_t sequence_ = 0;          // of the newest packet sent
+    uint32_t request_sequence_ = 0;  // of the session's first request
+    int64_t ask_at_ns_ = 0;
+    DescribeRequest request_{};
+    bool is_described_ = false;
+    bool has_state_ = false;
+    const char* refused_figure_ = nullptr;  // a literal
+    uint32_t description_count_ = 0;
+    uint64_t loss_count_ = 0;
+    Describe description_{};
+    State state_{};
+    PacketFlow flow_;
+};
+
+extern template class HostSession<JointPackets>;
+extern template class HostSession<PosePackets>;
+
+}  // namespace bonemill::wire

@@ -1,0 +1,60 @@
+// An Inverse3 or Minverse of Haply through their Inverse Service: a thread of ours sends it one message in
+// each period, and it answers with the arm's state.
+//
+// Not verified on hardware (docs/lab/bridges.md).
+#pragma once
+
+#include <atomic>
+#include <optional>
+#include <string>
+
+#include "common/rt/realtime_thread.h"
+#include "device_daemon/bridges/bridge/arm.h"
+#include "device_daemon/bridges/bridge/bridge_options.h"
+#include "device_daemon/bridges/haply/haply_messages.h"
+#include "device_daemon/bridges/haply/haply_options.h"
+#include "device_daemon/bridges/haply/web_socket.h"
+
+namespace bonemill::bridge {
+
+// Takes the service's axes to D.
+inline const Eigen::Matrix3d kHaplyAxes{{-1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
+
+class HaplyArm : public Arm {
+  public:
+    HaplyArm(const BridgeOptions& options, const HaplyOptions& haply) : options_(options), haply_(haply) {}
+    ~HaplyArm() override { stop(); }
+
+    ArmDescription open(const Tell& tell) override;
+    void start(ArmPeriod& period) override;
+    void stop() noexcept override;
+
+  private:
+    void connect();
+    void takeInventory();
+    // The rest is the loop's thread.
+    void run(ArmPeriod& period) noexcept;
+    bool exchange(const ArmOrder& order);
+    std::string nextMessage(const ArmOrder& order);
+    ArmReading read(bool has_answered) const noexcept;
+    void release() noexcept;
+
+    const BridgeOptions options_;
+    const HaplyOptions haply_;
+    HaplyDialect dialect_;
+    Tell tell_;
+    std::optional<WebSocket> socket_;
+    HaplyState state_;
+
+    std::atomic<bool> shall_end_{false};
+    RealtimeThread thread_;
+    bool has_thread_ = false;
+
+    // Of the loop's thread.
+    bool has_spoken_ = false;
+    bool has_driven_ = false;
+    int64_t unanswered_since_ns_ = 0;  // 0: the last message was answered
+    std::string message_;
+};
+
+}  // namespace bonemill::bridge

@@ -1,0 +1,82 @@
+// Cuts a session into strokes, by the three definitions in use: by turns of the way, by contact, and by
+// minima of speed. A definition's name goes with each figure, for their counts differ. SI, frame W. One
+// normal thread; what is kept is bounded.
+#pragma once
+
+#include <vector>
+
+#include "haptic_server/assessment/measures/distribution.h"
+#include "haptic_server/assessment/measures/stroke.h"
+#include "haptic_server/assessment/measures/tick_step.h"
+
+namespace bonemill {
+
+// Where the way of 60 ms before and that of 60 ms after make more than a right angle, a stroke ends; of
+// neighbours that do, at the slowest. Strokes are of periods of drilling, in which no 0.2 s pass without
+// removal.
+class TurnStrokes {
+  public:
+    static constexpr int kReach = 3;              // samples, 60 ms
+    static constexpr double kLongestGap = 0.2;    // s without removal
+    static constexpr size_t kMostSamples = 1000;  // of a stroke, 20 s: there it is cut
+
+    void add(const MotionSample& sample);
+    void finish() { endPeriod(); }
+    const StrokeList& strokes() const noexcept { return strokes_; }
+
+  private:
+    void judge(size_t at);
+    void cutAt(size_t at);
+    void endPeriod();
+
+    std::vector<MotionSample> samples_;  // since the last end of a stroke
+    size_t last_cutting_ = 0;            // index
+    size_t slowest_ = 0;                 // of the turn that is under way; 0: none is
+    double slowest_way_ = 0;
+    StrokeList strokes_;
+};
+
+// Contact begins above 0.1 N on the burr and ends below 0.05 N, if that lasts for 0.1 s.
+class ContactBouts {
+  public:
+    static constexpr double kOn = 0.1, kOff = 0.05;  // N
+    static constexpr double kMerged = 0.1;           // s
+
+    // `force` in N, on the burr.
+    void add(const TickStep& step, double force);
+    void finish();
+    size_t count() const noexcept { return count_; }
+    const Distribution& durations() const noexcept { return durations_; }  // s
+
+  private:
+    bool is_on_ = false;
+    double duration_ = 0, off_ = 0;  // s; off_: of it, since the force fell
+    size_t count_ = 0;
+    Distribution durations_;
+};
+
+// In contact: a stroke ends where the speed is below 15 % of its peak for 60 ms, and the next one begins with
+// the slowest of those samples.
+class MinimumStrokes {
+  public:
+    static constexpr double kShare = 0.15;
+    static constexpr int kLeastSamples = 3;
+    static constexpr size_t kMostSamples = 1000;
+
+    void add(const MotionSample& sample);
+    void finish();
+    size_t count() const noexcept { return count_; }
+    const Distribution& lengths() const noexcept { return lengths_; }  // m
+
+  private:
+    void endAt(size_t at);
+
+    std::vector<MotionSample> samples_;
+    std::vector<double> speeds_;
+    double peak_ = 0;
+    int slow_ = 0;  // samples, up to the newest
+    size_t count_ = 0;
+    Distribution lengths_;
+};
+
+}  // namespace bonemill

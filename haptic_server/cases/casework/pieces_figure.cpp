@@ -1,0 +1,211 @@
+#include "haptic_server/cases/casework/pieces_figure.h"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+
+#include "common/base/units.h"
+#include "common/text/printed_text.h"
+#include "haptic_server/cases/casework/piece_view.h"
+#include "haptic_server/scans/analysis/volume_text.h"
+
+namespace bonemill {
+namespace {
+
+constexpr size_t kMostColours = 8;   // pieces: those that make-case lists; the others are grey
+constexpr double kMostPixels = 420;  // along the longest edge
+constexpr double kPale = 0.7;        // how white a piece is that is left out
+constexpr double kDrawn = 780, kAround = 80, kBetween = 110, kLegend = 380;  // pixels of the figure
+constexpr double kMargin = 0.03;                                             // of the longest edge
+constexpr size_t kMostMetal = 20;
+
+const std::array<Colour, kMostColours + 1> kColours = {{{222, 190, 130},
+                                                        {70, 130, 220},
+                                                        {210, 70, 60},
+                                                        {80, 170, 80},
+                                                        {150, 100, 200},
+                                                        {60, 180, 180},
+                                                        {240, 150, 50},
+                                                        {230, 120, 170},
+                                                        {150, 150, 150}}};
+
+struct SideOfFigure {
+    const char* file;
+    const char* title;        // for patients
+    const char* plain_title;  // where nobody knows how the patient lay
+    ViewSide side;
+};
+
+constexpr SideOfFigure kSides[] = {{"top.rgb", "from the top", "seen against z", {0, 1, 2, 1}},
+                                   {"front.rgb", "from the front", "seen along y", {0, 2, 1, -1}},
+                                   {"left.rgb", "from the left", "seen against x", {1, 2, 0, 1}}};
+
+Eigen::AlignedBox3d boxOfDrawn(const BonePieces& pieces, const VolumeGeometry& geometry, size_t count) {
+    Eigen::AlignedBox3d box;
+    for (const BonePiece& piece : pieces.list().first(count)) {
+        const Eigen::AlignedBox3d voxels(piece.box.min.cast<double>() - Eigen::Vector3d::Constant(0.5),
+                                         piece.box.max.cast<double>() + Eigen::Vector3d::Constant(0.5));
+        for (int corner = 0; corner < 8; ++corner)
+            box.extend(geometry.X_WV * Eigen::Vector3d(voxels.corner(Eigen::AlignedBox3d::CornerType(corner))
+                                                           .cwiseProduct(geometry.spacing)));
+    }
+    const double margin = kMargin * box.sizes().maxCoeff();
+    return {box.min().array() - margin, box.max().array() + margin};
+}
+
+uint8_t colourOf(size_t piece) {
+    return uint8_t(std::min(piece, kMostColours));
+}
+
+std::vector<PieceView> viewsOf(const CasePlan& plan, const VolumeGeometry& geometry,
+                               const Eigen::AlignedBox3d& box, double pixel, size_t count) {
+    std::vector<PieceView> views;
+    for (const SideOfFigure& side : kSides) views.emplace_back(side.side, box, pixel);
+    const Eigen::Matrix3d axes = geometry.X_WV.rotation.toRotationMatrix() * geometry.spacing.asDiagonal();
+    const Eigen::Vector3d half = axes.cwiseAbs().rowwise().sum() / 2;
+    plan.pieces->forEachRun([&](size_t piece, const Eigen::Vector3i& first, int length) {
+        if (piece >= count) return;
+        for (int n = 0; n < length; ++n) {
+            const Eigen::Vector3d p_W =
+                geometry.X_WV.position + axes * (first + Eigen::Vector3i(n, 0, 0)).cast<double>();
+            for (PieceView& view : views) view.add(colourOf(piece), p_W, half);
+        }
+    });
+    return views;
+}
+
+std::string hexOf(const Colour& colour) {
+    return printed("#%02x%02x%02x", int(colour[0]), int(colour[1]), int(colour[2]));
+}
+
+// Where the three views lie in the figure, in its pixels from the lower left: the top view above the front's,
+// the left's beside it.
+struct Layout {
+    double scale, width, height;
+    Eigen::Vector3d size;  // of the views, along the axes of W
+
+    explicit Layout(const Eigen::Vector3d& size_mm) {
+        scale = kDrawn / (std::max(size_mm.x(), size_mm.z()) + size_mm.y());
+        size = scale * size_mm;
+        width = size.x() + std::max(size.y(), kLegend) + 3 * kAround;
+        height = size.z() + size.y() + 1.5 * kAround + kBetween;
+    }
+    Eigen::Vector2d cornerOf(const ViewSide& side) const {
+        return {side.right == 0 ? kAround : size.x() + 2 * kAround,
+                side.up == 2 ? kAround : size.z() + kAround + kBetween};
+    }
+    std::string marginsOf(const ViewSide& side) const {
+        const Eigen::Vector2d low = cornerOf(side),
+                              high = low + Eigen::Vector2d(size[side.right], size[side.up]);
+        std::ostringstream text;
+        text << "set lmargin at screen " << low.x() / width << "\nset rmargin at screen " << high.x() / width
+             << "\nset bmargin at screen " << low.y() / height << "\nset tmargin at screen "
+             << high.y() / height << '\n';
+        return text.str();
+    }
+};
+
+std::string axisName(int axis, bool lacks_patient_axes) {
+    const char* const names[] = {"x, mm", "y, mm", "z, mm"};
+    const char* const sides[] = {" (to the left)", " (to the back)", " (to the head)"};
+    return names[axis] + std::string(lacks_patient_axes ? "" : sides[axis]);
+}
+
+std::string regionIn(const ViewSide& side, const Eigen::AlignedBox3d& region) {
+    const Eigen::Vector3d low = region.min() * kPerMillimetre, high = region.max() * kPerMillimetre;
+    std::ostringstream text;
+    text << "set object 1 rectangle from " << low[side.right] << ',' << low[side.up] << " to "
+         << high[side.right] << ',' << high[side.up] << " front fs empty border lc rgb \"black\" lw 2 dt 2\n";
+    return text.str();
+}
+
+std::string metalIn(const ViewSide& side, const Metal& metal, const VolumeGeometry& geometry) {
+    std::ostringstream text;
+    for (size_t n = 0; n < std::min(metal.pieces.size(), kMostMetal); ++n) {
+        const Eigen::Vector3d at = geometry.X_WV *
+                                   Eigen::Vector3d(metal.pieces[n].middle.cwiseProduct(geometry.spacing)) *
+                                   kPerMillimetre;
+        text << "set label \"\" at " << at[side.right] << ',' << at[side.up]
+             << " point pt 2 ps 2 lw 2 lc rgb \"#e000e0\" front\n";
+    }
+    return text.str();
+}
+
+std::string legendOf(const CasePlan& plan, const VolumeGeometry& geometry, const Layout& layout,
+                     size_t count) {
+    std::ostringstream text;
+    const double left = (layout.size.x() + 2 * kAround) / layout.width;
+    double line = layout.height - kAround;
+    const auto next = [&](const Colour* colour, const std::string& words) {
+        text << "set label \"" << words << "\" at screen " << left << ", screen " << line / layout.height
+             << (colour ? " left offset 2,0 point pt 5 ps 2 lc rgb \"" + hexOf(*colour) + '"'
+                        : std::string(" left"))
+             << " front\n";
+        line -= 24;
+    };
+    next(nullptr, "{/:Bold Pieces of bone}, by the numbers of --drop-piece");
+    for (size_t n = 0; n < std::min(count, kMostColours); ++n) {
+        const double volume = double(plan.pieces->list()[n].voxels) * geometry.spacing.prod();
+        next(&kColours[n],
+             std::to_string(n + 1) + ":  " + volumeText(volume) + (plan.is_dropped[n] ? ", left out" : ""));
+    }
+    if (count > kMostColours)
+        next(&kColours[kMostColours], std::to_string(count - kMostColours) + " smaller ones");
+    if (plan.region) next(nullptr, "dashed: the part that is milled");
+    if (!plan.metal.pieces.empty()) next(nullptr, "crosses: metal");
+    return text.str();
+}
+
+}  // namespace
+
+PiecesFigure piecesFigure(const RawVolume& scan, const CasePlan& plan) {
+    const VolumeGeometry& geometry = scan.geometry;
+    const auto noise = std::ranges::count_if(plan.pieces->list(), [&](const BonePiece& piece) {
+        return piece.voxels < plan.smallest_piece_voxels;
+    });
+    const size_t count = plan.pieces->list().size() - size_t(noise);
+    const Eigen::AlignedBox3d box = boxOfDrawn(*plan.pieces, geometry, count);
+    const double pixel = std::max(box.sizes().maxCoeff() / kMostPixels, geometry.spacing.minCoeff());
+    const std::vector<PieceView> views = viewsOf(plan, geometry, box, pixel, count);
+    std::vector<Colour> colours(kColours.begin(), kColours.end());
+    for (size_t n = 0; n < std::min(count, kMostColours); ++n)
+        if (plan.is_dropped[n]) colours[n] += kPale * (Colour::Constant(255) - colours[n]);
+    const Layout layout(box.sizes() * kPerMillimetre);
+    PiecesFigure figure;
+    std::ostringstream script;
+    script << "set terminal pngcairo size " << int(layout.width) << ',' << int(layout.height)
+           << " font \"DejaVu Sans,11\"\nset output \"pieces.png\"\nset multiplot\nunset key\n"
+              "set style textbox opaque fillcolor rgb \"white\" border lc rgb \"#404040\" margins 0.6,0.6\n"
+              "set grid front lc rgb \"#c0c0c0\" lw 0.5\nset tics out nomirror\n"
+           << legendOf(plan, geometry, layout, count);
+    for (size_t n = 0; n < views.size(); ++n) {
+        const ViewSide& side = kSides[n].side;
+        const Eigen::Vector3d low = box.min() * kPerMillimetre, high = box.max() * kPerMillimetre;
+        const double mm = pixel * kPerMillimetre;
+        script << layout.marginsOf(side) << "set title \""
+               << (scan.lacks_patient_axes ? kSides[n].plain_title : kSides[n].title) << "\"\nset xrange ["
+               << low[side.right] << ':' << high[side.right] << "]\nset yrange [" << low[side.up] << ':'
+               << high[side.up] << "]\nset xlabel \"" << axisName(side.right, scan.lacks_patient_axes)
+               << "\"\nset ylabel \"" << axisName(side.up, scan.lacks_patient_axes) << "\"\n";
+        if (plan.region) script << regionIn(side, *plan.region);
+        script << metalIn(side, plan.metal, geometry);
+        const std::vector<PieceView::Pixel> labels =
+            views[n].labelsOf(uint8_t(std::min(count, kMostColours)));
+        for (size_t piece = 0; piece < labels.size(); ++piece)
+            if (labels[piece].column >= 0)
+                script << "set label \"" << piece + 1 << "\" at "
+                       << low[side.right] + (labels[piece].column + 0.5) * mm << ','
+                       << low[side.up] + (labels[piece].row + 0.5) * mm
+                       << " center boxed font \",13\" front\n";
+        script << "plot \"" << kSides[n].file << "\" binary array=(" << views[n].width() << ','
+               << views[n].height() << ") format=\"%uchar%uchar%uchar\" origin=(" << low[side.right] + mm / 2
+               << ',' << low[side.up] + mm / 2 << ") dx=" << mm << " dy=" << mm
+               << " using 1:2:3 with rgbimage\nunset label\n";
+        figure.pictures.push_back({kSides[n].file, views[n].rgb(colours)});
+    }
+    script << "unset multiplot\n";
+    figure.script = script.str();
+    return figure;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,76 @@
+#include "haptic_server/cases/phantom/analytic_body.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bonemill {
+namespace {
+
+// The solid is u <= 0 and v <= 0 of two surfaces that meet at a right angle.
+double rightAngledEdge(double u, double v) noexcept {
+    return std::hypot(std::max(u, 0.0), std::max(v, 0.0)) + std::min(std::max(u, v), 0.0);
+}
+
+// Works in the plane across the edge; by symmetry only the face at +x matters.
+double wedgeDistance(double x, double z, double angle) noexcept {
+    const double across = std::abs(x), s = std::sin(angle / 2), c = std::cos(angle / 2);
+    const double along_face = across * s - z * c;
+    return along_face < 0 ? std::hypot(across, z) : across * c + z * s;
+}
+
+}  // namespace
+
+double signedDistance(const AnalyticBody& body, const Eigen::Vector3d& p_W) noexcept {
+    const Eigen::Vector3d p = body.X_WB.inverse() * p_W;
+    const double half = body.thickness / 2;
+    switch (body.kind) {
+        case BodyKind::kSlab:
+            return std::abs(p.z()) - half;
+        case BodyKind::kSphere:
+            return p.norm() - body.radius;
+        case BodyKind::kHole:
+            return rightAngledEdge(body.radius - std::hypot(p.x(), p.y()), std::abs(p.z()) - half);
+        case BodyKind::kWedge:
+            return wedgeDistance(p.x(), p.z(), body.angle);
+        case BodyKind::kThinWall:
+            return rightAngledEdge(std::abs(p.x()) - half, p.z());
+    }
+    return 0;
+}
+
+double bodyDensity(const AnalyticBody& body, const VolumeGeometry& geometry, const Eigen::Vector3d& p_W,
+                   double full) noexcept {
+    return full * rampShare(signedDistance(body, p_W), geometry.spacing.maxCoeff());
+}
+
+std::vector<float> sampleBodySlice(const AnalyticBody& body, const VolumeGeometry& geometry, double full,
+                                   int k) {
+    std::vector<float> values;
+    values.reserve(size_t(geometry.dims.x()) * size_t(geometry.dims.y()));
+    for (int j = 0; j < geometry.dims.y(); ++j)
+        for (int i = 0; i < geometry.dims.x(); ++i) {
+            const Eigen::Vector3d p_W =
+                geometry.X_WV * geometry.spacing.cwiseProduct(Eigen::Vector3d(i, j, k));
+            values.push_back(float(std::round(bodyDensity(body, geometry, p_W, full))));
+        }
+    return values;
+}
+
+RawVolume sampleBody(const AnalyticBody& body, const VolumeGeometry& geometry, double full) {
+    RawVolume raw;
+    raw.geometry = geometry;
+    raw.description = "analytic body";
+    raw.values.reserve(geometry.voxelCount());
+    for (int k = 0; k < geometry.dims.z(); ++k) raw.values.append(sampleBodySlice(body, geometry, full, k));
+    return raw;
+}
+
+VolumeGeometry centredGrid(const Eigen::Vector3i& dims, double voxel_size) {
+    VolumeGeometry geometry;
+    geometry.dims = dims;
+    geometry.spacing.setConstant(voxel_size);
+    geometry.X_WV.position = -(dims.cast<double>().array() - 1).matrix() * voxel_size / 2;
+    return geometry;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,254 @@
+#include "haptic_server/cases/phantom/vertebra_phantom.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "common/base/units.h"
+#include "haptic_server/cases/phantom/implicit_shapes.h"
+#include "haptic_server/cases/phantom/spline_shapes.h"
+
+namespace bonemill {
+namespace {
+
+using Eigen::Vector2d, Eigen::Vector3d;
+
+// All shapes are in mm; those on both sides are of the left side (x > 0).
+
+double roundedCut(double solid, double cut, double fillet) {
+    return -blend(-solid, cut, fillet);
+}
+
+// This is the first-order distance to an n-dimensional ellipsoid: (|p / r| - 1) over the length
+// of its gradient.
+template <class V>
+double ellipsoidal(const V& p, const V& half_axes) {
+    const V scaled = p.cwiseQuotient(half_axes);
+    const double size = scaled.norm();
+    if (size < 1e-9) return -half_axes.minCoeff();
+    return (size - 1) * size / scaled.cwiseQuotient(half_axes).norm();
+}
+
+// The cross-section of the body lies between ellipse and box.
+double superellipse(const Vector2d& p, const Vector2d& half_axes) {
+    constexpr double kExponent = 2.4;
+    const Eigen::Array2d scaled = p.cwiseQuotient(half_axes).array().abs();
+    const double size = std::pow(scaled.pow(kExponent).sum(), 1 / kExponent);
+    if (size < 1e-9) return -half_axes.minCoeff();
+    const Eigen::Array2d gradient = (scaled / size).pow(kExponent - 1) / half_axes.array();
+    return (size - 1) / gradient.matrix().norm();
+}
+
+// A limb has an elliptic cross-section from a to b: half axes (level, upright) at both ends, ends rounded.
+struct Limb {
+    Vector3d a, b;
+    Vector2d half_axes_a, half_axes_b;
+
+    double distance(const Vector3d& p) const {
+        const Vector3d along = (b - a).normalized(), level = along.cross(Vector3d::UnitZ()).normalized(),
+                       upright = level.cross(along);
+        const double length = (b - a).norm(), s = (p - a).dot(along), inside = std::clamp(s, 0.0, length);
+        const Vector2d half = half_axes_a + (half_axes_b - half_axes_a) * (inside / length);
+        const Vector3d local((p - a).dot(level), (p - a).dot(upright), s - inside);
+        return ellipsoidal<Vector3d>(local, {half.x(), half.y(), half.minCoeff()});
+    }
+};
+
+constexpr double kBodyHalfHeight = 14.5;
+
+double body(const Vector3d& p) {
+    const double up = std::min(std::abs(p.z()) / kBodyHalfHeight, 1.0);
+    const Vector2d half_axes = Vector2d(22.5, 17) * (0.91 + 0.09 * up * up);  // a waist
+    const double side = superellipse(p.head<2>(), half_axes);
+    const double off_axis = std::min(p.head<2>().cwiseQuotient(Vector2d(22.5, 17)).squaredNorm(), 1.0);
+    const double end_plate = std::abs(p.z()) - (kBodyHalfHeight - 1.5 * (1 - off_axis));  // hollow
+    return -blend(-side, -end_plate, 2);
+}
+
+const Vector2d kCanalMiddle(0, 24), kCanalHalfAxes(12, 8.5);
+
+double canal(const Vector3d& p) {
+    return ellipsoidal<Vector2d>(p.head<2>() - kCanalMiddle, kCanalHalfAxes);
+}
+
+// It makes both sides at once: the vertebra is symmetric about x = 0.
+double arch(const Vector3d& p) {
+    static const Limb kPedicle{{14.4, 9, 4.5}, {18.4, 31, 4.5}, {5, 7.25}, {5, 7.25}};
+    static const Limb kLamina{{18, 30, 2.5}, {1, 36.2, -5}, {3.2, 6.5}, {3.2, 10}};
+    static const Limb kSuperiorProcess{{18, 30.5, 4}, {20.5, 29.5, 18}, {4.5, 4.5}, {4.5, 5.5}};
+    static const Limb kInferiorProcess{{13.5, 34.5, -4}, {12.5, 36.5, -21}, {4.5, 4.5}, {4.5, 5}};
+    static const Limb kTransverseProcess{{20, 28, 4}, {45.2, 32, 6}, {3, 6}, {2.3, 4}};
+    static const Limb kSpinousProcess{{0, 37, -4}, {0, 66, -8}, {3.2, 9}, {3.5, 8}};
+    constexpr double kFillet = 3;
+    const Vector3d q(std::abs(p.x()), p.y(), p.z());
+    double shape = blend(kPedicle.distance(q), kLamina.distance(q), kFillet);
+    shape = blend(shape, kSuperiorProcess.distance(q), kFillet);
+    shape = blend(shape, kInferiorProcess.distance(q), kFillet);
+    shape = blend(shape, kTransverseProcess.distance(q), kFillet);
+    return blend(shape, kSpinousProcess.distance(q), kFillet);
+}
+
+double bone(const Vector3d& p) {
+    return roundedCut(blend(body(p), arch(p), 3), canal(p), 1);
+}
+
+// The shell is thin on the body and thick on the arch.
+double onArch(const Vector3d& p) {
+    return smoothStep(12, 22, p.y());
+}
+double shell(const Vector3d& p) {
+    return 0.8 + 0.7 * onArch(p);
+}
+double corticalHu(const Vector3d& p) {
+    return 1350 + 400 * onArch(p);
+}
+
+// This is a number in 0 .. 1 of a lattice point (SplitMix64): the same everywhere.
+double latticeNoise(int i, int j, int k) {
+    uint64_t z =
+        (uint64_t(uint16_t(i)) << 32 | uint64_t(uint16_t(j)) << 16 | uint16_t(k)) + 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return double((z ^ (z >> 31)) >> 40) / double((1 << 24) - 1);
+}
+
+// The marrow spaces are a little over a millimetre wide.
+double trabecularHu(const Vector3d& p) {
+    constexpr double kLattice = 1.2;
+    const Vector3d at = p / kLattice;
+    const Eigen::Vector3i low = at.array().floor().cast<int>();
+    const Vector3d part = at - low.cast<double>();
+    double noise = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Eigen::Vector3i step(corner & 1, corner >> 1 & 1, corner >> 2);
+        double weight = 1;
+        for (int a = 0; a < 3; ++a) weight *= step[a] ? part[a] : 1 - part[a];
+        noise += weight * latticeNoise(low.x() + step.x(), low.y() + step.y(), low.z() + step.z());
+    }
+    return kTrabecularLowHu + (kTrabecularHighHu - kTrabecularLowHu) * noise;
+}
+
+// Makes what lies around the bone.
+class SoftParts {
+  public:
+    VertebraTissue at(const Vector3d& p) const {
+        if (left_root_.contains(p)) return VertebraTissue::kLeftRoot;
+        if (left_root_.contains({-p.x(), p.y(), p.z()})) return VertebraTissue::kRightRoot;
+        if (ellipsoidal<Vector2d>(p.head<2>() - Vector2d(0, 23.5), {7.5, 6}) < 0)
+            return VertebraTissue::kDuralSac;
+        const bool is_vessel = aorta_.contains(p) || segmental_.contains({std::abs(p.x()), p.y(), p.z()});
+        return is_vessel ? VertebraTissue::kVessel : VertebraTissue::kFat;
+    }
+
+  private:
+    // It leaves the sac above, follows the pedicle's inner wall, and leaves the canal under it.
+    SplineTube left_root_{
+        {{5.5, 24, 13}, {8.6, 23.6, 4}, {11, 22.5, -4}, {15, 20.5, -7.8}, {22, 17, -12}, {30, 11, -20}}, 2.0};
+    SplineTube aorta_{{{9, -27, -40}, {9, -27.5, 0}, {9, -27, 40}}, 8.5};
+    // It runs from the aorta round the body's waist.
+    SplineTube segmental_{{{8, -19.2, -1}, {14, -16.2, -1}, {20, -9.5, -1}, {22.7, 0, -1}, {21.5, 8, -1.5}},
+                          1.2};
+};
+
+// This is the share of what begins at depth 0 (mm, growing inwards) where edges are soft over `blur`.
+double softStep(double depth, double blur) {
+    return smoothStep(-blur / 2, blur / 2, depth);
+}
+
+constexpr double kVertebraBlurVoxels = 2.5;
+
+struct Voxel {
+    float hu;
+    VertebraTissue tissue;
+};
+
+Voxel voxelAt(const Vector3d& p, double depth, double blur, const SoftParts& soft) {
+    const double share = softStep(depth, blur);
+    const VertebraTissue around = share < 1 ? soft.at(p) : VertebraTissue::kFat;
+    const double around_hu = around == VertebraTissue::kFat ? kFatHu : kSoftHu;
+    if (share <= 0) return {float(around_hu), around};
+    const double core = softStep(depth - shell(p), blur);
+    const double bone_hu = (1 - core) * corticalHu(p) + (core > 0 ? core * trabecularHu(p) : 0);
+    const double hu = std::round(around_hu + share * (bone_hu - around_hu));
+    if (hu < kBoneHu) return {float(hu), around};
+    return {float(hu), depth < shell(p) ? VertebraTissue::kCortical : VertebraTissue::kTrabecular};
+}
+
+// Cubes of voxels that the bone's surface surely does not come near need no distance per voxel.
+class DepthMap {
+  public:
+    DepthMap(const VolumeGeometry& geometry) : geometry_(geometry) {
+        const Eigen::Array3i cubes = (geometry.dims.array() + kEdge - 1) / kEdge;
+        const double reach = kMargin * (geometry.spacing * kEdge / 2).norm() * kPerMillimetre;
+        for (int k = 0; k < cubes.z(); ++k)
+            for (int j = 0; j < cubes.y(); ++j)
+                for (int i = 0; i < cubes.x(); ++i) {
+                    const Vector3d middle = (Vector3d(i, j, k).array() * kEdge + (kEdge - 1) / 2.0).matrix();
+                    const double depth = -bone(pointOf(middle));
+                    is_far_.push_back(depth < -reach - kFar);
+                }
+        cubes_ = cubes;
+    }
+    Vector3d pointOf(const Vector3d& index) const {
+        return geometry_.X_WV * geometry_.spacing.cwiseProduct(index) * kPerMillimetre;
+    }
+    double depth(int i, int j, int k, const Vector3d& p) const {
+        const int cube = i / kEdge + cubes_.x() * (j / kEdge + cubes_.y() * (k / kEdge));
+        return is_far_[size_t(cube)] ? -kFar : -bone(p);
+    }
+
+  private:
+    static constexpr int kEdge = 8;
+    static constexpr double kMargin = 1.5;  // how much faster than distance bone() may change
+    static constexpr double kFar = 3;
+
+    VolumeGeometry geometry_;
+    Eigen::Array3i cubes_;
+    std::vector<bool> is_far_;
+};
+
+}  // namespace
+
+double vertebraDistance(const Vector3d& p_W) noexcept {
+    return bone(p_W * kPerMillimetre) / kPerMillimetre;
+}
+
+double corticalThickness(const Vector3d& p_W) noexcept {
+    return shell(p_W * kPerMillimetre) / kPerMillimetre;
+}
+
+VolumeGeometry vertebraGrid(double voxel_size) {
+    const Vector3d low = Vector3d(-50, -38, -28) * kMillimetre, high = Vector3d(50, 72, 27) * kMillimetre;
+    VolumeGeometry geometry;
+    geometry.dims = ((high - low) / voxel_size).array().ceil().cast<int>() + 1;
+    geometry.spacing.setConstant(voxel_size);
+    geometry.X_WV.position = low;
+    return geometry;
+}
+
+VertebraScan scanVertebra(const VolumeGeometry& geometry) {
+    VertebraScan scan;
+    scan.ct.geometry = geometry;
+    scan.ct.is_hounsfield = true;
+    scan.ct.description = "vertebra phantom";
+    scan.ct.values.reserve(geometry.voxelCount());
+    scan.labels.reserve(geometry.voxelCount());
+    const DepthMap map(geometry);
+    const SoftParts soft;
+    const double blur = kVertebraBlurVoxels * geometry.spacing.maxCoeff() * kPerMillimetre;
+    std::vector<float> row;
+    for (int k = 0; k < geometry.dims.z(); ++k)
+        for (int j = 0; j < geometry.dims.y(); ++j) {
+            row.clear();
+            for (int i = 0; i < geometry.dims.x(); ++i) {
+                const Vector3d p = map.pointOf(Vector3d(i, j, k));
+                const Voxel voxel = voxelAt(p, map.depth(i, j, k, p), blur, soft);
+                row.push_back(voxel.hu);
+                scan.labels.push_back(uint8_t(voxel.tissue));
+            }
+            scan.ct.values.append(std::span<const float>(row));
+        }
+    return scan;
+}
+
+}  // namespace bonemill

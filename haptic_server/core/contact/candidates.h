@@ -1,0 +1,63 @@
+// These are the contact points near the tool that one solve works on, as structure of arrays. They are
+// RT-safe but for construction.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "haptic_server/core/contact/shell_pool.h"
+#include "haptic_server/core/kernels/kernels.h"
+
+namespace bonemill {
+
+struct Candidates {
+    // V axes, from an origin near the tool: small numbers keep their digits.
+    std::vector<float> x, y, z;
+    std::vector<float> nx, ny, nz;  // V, unit or zero
+    std::vector<float> weight;      // κ a λ, of one place
+    std::vector<float> area;        // m², of the whole patch
+    std::vector<float> nearest;     // m: no place of the patch was nearer to the tool at the gathering
+    std::vector<PatchId> patch;
+    size_t most;  // at most so many, though there may be room for more
+    size_t count = 0;
+
+    explicit Candidates(size_t room) : patch(room), most(room) {
+        for (std::vector<float>* values : {&x, &y, &z, &nx, &ny, &nz, &weight, &area, &nearest})
+            values->resize(room + kCellLanes);  // the kernels go on to a multiple of that
+    }
+
+    size_t capacity() const noexcept { return most; }
+
+    // Adds these points of a block with weight κ a, as many as there is room for. False says that not
+    // all were added.
+    bool add(const ShellBlock& block, const int* points, int point_count, LeafId leaf,
+             const Eigen::Vector3d& origin, float stiffness_per_area, const float* nearest_place) noexcept {
+        const int n = int(std::min(size_t(point_count), capacity() - count));
+        const auto put = [&](std::vector<float>& to, auto&& value) {
+            float* out = to.data() + count;
+            for (int i = 0; i < n; ++i) out[i] = value(points[i]);
+        };
+        put(x, [&](int i) { return float(double(block.x[i]) - origin.x()); });
+        put(y, [&](int i) { return float(double(block.y[i]) - origin.y()); });
+        put(z, [&](int i) { return float(double(block.z[i]) - origin.z()); });
+        put(nx, [&](int i) { return block.nx[i]; });
+        put(ny, [&](int i) { return block.ny[i]; });
+        put(nz, [&](int i) { return block.nz[i]; });
+        put(area, [&](int i) { return block.area[i]; });
+        put(weight, [&](int i) { return stiffness_per_area * block.area[i]; });
+        put(nearest, [&](int i) { return nearest_place[i]; });
+        for (int i = 0; i < n; ++i) patch[count + size_t(i)] = {leaf, block.key[points[i]]};
+        count += size_t(n);
+        return n == point_count;
+    }
+    void copy(size_t from, size_t to) noexcept {
+        x[to] = x[from], y[to] = y[from], z[to] = z[from];
+        nx[to] = nx[from], ny[to] = ny[from], nz[to] = nz[from];
+        weight[to] = weight[from], area[to] = area[from], nearest[to] = nearest[from];
+        patch[to] = patch[from];
+    }
+    Eigen::Vector3f position(size_t n) const noexcept { return {x[n], y[n], z[n]}; }
+    Eigen::Vector3f normal(size_t n) const noexcept { return {nx[n], ny[n], nz[n]}; }
+};
+
+}  // namespace bonemill

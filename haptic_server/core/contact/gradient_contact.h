@@ -1,0 +1,188 @@
+// This is the default contact model: every shell point near the tool stores energy, and force and torque are
+// exactly minus the gradient of the sum. No closed path gains energy, noisy bone normals do no harm, and the
+// points' areas make the result independent of how densely the surface is sampled.
+//
+// With φ the tool's distance at bone point b, δ = -φ, g = R∇φ, n the bone's outward normal and a the
+// point's area:
+//   E = Σ κ a λ Ψ(δ),   Ψ = ½δ² for δ > 0, going on linearly beyond the depth cap.
+// A point stands for a patch of the surface, the triangles in its cells. Stiff contact is often narrower than
+// the points are apart: near the tool these triangles are cut into pieces (surface_pieces.h), and the pieces'
+// centroids, moved onto the trilinear surface, take the point's place. Wide contact has points enough.
+//
+// λ <= 1 is frozen when the candidates are gathered, so that each solve has one energy. It is 1 unless
+// - the stiffness in the direction of g is above the cap (then the total is the same for a plane, a slot and
+//   a full surround);
+// - the tool is deep in the bone (kGuardFrom, or its point inside): then points that it reaches from their
+//   far side (s = -n·g <= 0) are left out, so that no wall that the tool's medial axis has passed pulls it on
+//   or locks it in.
+// A λ that changes from tick to tick is not conservative; in ordinary contact none does.
+//
+// The frame is V, the units are m and N; torques are about the tool point. Everything but construction is
+// RT-safe, for the tick thread only.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "haptic_server/core/contact/candidates.h"
+#include "haptic_server/core/contact/contact_configs.h"
+#include "haptic_server/core/contact/contact_weights.h"
+#include "haptic_server/core/contact/patch_memory.h"
+#include "haptic_server/core/contact/point_shell.h"
+#include "haptic_server/core/contact/surface_contact.h"
+#include "haptic_server/core/contact/surface_pieces.h"
+#include "haptic_server/core/coupling/energy_coupling.h"
+#include "haptic_server/core/tool/tool_field.h"
+
+namespace bonemill {
+
+// Its points are gathered.
+struct ShellView {
+    const VoxelVolume& volume;
+    const LeafLattice& lattice;
+    const PointShell& shell;
+    int level;
+    double sample_spacing;                 // m, near the tool; 0: one sample per point
+    int most_samples;                      // about as many near the tool; the spacing gives way
+    size_t affordable_samples = SIZE_MAX;  // there is time for so many
+};
+
+struct GradientContactResult {
+    EnergyTerm term;
+    uint32_t contacts = 0;
+    double max_depth = 0;  // m
+};
+
+class GradientContact {
+  public:
+    // What is nearer to the tool is sampled finely, m.
+    static constexpr double kFineWithin = 50e-6;
+    // In tool's thinnest radii, this is the depth from which on the force of a point no longer grows, and
+    // those between which the far-side guard sets in.
+    static constexpr double kDepthCap = 0.75, kGuardFrom = 0.25, kGuardFull = 0.5;
+    static constexpr double kGuardWidth = 0.25;  // of s, over which the guard fades a point out
+
+    // It has room for this many candidate points, and allocates.
+    explicit GradientContact(const GradientContactConfig& config, size_t most_candidates = 65536);
+
+    // Collects the points of a shell level that can touch the tool after a motion of at most `margin` (m, of
+    // any of its points) from X_VT. False: more than there is room for, or than `most_tests` points near the
+    // tool; the rest is left out.
+    bool gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT, double margin,
+                size_t most_tests = SIZE_MAX) noexcept;
+
+    // From now on there are not more candidates than this, however much room there is.
+    void limitCandidates(size_t most) noexcept {
+        candidates_.most = std::min(most, candidates_.patch.size());
+    }
+
+    // The last gathering has fewer samples than its view asked for, for there is no time for more.
+    bool hasFewerSamples() const noexcept { return has_fewer_samples_; }
+
+    // Forgets of the last gatherings how finely which patch was sampled. This is called when the shell level
+    // or the sampling changes, or the tool is placed anew.
+    void forget() noexcept { patch_memory_.forget(); }
+
+    // Returns energy, wrench on the tool and stiffness at this pose, over the gathered points.
+    template <class Scalar>
+    GradientContactResult evaluate(const ToolField& tool, const Pose& X_VT) const noexcept;
+
+    // The gathered points that touch the tool at this pose, as many as `out` has room for; returns how many.
+    size_t list(const ToolField& tool, const Pose& X_VT, std::span<SurfaceContact> out) const noexcept;
+
+    // Scales the weights at each gathering from now on; null: nothing does.
+    void setWeights(ContactWeights* weights) noexcept { weights_ = weights; }
+
+    // Returns the largest share t of the motion `step` (world increment x, ω) for which no gathered point
+    // that is free at X_VT comes deeper than `allowed_depth`, and none in contact gets deeper by more than
+    // that: conservative advancement. The share may be smaller than the largest, never larger. It lies in 0
+    // .. 1. Ends early after about `most_tests` point tests.
+    double advance(const ToolField& tool, const Pose& X_VT, const Vector6d& step, double allowed_depth,
+                   size_t most_tests = SIZE_MAX) noexcept;
+
+    // Work of gather() and advance() since the last call, in distances of one candidate to the tool.
+    size_t takePointTests() noexcept { return std::exchange(point_tests_, 0); }
+
+    size_t room() const noexcept { return candidates_.patch.size(); }
+    size_t candidateCount() const noexcept { return candidates_.count; }
+    double margin() const noexcept { return margin_; }
+
+  private:
+    static constexpr size_t kMostPieces = 65536;
+    // What was sampled as finely as asked for may come to so many times most_samples.
+    static constexpr size_t kMostTimes = 2;
+    // To cut the surface into samples and to solve with them takes as long as so many point tests, each.
+    static constexpr size_t kTestsPerSample = 20;
+    // A contact counts for the stiffness cap in proportion to its depth, so that a new one comes in smoothly.
+    static constexpr double kFullShareDepth = 20e-6;  // m
+    static double shareInContact(double distance) noexcept {
+        return std::clamp(-distance / kFullShareDepth, 0.0, 1.0);
+    }
+    Eigen::Vector3d positionOf(size_t candidate) const noexcept {  // V
+        return origin_ + candidates_.position(candidate).cast<double>();
+    }
+    // The spheres of these blocks of points are tested together.
+    struct BlockBatch {
+        static constexpr int kCapacity = PointBatch<float>::kCapacity;
+        const ShellBlock* block[kCapacity];
+        int points[kCapacity];
+        LeafId leaf[kCapacity];
+        int count = 0;
+        void add(const ShellBlock& b, uint32_t point_count, LeafId of_leaf) noexcept {
+            block[count] = &b;
+            points[count] = int(point_count);
+            leaf[count++] = of_leaf;
+        }
+    };
+    bool collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT, size_t most_tests) noexcept;
+    bool collectFrom(const BlockBatch& blocks, const ToolField& tool, const Pose& X_VT) noexcept;
+    NearTest nearTest(const ToolField& tool, const Pose& X_VT) const noexcept;
+    bool addCandidates(const ShellBlock& block, LeafId leaf, int count, const SampleBatch<float>& at,
+                       const NearTest& test) noexcept;
+    // The tool seldom moves by more than half of the margin, which is a guess of twice its motion.
+    double fineWithin() const noexcept { return std::min(margin_ / 2, kFineWithin); }
+    // Is the whole patch too large for one sample?
+    bool isCoarse(const ToolField& tool, size_t candidate) const noexcept {
+        const float near = candidates_.nearest[candidate];
+        return near < float(fineWithin()) || SurfacePieces::shortEnough(tool, near) < float(patch_reach_);
+    }
+    void refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT, size_t most_tests) noexcept;
+    void cutPatch(const ShellView& bone, uint32_t candidate) noexcept;
+    bool cutCell(const ShellView& bone, const Eigen::Vector3i& cell, uint32_t candidate,
+                 uint8_t level) noexcept;
+    size_t countPieces() noexcept;
+    void placePieces() noexcept;
+    void movePlacesOntoSurface(const VoxelVolume& volume, size_t from) noexcept;
+    void fillHoles(size_t coarse) noexcept;
+    void startSweep(const ToolField& tool, const Pose& X_VT, const Vector6d& step,
+                    double allowed_depth) noexcept;
+    double sweptShare(const ToolField& tool, const Pose& X_VT) const noexcept;
+    void sumStiffness() noexcept;
+    void guardFarSide(const VoxelVolume& volume, const ToolField& tool, const Pose& X_VT) noexcept;
+    void capStiffness(const ToolField& tool, const Pose& X_VT) noexcept;
+
+    GradientContactConfig config_;
+    ContactWeights* weights_ = nullptr;
+    Candidates candidates_;
+    SurfacePieces pieces_{kMostPieces};
+    PatchMemory patch_memory_{4096};
+    std::vector<uint32_t>
+        split_;  // ascending: the first split_count_ are candidates whose pieces take their place
+    size_t split_count_ = 0;
+    bool has_fewer_samples_ = false;
+    std::vector<uint32_t> next_place_;  // per candidate that is cut: of its pieces, where the next one goes
+    // A sweep needs how near each candidate may come, in m, and 1/(the most that the whole step can bring
+    // it nearer).
+    std::vector<float> lowest_, inverse_rate_;
+    size_t point_tests_ = 0;
+    double most_stiffness_ = 0;  // N/m: those that may be in contact have no more, all directions together
+    double deepest_ = 0;         // m
+    double margin_ = 0;
+    double patch_reach_ = 0;  // m: no place of a patch is farther from its point; 0 without pieces
+    Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // V: the tool point at the gathering
+};
+
+}  // namespace bonemill

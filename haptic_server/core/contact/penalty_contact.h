@@ -1,0 +1,28 @@
+// This is the thesis' penalty contact between the bone's point-shell and the tool's signed distance field
+// (eq 4-16).
+#pragma once
+
+#include "common/geometry/pose.h"
+#include "haptic_server/core/contact/contact_configs.h"
+#include "haptic_server/core/contact/point_shell.h"
+#include "haptic_server/core/tool/sdf_grid.h"
+
+namespace bonemill {
+
+// It is the contact wrench on the tool about the tool point (origin of T), axes V.
+struct ContactResult {
+    Wrench wrench;
+    // This is ∂(force, torque)/∂(x, ω) as printed in eq 6-9, and kept wrong where the thesis is
+    // (docs/research/simulate.md): eq 7 carries + k d n~ although the bone's normals do not turn with the
+    // tool, and eq 8 lacks + F~.
+    Matrix6d derivative = Matrix6d::Zero();
+    uint32_t contacts = 0;
+    double max_penetration = 0;  // m
+};
+
+// Tests every shell point of the leaves that the tool's box meets. RT-safe; X_VT is the tool's pose in V.
+ContactResult penaltyContact(const PenaltyContactConfig& config, const VoxelVolume& volume,
+                             const LeafLattice& lattice, const PointShell& shell, const SdfGrid& tool_sdf,
+                             const Pose& X_VT) noexcept;
+
+}  // namespace bonemill

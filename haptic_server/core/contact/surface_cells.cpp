@@ -1,0 +1,100 @@
+#include "haptic_server/core/contact/surface_cells.h"
+
+#include <algorithm>
+
+#include "haptic_server/core/contact/cell_corners.h"
+#include "haptic_server/core/contact/shell_point.h"
+#include "haptic_server/core/volume/marching_cubes_table.h"
+
+namespace bonemill {
+namespace {
+
+// The triangles are packed as the kernel wants them.
+std::vector<int> packedTriangles() {
+    static_assert(kMaxCubeTriangles == kTrianglesPerCell);
+    std::vector<int> packed(256 * kTrianglesPerCell, 0);
+    for (size_t inside = 0; inside < 256; ++inside) {
+        const CubeTriangles& triangles = cubeTriangles()[inside];
+        for (size_t n = 0; n < triangles.count; ++n) {
+            const auto& [a, b, c] = triangles.edges[n];
+            packed[inside * kTrianglesPerCell + n] = a | b << 4 | c << 8;
+        }
+    }
+    return packed;
+}
+
+}  // namespace
+
+SurfaceCells::SurfaceCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_cells)
+    : triangles_(packedTriangles()), crossed_(leaf_cells) {
+    const double unit = volume.spacing().maxCoeff();
+    steps_ = (volume.spacing() / unit).cast<float>();
+    unit_area_ = float(unit * unit);
+    const size_t most = size_t(leaf_cells.prod()) + kCellLanes;
+    cell_.resize(most);
+    inside_.resize(most);
+    is_found_.resize(most);
+    for (auto& values : excess_) values.resize(most);
+    for (auto* values : {&area_, &x_, &y_, &z_, &to_x_, &to_y_, &to_z_, &normal_x_, &normal_y_, &normal_z_})
+        values->resize(most);
+}
+
+CellArrays SurfaceCells::arrays() const noexcept {
+    CellArrays arrays;
+    for (int corner = 0; corner < 8; ++corner) arrays.excess[corner] = excess_[corner].data();
+    arrays.inside = inside_.data();
+    arrays.count = int(count_);
+    return arrays;
+}
+
+void SurfaceCells::collect(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
+                           const IndexBox& cells) noexcept {
+    findCells(volume, leaf_first, cells);
+    kernels().cell_patches(arrays(), triangles_.data(), steps_.data(),
+                           {area_.data(), x_.data(), y_.data(), z_.data()});
+}
+
+void SurfaceCells::project(const ShellProjection& projection) noexcept {
+    const size_t padded = (count_ + kCellLanes - 1) / kCellLanes * kCellLanes;
+    std::copy_n(x_.begin(), padded, to_x_.begin());
+    std::copy_n(y_.begin(), padded, to_y_.begin());
+    std::copy_n(z_.begin(), padded, to_z_.begin());
+    kernels().project_into_cells(arrays(), projection.steepness().data(), projection.inverseSpacing().data(),
+                                 kProjectionTolerance, kNewtonSteps,
+                                 {to_x_.data(), to_y_.data(), to_z_.data(), normal_x_.data(),
+                                  normal_y_.data(), normal_z_.data(), is_found_.data()});
+}
+
+void SurfaceCells::findCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
+                             const IndexBox& cells) noexcept {
+    count_ = 0;
+    const Eigen::Vector3i size = cells.max - cells.min + Eigen::Vector3i::Ones();
+    crossed_.find(
+        size,
+        [&](int k, size_t row_size, uint8_t* sides) {
+            IndexBox layer = cells;
+            layer.min.z() = layer.max.z() = cells.min.z() + k;
+            // All corners of a brick's own cells are in the brick.
+            volume.forEachOwnedPart(layer, [&](const IndexBox& part, size_t offset) {
+                const Eigen::Vector3i at = part.min - cells.min, parts = part.max - part.min;
+                kernels().cell_sides(
+                    {volume.ownerData() + offset, VoxelVolume::kStrideY, VoxelVolume::kStrideZ},
+                    parts.x() + 2, parts.y() + 1, volume.iso(), row_size,
+                    sides + row_size * size_t(at.y()) + at.x());
+            });
+        },
+        [&](int i, int j, int k, int inside) {
+            addCell(volume, leaf_first, cells.min + Eigen::Vector3i(i, j, k), inside);
+        });
+}
+
+void SurfaceCells::addCell(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
+                           const Eigen::Vector3i& cell, int corners_inside) noexcept {
+    const CellCorners corners = readCorners(volume, cell);
+    for (size_t c = 0; c < 8; ++c) excess_[c][count_] = corners.excess[c];
+    const Eigen::Vector3i local = cell - leaf_first;
+    cell_[count_] = {uint16_t(local.x()), uint16_t(local.y()), uint16_t(local.z())};
+    inside_[count_++] = corners_inside;
+}
+
+}  // namespace bonemill

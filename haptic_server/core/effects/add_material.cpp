@@ -1,0 +1,66 @@
+#include "haptic_server/core/effects/add_material.h"
+
+#include <algorithm>
+
+#include "haptic_server/core/effects/make_effects.h"
+
+namespace bonemill {
+namespace {
+
+// How thick the tool is at most, over the burr's size and beyond as far again; it is round about its axis.
+double thickestNear(const ToolModel& tool, double burr_radius) noexcept {
+    constexpr int kPlaces = 12, kSteps = 16;
+    const ToolField& field = tool.field({});
+    double thickest = burr_radius;
+    for (int n = 0; n < kPlaces; ++n) {
+        const double y = 4 * burr_radius * n / kPlaces;
+        double r = thickest;
+        for (int step = 0; step < kSteps; ++step) {
+            const double outside = field.distanceBound({r, y, 0});
+            if (outside >= 0) break;
+            r -= outside;
+        }
+        thickest = std::max(thickest, r);
+    }
+    return thickest;
+}
+
+}  // namespace
+
+AddMaterial::AddMaterial(const AddMaterialConfig& config, const BoneModel& bone, const EffectRoom& room)
+    : HapticEffect(0),
+      longest_way_(room.longest_way),
+      milling_({.removal_rate = 0, .addition_rate = config.rate, .most_cells = room.most_cells}, bone.volume,
+               bone.lattice, room.largest_burr_radius),
+      deposit_(bone, {.rate = config.rate,
+                      .largest_burr_radius = room.largest_burr_radius,
+                      .longest_way = room.longest_way,
+                      .most_cells = room.most_cells}) {}
+
+ToolPlace AddMaterial::placeOf(const EffectTick& tick) noexcept {
+    if (tool_ != tick.tool->model) {
+        tool_ = tick.tool->model;
+        tool_radius_ = thickestNear(*tool_, tick.tool->burr.radius);
+    }
+    return {.p_VB = tick.X_VT.position,
+            .axis_V = tick.X_VT.rotation * Eigen::Vector3d::UnitY(),
+            .radius = tool_radius_,
+            .way = std::min(longest_way_, (tick.X_VT.position - tick.X_VT_start.position).norm())};
+}
+
+void AddMaterial::mill(EffectTick& tick, BoneModel& bone, MillingResult& result) noexcept {
+    if (tick.is_pedal_down) deposit_.forget();
+    if (!tick.may_mill) return;
+    const double radius = tick.tool->burr.radius;
+    if (tick.shape == MillingShape::kVoxelCentres) {
+        if (!tick.is_add_wanted) return;
+        milling_.setBurrRadius(radius);
+        return result.include(
+            milling_.apply(bone.volume, bone.lattice, bone.shell, tick.X_VT.position, +1, tick.dt));
+    }
+    if (tick.is_add_wanted)
+        deposit_.owe(bone.volume, {tick.X_VT_start.position, tick.X_VT.position, longest_way_}, radius);
+    if (deposit_.isOwing()) result.include(deposit_.lay(bone, placeOf(tick), tick.dt, tick.is_add_wanted));
+}
+
+}  // namespace bonemill

@@ -1,0 +1,104 @@
+#include "haptic_server/core/effects/cutting_force.h"
+
+#include <cmath>
+
+#include "haptic_server/core/effects/burr_speed.h"
+#include "haptic_server/core/effects/increment.h"
+
+namespace bonemill {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+namespace {
+
+// It is the sum of dampers, each of which is a force −d (I − n nᵀ) v at r from the tool point against the
+// motion v there. With w = (n, r × n) the twist's matrix is Σ d ([I, −r×; r×, −r×r×] − w wᵀ).
+class TangentialDampers {
+  public:
+    void add(double d, const Vector3d& r, const Vector3d& n) noexcept {
+        sum_ += d;
+        of_r_ += d * r;
+        of_rr_ += (d * r) * r.transpose();
+        Vector6d w;
+        w << n, r.cross(n);
+        of_w_.selfadjointView<Eigen::Upper>().rankUpdate(w, d);
+    }
+    Matrix6d damping() const noexcept {
+        Matrix6d all;
+        const Matrix3d r_skew = skew(of_r_);
+        all.topLeftCorner<3, 3>() = sum_ * Matrix3d::Identity();
+        all.topRightCorner<3, 3>() = -r_skew;
+        all.bottomLeftCorner<3, 3>() = r_skew;
+        all.bottomRightCorner<3, 3>() = of_rr_.trace() * Matrix3d::Identity() - of_rr_;
+        return all - Matrix6d(of_w_.selfadjointView<Eigen::Upper>());
+    }
+
+  private:
+    double sum_ = 0;
+    Vector3d of_r_ = Vector3d::Zero();
+    Matrix3d of_rr_ = Matrix3d::Zero();
+    Matrix6d of_w_ = Matrix6d::Zero();  // the upper half
+};
+
+}  // namespace
+
+void CuttingForce::restart(Restart) noexcept {
+    pull_ = {};
+}
+
+CuttingForce::Pull CuttingForce::pullOf(const EffectTick& tick) const noexcept {
+    Pull pull;
+    const Burr& burr = tick.tool->burr;
+    const double spin = tick.spin_speed, share = spinShare(spin, burr), moment = tick.burr_load.moment;
+    const double held_per_moment = moment > 0 ? (1 - share) * tick.axis_load / moment : 0;
+    if (share == 0 && held_per_moment == 0) return pull;
+    const Vector3d axis = tick.axis();
+    TangentialDampers dampers;
+    forEachBurrContact(tick, [&](const SurfaceContact& contact, const Vector3d& r, double rho) {
+        const double spread = patchSpread(double(tick.place_area[contact.candidate]));
+        const Vector3d n = contact.push_V.cast<double>();
+        const Matrix3d tangential = Matrix3d::Identity() - n * n.transpose();
+        const Vector3d by_turn = tangential * axis.cross(r), v_spin = spin * by_turn;
+        const Vector3d v_tool = tangential * (tick.velocity_V + tick.angular_velocity_V.cross(r));
+        const double mean_square = (v_spin + v_tool).squaredNorm() + spin * spin * spread;
+        const double per_speed = share * burr.friction * double(contact.force) /
+                                 std::sqrt(mean_square + config_.slow_speed * config_.slow_speed);
+        const double per_turn = per_speed * spin + held_per_moment * double(contact.force) / rho;
+        const Vector3d force = -per_turn * by_turn;
+        pull.of_spin.force += force;
+        pull.of_spin.torque += r.cross(force) - per_turn * spread * axis;
+        dampers.add(per_speed, r, n);
+    });
+    pull.damping = dampers.damping();
+    return pull;
+}
+
+void CuttingForce::begin(EffectTick& tick) noexcept {
+    const Pull now = pullOf(tick);
+    const double way = tick.dt / (config_.smoothing_time + tick.dt);
+    pull_.of_spin.force += way * (now.of_spin.force - pull_.of_spin.force);
+    pull_.of_spin.torque += way * (now.of_spin.torque - pull_.of_spin.torque);
+    pull_.damping += way * (now.damping - pull_.damping);
+}
+
+// It is bounded from below together with the solve's own damping.
+EnergyTerm CuttingForce::energy(const EffectTick& tick, const Pose& X_VT) const noexcept {
+    const Increment step(tick.X_VT_start, X_VT);
+    const Vector6d drag = pull_.damping * step.twist / tick.dt;
+    EnergyTerm term;
+    term.energy = -pull_.of_spin.force.dot(step.translation()) - pull_.of_spin.torque.dot(step.rotation()) +
+                  drag.dot(step.twist) / 2;
+    term.wrench =
+        step.wrenchOf({pull_.of_spin.force - drag.head<3>(), pull_.of_spin.torque - drag.tail<3>()});
+    term.stiffness = pull_.damping / tick.dt;
+    return term;
+}
+
+void CuttingForce::finish(EffectTick& tick) noexcept {
+    const double against = (tick.spin_speed != 0 ? tick.spin_speed : tick.axis_load) < 0 ? 1 : -1;
+    const EnergyTerm at_end = energy(tick, tick.X_VT);
+    tick.record.axis_torque = float(against * tick.axis().dot(at_end.wrench.torque));
+}
+
+}  // namespace bonemill

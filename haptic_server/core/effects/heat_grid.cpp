@@ -1,0 +1,393 @@
+#include "haptic_server/core/effects/heat_grid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/base/assert.h"
+#include "common/math/pinned_math.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kStableShare = 1.0 / 6;  // of a difference, through each of a cube's six faces, explicit
+constexpr double kLongestShare = 0.9 * kStableShare;
+constexpr double kShortestTurn = 0.02;  // s: quicker turns would show nobody more
+constexpr double kTurnsPerSecond = 4000;
+constexpr double kPoolShare = 0.8;  // of the bricks that could have their turn in time
+constexpr size_t kMostBricks = 1024, kMostDeadBricks = 16384;
+constexpr size_t kLookupsPerStep = 4;  // of a brick's cubes in the volume
+constexpr size_t kLookupsOfHeat = 2;   // of them, that dead bone leaves to the bricks whose turn it is
+constexpr int64_t kMostBricksToRevisit = 512;
+constexpr size_t kMostDeadSeen = 256;  // bricks with dead cells that a step looks through for stale ones
+// They are in K: a brick whose border is warmer than that opens its neighbour; one that is cooler all over is
+// closed when it has been open for a while. Cold matters less.
+constexpr float kWarm = 0.01f, kCold = -2, kSettledCold = -0.5f;
+constexpr double kShortestLife = 1;        // s
+constexpr double kSpareForSources = 0.25;  // of the pool, that heat on its way does not take
+
+const std::array<Eigen::Vector3i, 6> kSides = {
+    {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
+
+}  // namespace
+
+HeatGrid::HeatGrid(const HeatConfig& config, const VoxelVolume& bone, double dt)
+    : config_(config),
+      bone_(bone),
+      dt_(dt),
+      cell_capacity_(config.heat_capacity * pinned::cube(config.cell)),
+      per_time_(config.conductivity / (config.heat_capacity * config.cell * config.cell)),
+      longest_(kLongestShare / per_time_),
+      turn_(std::min(kShortestTurn, longest_ / 2)),
+      most_turns_(size_t(std::max(1.0, std::round(kTurnsPerSecond * dt)))),
+      necrosis_excess_(config.necrosis_temperature - config.body_temperature) {
+    // There is half a cube of bone between a cube's middle and its face.
+    const auto rate = [&](double transfer) {
+        if (transfer <= 0) return 0.0;
+        return 1 / (1 / transfer + config.cell / (2 * config.conductivity)) /
+               (config.heat_capacity * config.cell);
+    };
+    wet_rate_ = rate(config.wet_transfer);
+    dry_rate_ = rate(config.dry_transfer);
+    const Eigen::Array3d size = bone.dims().cast<double>().array() * bone.spacing().array();
+    bricks_ = (size / (config.cell * kEdge)).ceil().cast<int>();
+    directory_.assign(size_t(bricks_.prod()), kNone);
+    dead_directory_.assign(directory_.size(), kNone);
+    const double in_time = kPoolShare * double(most_turns_) * longest_ / dt;
+    pool_.resize(std::min({kMostBricks, size_t(std::max(1.0, in_time)), directory_.size()}));
+    hottest_.resize(pool_.size());
+    dead_pool_.resize(std::min(kMostDeadBricks, directory_.size()));
+    for (size_t n = pool_.size(); n > 0; --n) free_.push_back(uint32_t(n - 1));
+    active_.reserve(pool_.size());
+    lookups_ = kLookupsPerStep;
+}
+
+// The grid begins where the first voxel does, half a voxel before its centre.
+Eigen::Vector3i HeatGrid::cellAt(const Eigen::Vector3d& p_V) const noexcept {
+    constexpr double kFar = 1e6;
+    const Eigen::Array3d place = (p_V + bone_.spacing() / 2).array() / config_.cell;
+    return place.floor().max(-kFar).min(kFar).cast<int>().matrix();
+}
+
+// Returns the voxel in the middle of this cube along one axis, or kOutside.
+int HeatGrid::voxelAt(int cell, int axis) const noexcept {
+    const double from_border = (cell + 0.5) * config_.cell;
+    const int voxel = int(std::floor(from_border / bone_.spacing()[axis]));
+    return voxel >= 0 && voxel < bone_.dims()[axis] ? voxel : kOutside;
+}
+
+bool HeatGrid::isBone(const Eigen::Vector3i& cell) const noexcept {
+    const Eigen::Vector3i voxel(voxelAt(cell.x(), 0), voxelAt(cell.y(), 1), voxelAt(cell.z(), 2));
+    return voxel.minCoeff() != kOutside && bone_.at(voxel.x(), voxel.y(), voxel.z()) >= bone_.iso();
+}
+
+HeatGrid::Brick* HeatGrid::find(const Eigen::Vector3i& brick) noexcept {
+    if (!isInside(brick)) return nullptr;
+    const uint32_t slot = directory_[directoryIndex(brick)];
+    return slot == kNone ? nullptr : &pool_[slot];
+}
+
+HeatGrid::Brick* HeatGrid::findOrOpen(const Eigen::Vector3i& index) noexcept {
+    if (Brick* brick = find(index)) return brick;
+    if (!isInside(index) || free_.empty() || lookups_ == 0) return nullptr;
+    const uint32_t slot = free_.back();
+    free_.pop_back();
+    active_.push_back(slot);
+    directory_[directoryIndex(index)] = slot;
+    Brick& brick = pool_[slot];
+    brick = Brick{};
+    hottestOf(brick) = 0;
+    brick.index = index;
+    brick.opened = brick.last_time = now_;
+    lookUpBone(brick);
+    return &brick;
+}
+
+void HeatGrid::lookUpBone(Brick& brick) noexcept {
+    --lookups_;
+    brick.is_stale = false;
+    constexpr int kAround = kEdge + 2;
+    std::array<bool, kAround * kAround * kAround> is_bone{};
+    constexpr Eigen::Index kX = 1, kY = kAround, kZ = kAround * kAround;
+    int voxels[3][kAround];
+    for (int axis = 0; axis < 3; ++axis)
+        for (int n = 0; n < kAround; ++n) voxels[axis][n] = voxelAt(brick.index[axis] * kEdge + n - 1, axis);
+    for (int z = 0; z < kAround; ++z)
+        for (int y = 0; y < kAround; ++y) {
+            if (voxels[2][z] == kOutside || voxels[1][y] == kOutside) continue;
+            bool* row = &is_bone[size_t(y * kY + z * kZ)];
+            for (int x = 0; x < kAround; ++x)
+                row[x] = voxels[0][x] != kOutside &&
+                         bone_.at(voxels[0][x], voxels[1][y], voxels[2][z]) >= bone_.iso();
+        }
+    forEachIndex(
+        {Eigen::Vector3i::Zero(), Eigen::Vector3i::Constant(kEdge - 1)}, [&](const Eigen::Vector3i& c) {
+            const bool* at = &is_bone[size_t((c.x() + 1) * kX + (c.y() + 1) * kY + (c.z() + 1) * kZ)];
+            const int n = cellIndex(c);
+            if (*at != bool(brick.is_bone[n])) brick.excess[n] = brick.hot_time[n] = 0;
+            brick.is_bone[n] = *at;
+            brick.open_faces[n] =
+                *at ? uint8_t(!at[-kX] + !at[kX] + !at[-kY] + !at[kY] + !at[-kZ] + !at[kZ]) : uint8_t(0);
+            if (!*at) removeDead(brick, n);
+        });
+}
+
+bool HeatGrid::putInto(const Eigen::Vector3i& cell, double heat) noexcept {
+    if ((cell.array() < 0).any()) return false;
+    Brick* brick = findOrOpen(cell.unaryExpr([](int v) { return v >> kShift; }));
+    if (!brick) return false;
+    if (brick->is_stale && lookups_ > 0) lookUpBone(*brick);
+    const int n = cellIndex(cell);
+    if (!brick->is_bone[n]) return false;
+    brick->excess[n] += float(heat / cell_capacity_);
+    float& hottest = hottestOf(*brick);
+    hottest = std::max(hottest, brick->excess[n]);
+    return true;
+}
+
+void HeatGrid::addHeat(const Eigen::Vector3d& p_V, const Eigen::Vector3d& inward_V, double heat) noexcept {
+    BONEMILL_ASSERT(heat >= 0 && std::abs(inward_V.squaredNorm() - 1) < 1e-6);
+    // Cubes that are half bone count as bone or as none: the next one inwards may be the first.
+    for (const double depth : {0.25, 0.75, 1.25})
+        if (putInto(cellAt(p_V + depth * config_.cell * inward_V), heat)) return;
+    const Eigen::Vector3i cell = cellAt(p_V);
+    for (const Eigen::Vector3i& side : kSides)
+        if (putInto(cell + side, heat)) return;
+}
+
+void HeatGrid::noteChange(const IndexBox& voxels) noexcept {
+    if (voxels.isEmpty()) return;
+    const auto brickOf = [&](const Eigen::Vector3i& voxel, int grown) {
+        const Eigen::Vector3i cell =
+            cellAt(bone_.spacing().cwiseProduct(voxel.cast<double>())).array() + grown;
+        return Eigen::Vector3i(cell.unaryExpr([](int v) { return v >> kShift; }));
+    };
+    const IndexBox box{brickOf(voxels.min, -1), brickOf(voxels.max, +1)};
+    if (box.count() > kMostBricksToRevisit) return noteChangeEverywhere();
+    forEachIndex(box.clamped(Eigen::Vector3i::Zero(), bricks_.array() - 1),
+                 [&](const Eigen::Vector3i& index) {
+                     if (Brick* brick = find(index)) brick->is_stale = true;
+                     const uint32_t slot = deadSlotOf(index);
+                     if (slot != kNone) markDeadStale(slot, slot + 1);
+                 });
+}
+
+void HeatGrid::noteChangeEverywhere() noexcept {
+    for (const uint32_t slot : active_) pool_[slot].is_stale = true;
+    markDeadStale(0, dead_used_);
+}
+
+void HeatGrid::forget() noexcept {
+    while (!active_.empty()) close(active_.size() - 1);
+    turns_due_ = 0;
+    next_ = 0;
+    dead_used_ = dead_count_ = stale_dead_ = next_dead_ = 0;
+}
+
+uint32_t HeatGrid::deadSlotOf(const Eigen::Vector3i& brick) const noexcept {
+    const uint32_t slot = dead_directory_[directoryIndex(brick)];
+    return slot < dead_used_ && dead_pool_[slot].brick == brick ? slot : kNone;
+}
+
+void HeatGrid::markDeadStale(size_t first, size_t end) noexcept {
+    for (size_t slot = first; slot < end; ++slot) {
+        stale_dead_ += !dead_pool_[slot].is_stale;
+        dead_pool_[slot].is_stale = true;
+    }
+}
+
+// Dead cells whose bone is gone are not counted any more, whether their brick is open or not.
+void HeatGrid::reviewDead() noexcept {
+    for (size_t n = 0; n < kMostDeadSeen && stale_dead_ > 0 && lookups_ > kLookupsOfHeat; ++n) {
+        next_dead_ = next_dead_ + 1 < dead_used_ ? next_dead_ + 1 : 0;
+        DeadCells& dead = dead_pool_[next_dead_];
+        if (!dead.is_stale) continue;
+        dead.is_stale = false;
+        --stale_dead_;
+        --lookups_;
+        for (int cell = 0; cell < kCells; ++cell) {
+            uint64_t& bits = dead.bits[cell / 64];
+            const uint64_t bit = uint64_t(1) << (cell % 64);
+            const Eigen::Vector3i place(cell & (kEdge - 1), cell >> kShift & (kEdge - 1),
+                                        cell >> (2 * kShift));
+            if (!(bits & bit) || isBone(dead.brick * kEdge + place)) continue;
+            bits &= ~bit;
+            --dead_count_;
+        }
+    }
+}
+
+void HeatGrid::irrigate(const Eigen::Vector3d& center_V, double radius) noexcept {
+    wet_center_V_ = center_V;
+    wet_radius_ = radius;
+}
+
+void HeatGrid::step() noexcept {
+    now_ += dt_;
+    lookups_ = kLookupsPerStep;
+    reviewDead();
+    turns_due_ = std::min(turns_due_ + double(active_.size()) * dt_ / turn_, double(most_turns_));
+    for (; turns_due_ >= 1 && !active_.empty(); --turns_due_) {
+        if (next_ >= active_.size()) next_ = 0;
+        Brick& brick = pool_[active_[next_]];
+        if (brick.is_stale) {
+            if (lookups_ == 0) return;
+            lookUpBone(brick);
+        }
+        const double elapsed = std::min(now_ - brick.last_time, longest_);
+        brick.last_time = now_;
+        harm(brick, elapsed);
+        openNeighbours(brick);
+        conduct(brick, elapsed);
+        cool(brick, elapsed);
+        if (isSettled(brick))
+            close(next_);
+        else
+            ++next_;
+    }
+}
+
+// Neighbours are opened where heat is about to come to them.
+void HeatGrid::openNeighbours(Brick& brick) noexcept {
+    if (double(free_.size()) < kSpareForSources * double(pool_.size())) return;
+    for (size_t side = 0; side < kSides.size(); ++side) {
+        const Eigen::Vector3i neighbour = brick.index + kSides[side];
+        if (lookups_ == 0 || !isInside(neighbour) || find(neighbour)) continue;
+        const int axis = int(side % 3);
+        IndexBox border{Eigen::Vector3i::Zero(), Eigen::Vector3i::Constant(kEdge - 1)};
+        (side < 3 ? border.min : border.max)[axis] = side < 3 ? kEdge - 1 : 0;
+        bool is_wanted = false;
+        forEachIndex(border, [&](const Eigen::Vector3i& c) {
+            const float excess = brick.excess[cellIndex(c)];
+            if (is_wanted || (excess < kWarm && excess > kCold)) return;
+            is_wanted = isBone(brick.index * kEdge + c + kSides[side]);
+        });
+        if (is_wanted) findOrOpen(neighbour);
+    }
+}
+
+// Heat goes through the faces between the brick's cubes, and through those to its neighbours upwards; the
+// neighbours' own turns do the others.
+void HeatGrid::conduct(Brick& brick, double elapsed) noexcept {
+    const float share = float(per_time_ * elapsed);
+    std::array<float, kCells> gain{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const int step = 1 << (kShift * axis);
+        Brick* above = find(brick.index + kSides[size_t(axis)]);
+        for (int n = 0; n < kCells; ++n) {
+            const bool is_last = (n >> (kShift * axis) & (kEdge - 1)) == kEdge - 1;
+            if (!brick.is_bone[n] || (is_last && !above)) continue;
+            const int m = is_last ? n - (kEdge - 1) * step : n + step;
+            Brick& other = is_last ? *above : brick;
+            if (!other.is_bone[m]) continue;
+            const float flow = share * (brick.excess[n] - other.excess[m]);
+            gain[size_t(n)] -= flow;
+            if (is_last)
+                other.excess[m] += flow;
+            else
+                gain[size_t(m)] += flow;
+        }
+    }
+    for (int n = 0; n < kCells; ++n) brick.excess[n] += gain[size_t(n)];
+}
+
+void HeatGrid::cool(Brick& brick, double elapsed) noexcept {
+    std::array<float, 7> wet, dry;  // what is left of a difference, by the number of open faces
+    for (int faces = 0; faces < 7; ++faces) {
+        wet[size_t(faces)] = float(pinned::exp(-faces * wet_rate_ * elapsed));
+        dry[size_t(faces)] = float(pinned::exp(-faces * dry_rate_ * elapsed));
+    }
+    const float wet_excess = float(config_.irrigation_temperature - config_.body_temperature);
+    const float left_by_blood = float(pinned::exp(-config_.perfusion * elapsed));
+    const Eigen::Vector3d first =
+        (brick.index * kEdge).cast<double>() * config_.cell - bone_.spacing() / 2 - wet_center_V_;
+    float& hottest = hottestOf(brick) = brick.coldest = 0;
+    for (int n = 0; n < kCells; ++n) {
+        if (!brick.is_bone[n]) continue;
+        float& excess = brick.excess[n];
+        if (const uint8_t faces = brick.open_faces[n]; faces > 0) {
+            const Eigen::Array3d cell(n & (kEdge - 1), n >> kShift & (kEdge - 1), n >> (2 * kShift));
+            const Eigen::Vector3d from_center = first + ((cell + 0.5) * config_.cell).matrix();
+            const bool is_wet = from_center.squaredNorm() < wet_radius_ * wet_radius_;
+            if (is_wet)
+                excess = wet_excess + (excess - wet_excess) * wet[faces];
+            else
+                excess *= dry[faces];
+        }
+        excess *= left_by_blood;
+        hottest = std::max(hottest, excess);
+        brick.coldest = std::min(brick.coldest, excess);
+    }
+}
+
+// Notes what the brick's bone has gone through since its last turn.
+void HeatGrid::harm(Brick& brick, double elapsed) noexcept {
+    for (int n = 0; n < kCells; ++n) {
+        if (!brick.is_bone[n] || double(brick.excess[n]) < necrosis_excess_) {
+            brick.hot_time[n] = 0;
+            continue;
+        }
+        brick.hot_time[n] += float(elapsed);
+        if (double(brick.hot_time[n]) >= config_.necrosis_time) markDead(brick, n);
+    }
+}
+
+void HeatGrid::markDead(Brick& brick, int cell) noexcept {
+    uint32_t slot = deadSlotOf(brick.index);
+    if (slot == kNone) {
+        if (dead_used_ == dead_pool_.size()) return;
+        slot = dead_directory_[directoryIndex(brick.index)] = uint32_t(dead_used_++);
+        dead_pool_[slot] = {.bits = {}, .brick = brick.index, .is_stale = false};
+    }
+    uint64_t& bits = dead_pool_[slot].bits[cell / 64];
+    const uint64_t bit = uint64_t(1) << (cell % 64);
+    dead_count_ += !(bits & bit);
+    bits |= bit;
+}
+
+void HeatGrid::removeDead(const Brick& brick, int cell) noexcept {
+    const uint32_t slot = deadSlotOf(brick.index);
+    if (slot == kNone) return;
+    uint64_t& bits = dead_pool_[slot].bits[cell / 64];
+    const uint64_t bit = uint64_t(1) << (cell % 64);
+    dead_count_ -= (bits & bit) != 0;
+    bits &= ~bit;
+}
+
+bool HeatGrid::isSettled(const Brick& brick) const noexcept {
+    return hottestOf(brick) < kWarm && brick.coldest > kSettledCold && now_ - brick.opened > kShortestLife;
+}
+
+void HeatGrid::close(size_t place) noexcept {
+    const uint32_t slot = active_[place];
+    directory_[directoryIndex(pool_[slot].index)] = kNone;
+    free_.push_back(slot);
+    active_[place] = active_.back();
+    active_.pop_back();
+}
+
+double HeatGrid::temperatureAt(const Eigen::Vector3d& p_V) const noexcept {
+    const Eigen::Vector3i cell = cellAt(p_V);
+    if ((cell.array() < 0).any()) return config_.body_temperature;
+    Brick* brick = const_cast<HeatGrid*>(this)->find(cell.unaryExpr([](int v) { return v >> kShift; }));
+    return config_.body_temperature + (brick ? double(brick->excess[cellIndex(cell)]) : 0.0);
+}
+
+double HeatGrid::hottest() const noexcept {
+    float excess = 0;
+    for (const uint32_t slot : active_) excess = std::max(excess, hottest_[slot]);
+    return config_.body_temperature + double(excess);
+}
+
+double HeatGrid::necroticVolume() const noexcept {
+    return double(dead_count_) * pinned::cube(config_.cell);
+}
+
+double HeatGrid::storedHeat() const noexcept {
+    double sum = 0;
+    for (const uint32_t slot : active_)
+        for (int n = 0; n < kCells; ++n) sum += double(pool_[slot].excess[n]);
+    return sum * cell_capacity_;
+}
+
+}  // namespace bonemill

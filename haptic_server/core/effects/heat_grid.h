@@ -1,0 +1,131 @@
+// Heat spreads in the bone by conduction on a grid of cubes of its own, coarser or finer than the voxels,
+// with memory only for bricks of cubes where it is warmer or colder than the body.
+//
+// The finite volumes are explicit: heat that goes through a face leaves one cube and comes to the other, so
+// that none is lost but at the bone's surface and to the blood. A cube is bone or it is not, by the voxel at
+// its middle. Bricks take turns, each with the time that has gone by since its last turn, a few in each step.
+//
+// The frame is V. Construction allocates; all else is RT-safe, for the tick thread only.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "haptic_server/core/effects/heat_config.h"
+#include "haptic_server/core/volume/voxel_volume.h"
+
+namespace bonemill {
+
+class HeatGrid {
+  public:
+    // Keeps a reference to the bone. dt is the time of a step, in s.
+    HeatGrid(const HeatConfig& config, const VoxelVolume& bone, double dt);
+
+    // Puts heat (J) into the bone at its surface; inward_V is of unit length and points into the bone. What
+    // finds no bone there is gone.
+    void addHeat(const Eigen::Vector3d& p_V, const Eigen::Vector3d& inward_V, double heat) noexcept;
+    // Voxels in this box may have become bone or air. What is cut away takes its heat with it.
+    void noteChange(const IndexBox& voxels) noexcept;
+    void noteChangeEverywhere() noexcept;
+    // All bone is as warm as the body again, and none is dead. Time and irrigation go on.
+    void forget() noexcept;
+    // From now on the bone's surface is irrigated within `radius` (m) of here; 0 means nowhere.
+    void irrigate(const Eigen::Vector3d& center_V, double radius) noexcept;
+    // Time goes on by dt.
+    void step() noexcept;
+
+    double temperatureAt(const Eigen::Vector3d& p_V) const noexcept;  // °C
+    double hottest() const noexcept;                                  // °C, of bone that is there
+    // Returns the m³ of bone, not cut away since, that was above the necrosis temperature for
+    // the necrosis time.
+    double necroticVolume() const noexcept;
+    double storedHeat() const noexcept;  // J above body temperature
+    double time() const noexcept { return now_; }
+    size_t activeBricks() const noexcept { return active_.size(); }
+
+  private:
+    static constexpr int kShift = 3, kEdge = 1 << kShift, kCells = kEdge * kEdge * kEdge;
+    static constexpr uint32_t kNone = ~uint32_t(0);
+    static constexpr int kOutside = -1;
+
+    struct Brick {
+        Eigen::Vector3i index = Eigen::Vector3i::Zero();
+        double opened, last_time;  // s; up to the latter its faces are done
+        float coldest;             // above body temperature; of its bone
+        bool is_stale;             // whether cells are bone is to be looked up anew
+        float excess[kCells];      // temperature above the body's
+        float hot_time[kCells];    // s above necrosis without a break
+        uint8_t is_bone[kCells];
+        uint8_t open_faces[kCells];  // of bone, towards air
+    };
+
+    size_t directoryIndex(const Eigen::Vector3i& brick) const noexcept {
+        return size_t(brick.x()) +
+               size_t(bricks_.x()) * (size_t(brick.y()) + size_t(bricks_.y()) * size_t(brick.z()));
+    }
+    bool isInside(const Eigen::Vector3i& brick) const noexcept {
+        return (brick.array() >= 0).all() && (brick.array() < bricks_.array()).all();
+    }
+    static int cellIndex(const Eigen::Vector3i& cell) noexcept {
+        constexpr int kMask = kEdge - 1;
+        return (cell.x() & kMask) + kEdge * ((cell.y() & kMask) + kEdge * (cell.z() & kMask));
+    }
+    Eigen::Vector3i cellAt(const Eigen::Vector3d& p_V) const noexcept;
+    int voxelAt(int cell, int axis) const noexcept;
+    bool isBone(const Eigen::Vector3i& cell) const noexcept;
+    Brick* find(const Eigen::Vector3i& brick) noexcept;
+    Brick* findOrOpen(const Eigen::Vector3i& brick) noexcept;
+    bool putInto(const Eigen::Vector3i& cell, double heat) noexcept;
+    void lookUpBone(Brick& brick) noexcept;
+    void conduct(Brick& brick, double elapsed) noexcept;
+    void openNeighbours(Brick& brick) noexcept;
+    void cool(Brick& brick, double elapsed) noexcept;
+    void harm(Brick& brick, double elapsed) noexcept;
+    void markDead(Brick& brick, int cell) noexcept;
+    void removeDead(const Brick& brick, int cell) noexcept;
+    uint32_t deadSlotOf(const Eigen::Vector3i& brick) const noexcept;
+    void reviewDead() noexcept;
+    void markDeadStale(size_t first, size_t end) noexcept;
+    float& hottestOf(const Brick& brick) noexcept { return hottest_[size_t(&brick - pool_.data())]; }
+    float hottestOf(const Brick& brick) const noexcept { return hottest_[size_t(&brick - pool_.data())]; }
+    bool isSettled(const Brick& brick) const noexcept;
+    void close(size_t place) noexcept;
+
+    HeatConfig config_;
+    const VoxelVolume& bone_;
+    double dt_;
+    Eigen::Vector3i bricks_;      // per axis
+    double cell_capacity_;        // J/K
+    double per_time_;             // share of a temperature difference that crosses a face per time, 1/s
+    double longest_;              // s: of a stable turn
+    double turn_;                 // s: of a turn while there are few bricks
+    size_t most_turns_;           // in a step
+    double wet_rate_, dry_rate_;  // 1/s, of a face
+    double necrosis_excess_;
+    double now_ = 0;
+    double turns_due_ = 0;
+    size_t next_ = 0;     // of active_
+    size_t lookups_ = 0;  // left in this step
+    Eigen::Vector3d wet_center_V_ = Eigen::Vector3d::Zero();
+    double wet_radius_ = 0;
+
+    std::vector<Brick> pool_;
+    std::vector<float> hottest_;  // of each brick of the pool, side by side, as every step asks for them
+    std::vector<uint32_t> free_;
+    std::vector<uint32_t> active_;
+    std::vector<uint32_t> directory_;  // per brick: in pool_
+    // Dead cells outlive their brick's memory with a bit each. A slot in the directory counts only while it
+    // is in use by that brick (deadSlotOf()), so that all are forgotten at once.
+    struct DeadCells {
+        uint64_t bits[kCells / 64];
+        Eigen::Vector3i brick;
+        bool is_stale;  // its bone may be gone
+    };
+    std::vector<uint32_t> dead_directory_;
+    std::vector<DeadCells> dead_pool_;
+    size_t dead_used_ = 0;
+    size_t dead_count_ = 0;
+    size_t stale_dead_ = 0, next_dead_ = 0;  // how many are stale; where the search for them goes on
+};
+
+}  // namespace bonemill

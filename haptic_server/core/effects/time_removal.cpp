@@ -1,0 +1,77 @@
+#include "haptic_server/core/effects/time_removal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "haptic_server/core/effects/make_effects.h"
+
+namespace bonemill {
+namespace {
+
+void squaredDistances(const Candidates& candidates, size_t first, size_t count, const Eigen::Vector3f& from,
+                      float* out) noexcept {
+    const float *x = &candidates.x[first], *y = &candidates.y[first], *z = &candidates.z[first];
+    const float from_x = from.x(), from_y = from.y(), from_z = from.z();
+    for (size_t i = 0; i < count; ++i) {
+        const float dx = x[i] - from_x, dy = y[i] - from_y, dz = z[i] - from_z;
+        out[i] = dx * dx + dy * dy + dz * dz;
+    }
+}
+
+}  // namespace
+
+TimeRemoval::TimeRemoval(const TimeRemovalConfig& config, const BoneModel& bone, const EffectRoom& room)
+    : HapticEffect(kScales),
+      longest_way_(room.longest_way),
+      milling_({.removal_rate = config.rate,
+                .addition_rate = 0,
+                .most_cells = room.most_cells,
+                .longest_way = room.longest_way},
+               bone.volume, bone.lattice, room.largest_burr_radius) {}
+
+void TimeRemoval::begin(EffectTick& tick) noexcept {
+    const bool is_stalled = tick.tool->burr.speed != 0 && tick.spin_speed == 0;
+    is_cutting_ = tick.is_pedal_down && !is_stalled;
+    milling_.setShape(tick.shape);
+    milling_.setBurrRadius(tick.tool->burr.radius);
+}
+
+double TimeRemoval::scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,
+                          const ToolField& tool, const Pose& X_VT) noexcept {
+    if (!is_cutting_) return 1;
+    const auto radius = float(tick.tool->burr.radius + burrSlack(tool));
+    const auto recession = float(milling_.removalSpeed() * tick.dt);
+    const float reach_squared = (radius + recession) * (radius + recession);
+    const Eigen::Vector3f p_OB = (X_VT.position - origin_V).cast<float>();
+    const Eigen::Vector3f axis = (X_VT.rotation * Eigen::Vector3d::UnitY()).cast<float>();
+    constexpr size_t kBatch = 64;
+    float squared[kBatch];
+    for (size_t first = 0; first < candidates.count; first += kBatch) {
+        const size_t count = std::min(kBatch, candidates.count - first);
+        squaredDistances(candidates, first, count, p_OB, squared);
+        for (size_t n = first; n < first + count; ++n) {
+            if (!(squared[n - first] < reach_squared && squared[n - first] > 0)) continue;
+            const Eigen::Vector3f r = candidates.position(n) - p_OB;
+            const float distance = std::sqrt(squared[n - first]);
+            // Outside of the burr, on the hand's side, the shaft may be nearer.
+            if (distance > radius && r.dot(axis) > 0) {
+                const Eigen::Vector3d p_V = origin_V + candidates.position(n).cast<double>();
+                if (distance - radius > float(tool.sample(X_VT.inverse() * p_V).distance)) continue;
+            }
+            const float share = recession / distance;
+            candidates.x[n] += share * r.x();
+            candidates.y[n] += share * r.y();
+            candidates.z[n] += share * r.z();
+        }
+    }
+    return 1;
+}
+
+void TimeRemoval::mill(EffectTick& tick, BoneModel& bone, MillingResult& result) noexcept {
+    if (!is_cutting_) return;
+    const bool is_swept = tick.shape == MillingShape::kSubVoxel;
+    const BurrWay way(tick.X_VT_start.position, tick.X_VT.position, is_swept ? longest_way_ : 0);
+    result.include(milling_.apply(bone.volume, bone.lattice, bone.shell, way, -1, tick.dt));
+}
+
+}  // namespace bonemill

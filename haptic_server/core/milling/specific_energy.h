@@ -1,0 +1,44 @@
+// Says how much energy a volume of bone takes to be cut: by the density that it had in the scan, or by its
+// material. u = u_ref (ρ/ρ_ref)^exponent (ALGORITHMS: 1.5 .. 2), ρ above the window's lower end. Construction
+// allocates; ofCell() is RT-safe, for any thread.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "haptic_server/core/volume/bone_properties.h"
+
+namespace bonemill {
+
+struct SpecificEnergyConfig {
+    double reference;          // u_ref, J/m³
+    double reference_density;  // ρ_ref, counts
+    double exponent;
+    MaterialTable materials;  // those with a specific_energy of their own have it at any density
+};
+
+class SpecificEnergy {
+  public:
+    // Without properties all bone is as the reference. Below `iso` there is no bone: what was laid down there
+    // is as the reference, too.
+    SpecificEnergy(const SpecificEnergyConfig& config, std::shared_ptr<const BoneProperties> properties,
+                   Density iso);
+
+    // The densest of the cell's corners decides; the unit is J/m³.
+    double ofCell(const Eigen::Vector3i& cell) const noexcept {
+        return properties_ ? ofScannedCell(cell) : reference_;
+    }
+
+  private:
+    static constexpr int kStep = 256;  // counts between entries of the table
+    double ofScannedCell(const Eigen::Vector3i& cell) const noexcept;
+    double ofDensity(Density density) const noexcept;
+
+    std::shared_ptr<const BoneProperties> properties_;
+    double reference_;
+    Density iso_;
+    MaterialTable materials_;
+    std::vector<double> of_density_;  // at multiples of kStep
+};
+
+}  // namespace bonemill

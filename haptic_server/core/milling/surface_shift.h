@@ -1,0 +1,126 @@
+// Moves the bone's surface into the bone by a given energy at each contact: a level-set shift of
+// the densities.
+//
+// The energies of all contacts on one patch of the shell (point b, area a) make its recession s = E / (u a).
+// To bring the iso-surface from b to b' = b - s n, the densities around b' must fall by the excess over the
+// iso-value that they have there; all corners of a cell by the same, so that the ramp of densities keeps its
+// slope. A voxel falls by the mean of what the patches around it ask for, weighted by area and distance
+// (trilinear hat of the shell's block size); patches without contact ask for nothing, so that the surface
+// beside the burr stays.
+//
+// What that removes is then measured: the sum over the cells of specific energy times the change of their
+// fill (cell_fill.h). The sum telescopes: over a session it is that of what is missing in the end.
+//
+// The frame is V, the units are SI. Construction allocates; all else is RT-safe, for the tick thread only.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "haptic_server/core/bone/bone_model.h"
+#include "haptic_server/core/milling/cell_fill.h"
+#include "haptic_server/core/milling/change_collector.h"
+#include "haptic_server/core/milling/specific_energy.h"
+
+namespace bonemill {
+
+class SurfaceShift {
+  public:
+    // The surface moves no farther than this share of the thinnest voxel in a tick, times `ticks` of apply().
+    static constexpr double kMostShift = 0.25;
+
+    // There is room for contacts no farther from the burr's centre than `largest_reach`, in m. most_cells is
+    // that of MillingConfig.
+    SurfaceShift(const BoneModel& bone, double largest_reach, size_t most_contacts, size_t most_cells);
+
+    // Begins a new tick with the burr's centre here.
+    void begin(const BoneModel& bone, const Eigen::Vector3d& p_VB) noexcept;
+    // Energy to be spent at one contact of this patch, J, and its depth, m: the patch
+    // recedes no farther than its deepest contact reaches. It is quick when the contacts of a patch follow
+    // each other.
+    void add(const BoneModel& bone, PatchId patch, double energy, double depth) noexcept;
+    // Spends `share` of the energies. Returns what was spent, J.
+    double apply(BoneModel& bone, const SpecificEnergy& u, double share, size_t ticks,
+                 MillingResult& result) noexcept;
+
+  private:
+    // It is one voxel, and the cell that begins there.
+    struct Node {
+        float drop = 0, weight = 0;   // voxel: weighted sum of what is asked for, and of the weights
+        float energy = 0, depth = 0;  // of the patch whose block begins at the cell
+        float fill = 0;               // of the cell, before
+    };
+    // It is a point of the shell near those with energy; `at` in m, V, and the node of its block.
+    struct NearPatch {
+        Eigen::Vector3f at;
+        float area;
+        uint32_t node;
+    };
+    // A patch wishes that the densities around a place fall by so much.
+    struct Wish {
+        Eigen::Vector3f at;  // voxel steps
+        float drop;          // counts
+    };
+    // Something was asked of these voxels of a row, one bit each from the scratch box on.
+    using RowBits = uint64_t;
+    static constexpr int kRowBits = 64;
+    static constexpr size_t kNoNode = ~size_t(0);
+    struct Span {  // of voxels along x; empty: low > high
+        int low = 1, high = 0;
+    };
+
+    size_t index(const Eigen::Vector3i& voxel) const noexcept {
+        const Eigen::Vector3i local = voxel - first_;
+        return size_t(local.x()) +
+               size_t(size_.x()) * (size_t(local.y()) + size_t(size_.y()) * size_t(local.z()));
+    }
+    // The row begins at this word; it has row_words_ words.
+    size_t row(int j, int k) const noexcept {
+        return size_t(row_words_) * (size_t(j - first_.y()) + size_t(size_.y()) * size_t(k - first_.z()));
+    }
+    bool isInScratch(const Eigen::Vector3i& voxel) const noexcept;
+    static int blockOf(const BoneModel& bone) noexcept;
+
+    void findPatches(const BoneModel& bone) noexcept;
+    IndexBox voxelsAround(const BoneModel& bone, const Eigen::Vector3f& at) const noexcept;
+    template <class Visit>
+    void forEachVoxelIn(const BoneModel& bone, const IndexBox& voxels, const Eigen::Vector3f& at,
+                        Visit&& visit) const noexcept;
+    template <class Visit>
+    void forEachCell(const BoneModel& bone, Visit&& visit) noexcept;
+    Wish wishOf(const VoxelVolume& volume, const Eigen::Vector3f& point, double recession) const noexcept;
+    void spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share, double most) noexcept;
+    void spreadRest(const BoneModel& bone) noexcept;
+    void touch(const Eigen::Vector3i& voxel) noexcept;
+    void forgetVoxel(const Eigen::Vector3i& voxel) noexcept;
+    bool isAnyTouched(const IndexBox& voxels) const noexcept;
+    Span touchedIn(size_t row, int low, int high) const noexcept;
+    template <class Visit>
+    void forEachBit(int word, RowBits bits, Visit&& visit) const noexcept;
+    void collect(BoneModel& bone, MillingResult& result) noexcept;
+    bool collectLeaf(VoxelVolume& volume, const IndexBox& voxels, MillingResult& of_leaf) noexcept;
+    void collectRow(const VoxelVolume& volume, const Eigen::Vector3i& first, int count, ChangedRuns& rows,
+                    MillingResult& of_part) noexcept;
+    void forget() noexcept;
+
+    CellFill fill_;
+    Eigen::Vector3i size_;                             // of the scratch box
+    Eigen::Vector3i first_ = Eigen::Vector3i::Zero();  // its first voxel
+    std::vector<Node> nodes_;
+    int row_words_;
+    std::vector<RowBits> asked_;   // row by row: voxels that something was asked of
+    IndexBox touched_;             // all of those
+    std::vector<size_t> patches_;  // nodes with energy; the first patch_count_
+    size_t patch_count_ = 0;
+    PatchId last_patch_;  // of add(), and its node; kNoNode: none yet
+    size_t last_node_ = kNoNode;
+    std::vector<NearPatch> near_;  // the first near_count_
+    size_t near_count_ = 0;
+    IndexBox patch_cells_;  // blocks of those begin in it
+    std::vector<Density> old_, fresh_;
+    ChangeCollector collector_;
+    bool is_too_fast_ = false;
+    double rounding_ = 0;  // 0 .. 1, another one each tick: what is less than a count is not lost
+};
+
+}  // namespace bonemill

@@ -1,0 +1,123 @@
+// By the default law the tool's pose minimises contact energy + coupling energy + damping against
+// the last pose, by a few Gauss-Newton steps with Cholesky factors, Levenberg damping, a trust
+// radius and a line search. The energy never rises inside a tick, so that no contact can make the
+// tool diverge (docs/research/stability.md).
+#pragma once
+
+#include <limits>
+
+#include "haptic_server/core/contact/gradient_contact.h"
+#include "haptic_server/core/spo/curvature_secant.h"
+#include "haptic_server/core/spo/gradient_config.h"
+#include "haptic_server/core/spo/spo_model.h"
+#include "haptic_server/core/tool/growing_field.h"
+
+namespace bonemill {
+
+class GradientModel final : public SpoModel {
+  public:
+    // Allocates the room for contact points.
+    GradientModel(const GradientConfig& config, const SpoWorld& world, const SpoTool& tool, double dt);
+
+    SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept override;
+    void restart() noexcept override;
+    // Before the next advance() the bone is another one where the tool may be, and what it does to the tool
+    // is felt whole. It is RT-safe, for the tick thread only.
+    void expectOtherBone() noexcept { knows_depth_ = false; }
+    // A tool that was chosen, or has bone around it of a sudden, where it has no room is still felt smaller
+    // than it is.
+    bool isToolGrowing() const noexcept { return growing_.offset() > 0; }
+    void setAccuracy(const AccuracySettings& settings) noexcept override;
+    void setTool(const SpoTool& tool) noexcept override;
+    // Takes effect with the next advance(), whose coupling pulls with `most_pull` (N) at most, or with what
+    // the tool carries if that is less. It is RT-safe, for the tick thread only.
+    void setCoupling(const EnergyCouplingConfig& coupling, double most_pull) noexcept;
+    // From now on there is time for so many samples of the surface in a gathering. It is RT-safe, for the
+    // tick thread only.
+    void setAffordableSamples(size_t most) noexcept { affordable_samples_ = most; }
+    void setEffects(ContactWeights* weights, SolveEnergy* energy) noexcept override;
+    size_t listContacts(std::span<SurfaceContact> out) noexcept override;
+
+    size_t mostCandidates() const noexcept { return contact_.room(); }
+    // Returns all energy (J) of the last advance() at its final pose, damping included, for
+    // tests and reports.
+    double energy() const noexcept { return energy_; }
+
+  private:
+    // All of this is computed at one pose.
+    struct State {
+        Pose X_VT;
+        EnergyTerm total;
+        double stored = 0;    // of that, J: what neither the damping nor the effects hold
+        Wrench effects = {};  // of that: the effects'
+        uint32_t contacts = 0;
+        double max_depth = 0;
+        double contact_force = 0;  // N
+        bool isFinite() const noexcept;
+    };
+    // It stays the same during a tick.
+    struct Tick {
+        Pose X_VT_start, X_VT_device;
+        SpoStep* out;
+    };
+    void useTool() noexcept;
+    void saturate() noexcept;
+    void fitTool(const Tick& tick) noexcept;
+    void growTool() noexcept;
+    State begin(const Tick& tick) noexcept;
+    bool hasBoneAppeared(const State& state) const noexcept;
+    void makeRoom(double depth) noexcept;
+    void gather(const Pose& X_VT, double margin, SpoStep& out) noexcept;
+    State evaluate(const Pose& X_VT, const Tick& tick) noexcept;
+    void goOn(State& state, const Tick& tick) noexcept;
+    bool descend(State& state, const Tick& tick) noexcept;
+    bool tryOtherwise(const State& state, const Tick& tick, bool is_last) noexcept;
+    void feel(const Pose& X_VT, const Tick& tick) noexcept;
+    // N; rotation in units of the solve.
+    static double outOfBalance(const State& state) noexcept;
+    static Matrix6d scaledStiffness(const State& state) noexcept;
+    void learnFrom(const State& before, const State& after) noexcept;
+    Vector6d newtonStep(const State& state) const noexcept;
+    Vector6d withinSpeed(const State& state, const Vector6d& newton, const Tick& tick) const noexcept;
+    Vector6d limited(const State& state, const Vector6d& newton, const Tick& tick) noexcept;
+    bool isLostInNoise(const State& state, const Vector6d& step) const noexcept;
+    bool moveDown(State& state, const Vector6d& step, const Tick& tick) noexcept;
+    static void dropTraces(SpoStep& step) noexcept;
+    double reachOf(const Vector6d& step) const noexcept;
+    double trustRadius() const noexcept;
+    size_t pointTestsLeft() const noexcept {
+        return point_tests_ < most_point_tests_ ? most_point_tests_ - point_tests_ : 0;
+    }
+
+    GradientConfig config_;
+    SpoWorld world_;
+    SpoTool tool_;
+    EnergyCouplingConfig wished_;
+    EnergyCoupling coupling_;  // of tool_
+    double most_pull_ = std::numeric_limits<double>::infinity();
+    double dt_;
+    AccuracySettings settings_;
+    int level_ = 0;
+    const ToolField* field_;  // of tool_, or growing_
+    GrowingField growing_;
+    bool is_new_tool_ = false;
+    double last_depth_ = 0;     // m
+    bool knows_depth_ = false;  // last_depth_ is that of the tick before
+    GradientContact contact_;
+    SolveEnergy* effects_ = nullptr;
+    Pose X_VT_end_;  // of the last advance()
+    Pose X_VT_gathered_;
+    uint32_t gatherings_ = 0;
+    size_t affordable_samples_ = SIZE_MAX;
+    size_t most_point_tests_ = 0;  // with this field
+    size_t point_tests_ = 0;       // in this tick
+    ContinuousRotation way_;
+    RelaxingSpring relaxing_;
+    CurvatureSecant curvature_;
+    double lambda_ = 0;                        // Levenberg, share of the damping matrix
+    Vector6d last_motion_ = Vector6d::Zero();  // of the last tick
+    double last_reach_ = 0;                    // m, of that
+    double energy_ = 0;
+};
+
+}  // namespace bonemill

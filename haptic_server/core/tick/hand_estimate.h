@@ -1,0 +1,90 @@
+// Says where between two steps of the encoders the hand probably is. Steps of 5 to 50 µm times a stiff spring
+// are steps of the force, on which a device without friction would dance for ever.
+//
+// A reading names an interval, half a step to either side. The estimate goes on by what the device has said
+// of its mass and damping, with the wrenches that are acting on it by now and a push of the hand that is
+// learnt, and it is drawn back to the interval whenever it leaves it, which also corrects speed and push. So
+// it is never farther from the reading than half a step, however wrong the model is: without a hand, in a
+// stiff one, or after a lost tick.
+//
+// Poses and wrenches are in V, torques about the tool point. The tool moves `workspace_scale` times as far as
+// the handle. It is RT-safe, for the tick thread.
+#pragma once
+
+#include <array>
+
+#include "common/device_messages/device_messages.h"
+#include "common/geometry/pose.h"
+#include "haptic_server/core/tick/hand_limits.h"
+
+namespace bonemill {
+
+// Three degrees of freedom of one kind: places, or turns by small angles.
+class AxisEstimate {
+  public:
+    using Vector3d = Eigen::Vector3d;
+    struct Body {
+        double inertia = 0, damping = 0;
+        double step = 0;       // of the encoders; 0: nothing to do
+        double stiffness = 0;  // of the coupling that it will swing on
+    };
+    AxisEstimate() = default;
+    AxisEstimate(const Body& body, double amplifier_time, double dt) noexcept;
+
+    bool isIdle() const noexcept { return !(body_.step > 0 && body_.inertia > 0); }
+    // So much rides on the device.
+    void setHand(double inertia, double damping) noexcept {
+        hand_inertia_ = inertia, hand_damping_ = damping;
+    }
+    void stop() noexcept;
+    // Returns the way within a tick in which `earlier` and then, from `change` (0 to 1) on, `later` is
+    // commanded.
+    Vector3d predict(const Vector3d& earlier, const Vector3d& later, double change) noexcept;
+    // Takes how far the reading is from the prediction, and returns how far the estimate goes there.
+    Vector3d correct(const Vector3d& innovation) noexcept;
+    // Returns how much the estimate may be believed, 1 to 0 where the model foretells badly.
+    double trust() const noexcept;
+
+  private:
+    void hold(const Vector3d& command, double time, Vector3d& way) noexcept;
+
+    Body body_;
+    double surprise_ = 0;                    // steps per tick by which the model was wrong lately
+    double speed_gain_ = 0, push_gain_ = 0;  // 1/s, and N/m or N·m/rad
+    double hand_inertia_ = 0, hand_damping_ = 0;
+    double amplifier_time_ = 0, dt_ = 1e-3;
+    Vector3d speed_ = Vector3d::Zero();
+    Vector3d drive_ = Vector3d::Zero();  // after the amplifiers
+    Vector3d push_ = Vector3d::Zero();   // of all else: the hand, a weight
+};
+
+class HandEstimate {
+  public:
+    HandEstimate() = default;
+    HandEstimate(const HandleDynamics& handle, const HandSpring& spring, double workspace_scale,
+                 double dt) noexcept;
+
+    bool isIdle() const noexcept { return translation_.isIdle() && rotation_.isIdle(); }
+    // Takes the reading of this tick. A device that does not stand alone is taken to be in a typical hand.
+    Pose take(const Pose& X_VT_reading, bool stands_alone = true) noexcept;
+    // Takes what was sent in this tick, zero if it is not felt.
+    void sent(const Wrench& wrench_hand_V) noexcept;
+
+  private:
+    static constexpr size_t kRoom = 8;
+    const Wrench& commanded(size_t ticks_ago) const noexcept {
+        return sent_[(newest_ + kRoom - ticks_ago) % kRoom];
+    }
+
+    AxisEstimate translation_, rotation_;
+    double scale_ = 1;                     // of the workspace
+    double farthest_ = 0;                  // m: from there it starts anew
+    size_t delay_ticks_ = 0;               // whole ones
+    double delay_rest_ = 0;                // of a tick
+    std::array<Wrench, kRoom> sent_ = {};  // a ring
+    size_t newest_ = 0;
+    Pose X_VT_;
+    bool has_pose_ = false;
+};
+
+}  // namespace bonemill

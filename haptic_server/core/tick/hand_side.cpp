@@ -1,0 +1,99 @@
+#include "haptic_server/core/tick/hand_side.h"
+
+#include <algorithm>
+
+#include "common/base/units.h"
+
+namespace bonemill {
+namespace {
+
+// These are the least that a scene may ask for of coupling.max_force_n, max_torque_nmm and the stiffnesses. A
+// device that says less, and not 0, gives nothing that could be felt or would hold the tool.
+constexpr double kLeastForce = 0.1;                             // N
+constexpr double kLeastTorque = 0.1 * kMillimetre;              // N·m
+constexpr double kLeastStiffness = 1e-3 / kMillimetre;          // N/m
+constexpr double kLeastRotationStiffness = 0.05 * kMillimetre;  // N·m/rad
+
+double forceOf(const DeviceCapabilities& device) noexcept {
+    return device.abilities & kAbilityForce && device.max_force >= kLeastForce ? device.max_force : 0;
+}
+double torqueOf(const DeviceCapabilities& device) noexcept {
+    return device.abilities & kAbilityTorque && device.max_torque >= kLeastTorque ? device.max_torque : 0;
+}
+
+// It is as stiff as the quicker of the two laws.
+HandSpring springOf(const HandSide& side, double workspace_scale) noexcept {
+    const EnergyCouplingConfig& gradient = side.gradient;
+    return {.stiffness = std::max(side.thesis.translation_stiffness,
+                                  gradient.translation_stiffness * (1 + gradient.relaxing_share)),
+            .rotation_stiffness =
+                std::max(side.thesis.rotation_stiffness / 2, gradient.rotation_stiffness) / workspace_scale,
+            .lever = gradient.p_TG.norm() / workspace_scale};
+}
+
+void limitStiffness(HandSide& side, double most) noexcept {
+    side.thesis.translation_stiffness = std::min(side.thesis.translation_stiffness, most);
+    double& stiffness = side.gradient.translation_stiffness;
+    stiffness = std::min(stiffness, most / (1 + side.gradient.relaxing_share));
+}
+
+// The torque saturates at the angle at which it did before.
+void limitRotationStiffness(HandSide& side, double most) noexcept {
+    side.thesis.rotation_stiffness = std::min(side.thesis.rotation_stiffness, 2 * most);
+    double& stiffness = side.gradient.rotation_stiffness;
+    if (stiffness <= most) return;
+    side.gradient.saturation_torque *= most / stiffness;
+    stiffness = most;
+}
+
+void fitForce(HandSide& side, const DeviceCapabilities& device, double workspace_scale) noexcept {
+    side.limits.max_force = std::min(side.limits.max_force, forceOf(device));
+    if (side.limits.max_force == 0) return;
+    side.most_pull = side.limits.max_force;
+    if (device.max_stiffness > 0)
+        limitStiffness(side, std::max(device.max_stiffness, kLeastStiffness) / workspace_scale);
+}
+
+void fitTorque(HandSide& side, const DeviceCapabilities& device, double workspace_scale) noexcept {
+    side.limits.max_torque = std::min(side.limits.max_torque, torqueOf(device));
+    if (side.limits.max_torque == 0) return;
+    if (device.max_rotation_stiffness > 0)
+        limitRotationStiffness(
+            side, std::max(device.max_rotation_stiffness, kLeastRotationStiffness) * workspace_scale);
+    side.gradient.saturation_torque =
+        std::min(side.gradient.saturation_torque, side.limits.max_torque * workspace_scale);
+}
+
+}  // namespace
+
+void HandSide::setGradient(const EnergyCouplingConfig& coupling, double workspace_scale) noexcept {
+    gradient = coupling;
+    spring = springOf(*this, workspace_scale);
+}
+
+void scaleWorkspace(TickConfig& config, double scale) noexcept {
+    config.workspace_scale = scale;
+    config.coupling.translation_stiffness /= scale;
+    config.coupling.rotation_stiffness *= scale;
+    EnergyCouplingConfig& gradient = config.gradient.coupling;
+    gradient.translation_stiffness /= scale;
+    gradient.rotation_stiffness *= scale;
+    gradient.saturation_torque *= scale;
+}
+
+HandSide handSideOf(const TickConfig& config) noexcept {
+    HandSide side{
+        .limits = config.hand, .spring = {}, .thesis = config.coupling, .gradient = config.gradient.coupling};
+    side.spring = springOf(side, config.workspace_scale);
+    return side;
+}
+
+HandSide handSideOf(const TickConfig& config, const DeviceCapabilities& device) noexcept {
+    HandSide side = handSideOf(config);
+    fitForce(side, device, config.workspace_scale);
+    fitTorque(side, device, config.workspace_scale);
+    side.spring = springOf(side, config.workspace_scale);
+    return side;
+}
+
+}  // namespace bonemill

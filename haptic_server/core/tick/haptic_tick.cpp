@@ -1,0 +1,391 @@
+#include "haptic_server/core/tick/haptic_tick.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/base/assert.h"
+#include "common/rt/rt_guard.h"
+#include "haptic_server/core/effects/make_effects.h"
+#include "haptic_server/core/tick/recorded_input.h"
+
+namespace bonemill {
+namespace {
+
+template <class Number, size_t N, class Vector>
+void copyTo(Number (&out)[N], const Vector& v) noexcept {
+    for (size_t i = 0; i < N; ++i) out[i] = v[Eigen::Index(i)];
+}
+
+Eigen::Vector4d wxyz(const Eigen::Quaterniond& q) noexcept {
+    return {q.w(), q.x(), q.y(), q.z()};
+}
+
+constexpr double kQuaternionNormSlack = 1e-2;
+// New settings are prepared beside the old ones' work, after the force went out. A leaf of 16³ cells that is
+// full of surface takes some 0.1 ms, a thesis' leaf of 32³ up to 0.4 ms. Only leaves that were milled or
+// restored since are stale.
+constexpr int kLeavesPreparedPerTick = 1;
+
+Eigen::Vector3d middleOf(const VoxelVolume& volume) noexcept {
+    return 0.5 * volume.spacing().cwiseProduct(volume.dims().cast<double>());
+}
+
+SpoWorld worldOf(const BoneModel& bone) noexcept {
+    return {bone.volume, bone.lattice, bone.shell};
+}
+
+}  // namespace
+
+HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const TickChoices& choices)
+    : config_(config),
+      bone_(bone.model),
+      history_(bone.history),
+      tools_(choices.tools),
+      accuracy_(choices.accuracy),
+      tool_(tools_.chosen()),
+      thesis_(config.contact, config.coupling, worldOf(bone_), tools_[tool_], config.dt),
+      gradient_(config.gradient, worldOf(bone_), tools_[tool_], config.dt),
+      compared_({config.contact, config.coupling, config.gradient.coupling}, worldOf(bone_), tools_.all(),
+                tools_[tool_], config.dt),
+      model_(&gradient_),
+      affordable_(config.dt),
+      sample_cap_(config.dt),
+      effects_(makeEffects(config.effects, bone_,
+                           {config.dt, tools_.largestBurrRadius(), tools_.largestBurrReach(),
+                            gradient_.mostCandidates(), config.most_milled_cells,
+                            config.gradient.max_speed * config.dt}),
+               gradient_.mostCandidates(), config.gradient.contact.stiffness_per_area),
+      hand_limits_(config.hand, handSideOf(config).spring, config.dt),
+      hand_coupling_(config_),
+      X_WV_(bone_.volume.geometry().X_WV),
+      X_VW_(X_WV_.inverse()),
+      place_(middleOf(bone_.volume), config.workspace_scale, config.dt) {
+    BONEMILL_ASSERT(config.dt > 0 && config.workspace_scale > 0 && config.most_milled_cells > 0);
+    const AccuracySettings& settings = accuracy_.chosen();
+    bone_.shell.prepare(bone_.volume, bone_.lattice, levelOf(bone_.shell, settings),
+                        int(bone_.lattice.leafCount()));
+    gradient_.setEffects(effects_.weights(), effects_.energy());
+    takeUp(settings);
+}
+
+// A choice is taken up when its contact points are up to date; until then the old one stays in force.
+void HapticTick::chooseSettings(const SpoStep& step, uint32_t& faults) noexcept {
+    PointShell& shell = bone_.shell;
+    AccuracySettings chosen = accuracy_[decisions_.accuracy];
+    const int asked_for = chosen.shell_factor;
+    chosen.shell_factor = affordable_.factor(shell, asked_for, settings_.shell_factor, step);
+    if (chosen.shell_factor > asked_for) faults |= kFaultCoarserShell;
+    if (chosen == settings_) return shell.follow(shell.followed());  // not even the one being prepared
+    const auto [is_ready, is_complete] =
+        shell.prepare(bone_.volume, bone_.lattice, levelOf(shell, chosen), kLeavesPreparedPerTick);
+    if (!is_complete) faults |= kFaultShellOverflow;
+    if (!is_ready) return;
+    hand_limits_.beginSuddenChange();
+    takeUp(chosen);
+}
+
+void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
+    settings_ = settings;
+    bone_.shell.follow(levelOf(bone_.shell, settings));
+    SpoModel* model = modelOf(settings.law);
+    model->setAccuracy(settings);
+    has_changed_suddenly_ = true;
+    if (model != model_) {
+        model->restart();
+        effects_.restart(Restart::kOtherLaw);
+    }
+    model_ = model;
+}
+
+SpoModel* HapticTick::modelOf(ContactLaw law) noexcept {
+    if (law == ContactLaw::kThesis2012) return &thesis_;
+    if (SpoModel* compared = compared_.of(law)) return compared;
+    return &gradient_;
+}
+
+void HapticTick::adaptTo(const DeviceCapabilities& device) noexcept {
+    hand_coupling_.adaptTo(device);
+    estimate_ =
+        HandEstimate(device.handle, hand_coupling_.side().spring, config_.workspace_scale, config_.dt);
+    thesis_.setCoupling(hand_coupling_.side().thesis);
+    useCoupling();
+}
+
+void HapticTick::useCoupling() noexcept {
+    const HandSide& side = hand_coupling_.side();
+    gradient_.setCoupling(side.gradient, side.most_pull);
+    compared_.setCoupling(side.gradient, side.most_pull);
+    hand_limits_.setDevice(side.limits, side.spring);
+}
+
+// The account begins anew whenever something else than hand and tool changes what is stored.
+void HapticTick::keepAccount(const SpoStep& step, const DeviceInput& input) noexcept {
+    const bool is_felt = !place_.isLost() && !input.is_stale && input.device.isEngaged();
+    const bool says_something = is_felt && model_ == &gradient_ && !gradient_.isToolGrowing() &&
+                                !std::exchange(has_changed_suddenly_, false);
+    if (says_something ? hand_coupling_.takeAccount(X_VT_device_, step) : hand_coupling_.passOver())
+        useCoupling();
+}
+
+// What other threads say is asked for once in a tick, so that the tick can be run again with the same.
+void HapticTick::decide(const DeviceInput& input) noexcept {
+    if (input.decisions) {
+        decisions_ = *input.decisions;
+        return;
+    }
+    decisions_.tool = uint32_t(tools_.chosen());
+    decisions_.accuracy = uint32_t(accuracy_.choice());
+    decisions_.is_milling_paused = history_ && history_->isMillingPaused();
+    decisions_.is_write_refused = false;
+    decisions_.bone_order = history_ ? history_->takenUpOrder() : 0;
+}
+
+void HapticTick::chooseTool() noexcept {
+    const size_t chosen = decisions_.tool;
+    if (chosen == tool_) return;
+    tool_ = chosen;
+    thesis_.setTool(tools_[tool_]);
+    gradient_.setTool(tools_[tool_]);
+    compared_.setTool(tools_[tool_]);
+    effects_.restart(Restart::kOtherTool);
+    has_changed_suddenly_ = true;
+    hand_limits_.beginSuddenChange();
+}
+
+bool HapticTick::tick(TickIo& io) noexcept {
+    DeviceInput input;
+    if (!io.read(input)) return false;
+    const RtScope scope;
+    uint32_t faults = input.faults | (input.is_stale ? kFaultStaleDevice : kFaultNone);
+    decide(input);
+    if (input.other_device) adaptTo(*input.other_device);
+    acceptPose(input, faults);
+    chooseTool();
+    beginEffects(input);
+    const SpoStep step = moveAndFeel(input, faults);
+    const int64_t force_at_ns = io.write(inWorld(step.wrench_hand_V));
+    estimate_.sent(input.device.isEngaged() ? step.wrench_hand_V : Wrench{});
+
+    effects_.afterSolve(X_VT_, *model_);
+    const MillingResult milled = mill(faults);
+    keepWaiting(step);
+    const EffectRecord& effects = effects_.finish();
+    chooseSettings(step, faults);
+    TickRecord record = makeRecord(input, step);
+    record.removed_voxels = milled.removed_voxels;
+    record.added_voxels = milled.added_voxels;
+    record.removed = milled.removed_voxels * bone_.volume.voxelVolume();
+    record.added = milled.added_voxels * bone_.volume.voxelVolume();
+    record.cut = cutOf(milled.changed, input.start_ns);
+    record.effects = effects;
+    record.force_ns = force_at_ns - input.start_ns;
+    const int64_t end_ns = io.now();
+    record.compute_ns = end_ns - input.start_ns;
+    if (end_ns > input.deadline_ns) faults |= kFaultOverrun;
+    const double load = double(record.compute_ns) / double(input.deadline_ns - input.start_ns);
+    capSamples(input, load, step);
+    record.faults = faults;
+    record.input = recordedInput(input, decisions_);
+    latched_faults_ |= faults;
+    io.push(record);
+    ++tick_;
+    return true;
+}
+
+// The clock decides that; a replay has it from then.
+void HapticTick::capSamples(const DeviceInput& input, double load, const SpoStep& step) noexcept {
+    if (!input.decisions) {
+        sample_cap_.after(load, step.candidates);
+        decisions_.most_samples = sample_cap_.most() < UINT32_MAX ? uint32_t(sample_cap_.most()) : 0;
+    }
+    if (decisions_.most_samples == std::exchange(most_samples_, decisions_.most_samples)) return;
+    gradient_.setAffordableSamples(most_samples_ == 0 ? SIZE_MAX : size_t(most_samples_));
+}
+
+void HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept {
+    const bool is_first = !place_.hasPose();
+    const bool is_placed = !is_first && std::exchange(placements_, input.placements) != input.placements;
+    if (is_first) placements_ = input.placements;
+    if (is_placed) place_.expectAny();
+    if (!believe(input)) {
+        faults |= kFaultBadDevicePose;
+        return;  // the last good one stays
+    }
+    if (is_first) {
+        X_VT_ = X_VT_device_;  // the simulated tool starts where the hand is
+    } else if (is_placed) {
+        placeTool();
+    } else if (place_.hasJumped()) {
+        hand_limits_.beginSuddenChange();
+        has_changed_suddenly_ = true;
+    }
+}
+
+// The hand was put where it is without a way there, and the simulated tool goes along: by its own way it
+// might be caught behind bone. In bone it has no place; then it begins beside it, on the side that its shaft
+// comes from.
+void HapticTick::placeTool() noexcept {
+    constexpr int kMostSteps = 64;  // of a burr's radius: some cm
+    Pose X_VT = X_VT_device_;
+    const double radius = tools_[tool_].burr.radius;
+    const Eigen::Vector3d step = radius * (X_VT.rotation * Eigen::Vector3d::UnitY());
+    int steps = 0;
+    for (; steps < kMostSteps && isInBone(X_VT, radius); ++steps) X_VT.position += step;
+    hand_limits_.beginSuddenChange();
+    has_changed_suddenly_ = true;
+    if (steps == kMostSteps) return;  // it comes as it can
+    X_VT_ = X_VT;
+    model_->restart();
+    gradient_.expectOtherBone();
+    effects_.restart(Restart::kOtherLaw);
+}
+
+// Looks at the burr's middle and at six places at this distance from it.
+bool HapticTick::isInBone(const Pose& X_VT, double radius) const noexcept {
+    const VoxelVolume& volume = bone_.volume;
+    for (int i = -1; i < 6; ++i) {
+        const Eigen::Vector3d offset =
+            i < 0 ? Eigen::Vector3d::Zero().eval()
+                  : ((i % 2 ? -radius : radius) * Eigen::Vector3d::Unit(i / 2)).eval();
+        const Eigen::Array3d place =
+            ((X_VT.position + offset).cwiseQuotient(volume.spacing())).array().round();
+        const bool is_inside = (place >= 0).all() && (place < volume.dims().array().cast<double>()).all();
+        if (!is_inside) continue;
+        const Eigen::Vector3i voxel = place.cast<int>();
+        if (volume.at(voxel.x(), voxel.y(), voxel.z()) >= volume.iso()) return true;
+    }
+    return false;
+}
+
+bool HapticTick::believe(const DeviceInput& input) noexcept {
+    Pose X_WT_sample = input.X_WT_device;
+    const double norm = X_WT_sample.rotation.norm();
+    if (!X_WT_sample.isFinite() || !(std::abs(norm - 1) < kQuaternionNormSlack)) {
+        place_.refuse(input.periods);
+        return false;
+    }
+    X_WT_sample.rotation.coeffs() /= norm;
+    const Pose X_VT_reading = X_VW_ * X_WT_sample;
+    const bool is_believed = input.is_repeated ? place_.repeat(input.periods)  //
+                                               : place_.take(X_VT_reading, input.periods);
+    if (!is_believed) return false;
+    X_VT_device_ =
+        model_ == &gradient_ ? estimate_.take(X_VT_reading, hand_coupling_.standsAlone()) : X_VT_reading;
+    return true;
+}
+
+void HapticTick::beginEffects(const DeviceInput& input) noexcept {
+    if (effects_.isEmpty()) return;
+    const bool remove = input.buttons & kButtonRemove;
+    const bool add = input.buttons & kButtonAdd;
+    if (!input.is_stale && !remove && !add) waits_for_release_ = false;
+    EffectTick start;
+    start.dt = config_.dt * input.periods;
+    start.periods = input.periods;
+    start.may_mill = !place_.isLost() && !input.is_stale && input.device.isEngaged() && !waits_for_release_ &&
+                     !decisions_.is_milling_paused;
+    start.is_pedal_down = start.may_mill && remove && !add;
+    start.is_add_wanted = start.may_mill && add && !remove;
+    if (start.is_pedal_down != was_pedal_down_ || start.is_add_wanted != was_add_wanted_)
+        hand_limits_.beginSuddenChange();
+    was_pedal_down_ = start.is_pedal_down, was_add_wanted_ = start.is_add_wanted;
+    start.tool = &tools_[tool_];
+    start.shape = model_ == &thesis_ ? MillingShape::kVoxelCentres : MillingShape::kSubVoxel;
+    start.X_VT_start = X_VT_;
+    compared_.setCutting(start.is_pedal_down);
+    effects_.begin(start);
+}
+
+SpoStep HapticTick::moveAndFeel(const DeviceInput& input, uint32_t& faults) noexcept {
+    SpoStep step = model_->advance(X_VT_, X_VT_device_);
+    X_VT_ = step.X_VT;
+    if (!step.is_solved) faults |= kFaultSolve;
+    if (step.is_motion_clamped) faults |= kFaultMotionClamped;
+    if (step.has_stalled) faults |= kFaultStalled;
+    if (step.has_fewer_samples) faults |= kFaultFewerSamples;
+    if (step.has_contact_overflow) faults |= kFaultContactOverflow;
+    if (model_ == &gradient_ && gradient_.isToolGrowing()) hand_limits_.beginSuddenChange();
+    keepAccount(step, input);
+    effects_.addToHand(step.wrench_hand_V);
+    step.wrench_hand_V.torque /= config_.workspace_scale;  // hand_side.h
+    const bool is_felt = step.is_solved && !place_.isLost();
+    step.wrench_hand_V = hand_limits_.limit(
+        {step.wrench_hand_V, is_felt, X_VT_device_, input.stale_factor, place_.hasJumped()});
+    if (hand_limits_.wasLimited()) faults |= kFaultForceClamped;
+    return step;
+}
+
+MillingResult HapticTick::mill(uint32_t& faults) noexcept {
+    if (!history_) return millWithEffects(faults);
+    if (decisions_.is_write_refused || !history_->beginWrite(tick_)) {
+        decisions_.is_write_refused = true;
+        return {};
+    }
+    MillingResult milled;
+    bool shell_is_complete = true;
+    if (history_->restoreSome(bone_, shell_is_complete)) {
+        waits_for_release_ = true;
+        hand_limits_.beginSuddenChange();
+        gradient_.expectOtherBone();
+        effects_.restart(history_->isTargetScanned() ? Restart::kScanPutBack : Restart::kBonePutBack);
+        has_changed_suddenly_ = true;
+    } else {
+        milled = millWithEffects(faults);
+    }
+    if (!shell_is_complete) faults |= kFaultShellOverflow;
+    decisions_.bone_order = history_->takenUpOrder();
+    history_->endWrite(milled.removed_voxels, milled.added_voxels);
+    return milled;
+}
+
+// Bone that is put back around a burr at work is not cut before somebody wants it: the pedal is let go once,
+// or the burr has left the bone by so much that no tremor leads there.
+void HapticTick::keepWaiting(const SpoStep& step) noexcept {
+    constexpr double kAway = 2;  // radii of the burr from its middle
+    if (!waits_for_release_ || history_->finishedOrder() != history_->takenUpOrder()) return;
+    waits_for_release_ = step.contacts > 0 || isInBone(X_VT_, kAway * tools_[tool_].burr.radius);
+}
+
+MillingResult HapticTick::millWithEffects(uint32_t& faults) noexcept {
+    MillingResult milled;
+    effects_.mill(bone_, milled);
+    if (!milled.shell_is_complete) faults |= kFaultShellOverflow;
+    if (!milled.has_room) faults |= kFaultVolumeFull;
+    if (milled.is_cut_short) faults |= kFaultMillingCutShort;
+    return milled;
+}
+
+Wrench HapticTick::inWorld(const Wrench& wrench_V) const noexcept {
+    return wrench_V.rotatedBy(X_WV_.rotation);
+}
+
+TickRecord HapticTick::makeRecord(const DeviceInput& input, const SpoStep& step) const noexcept {
+    TickRecord record{};
+    record.tick = tick_;
+    record.start_ns = input.start_ns;
+    record.wakeup_latency_ns = input.wakeup_latency_ns;
+    record.t_s = input.t_s;
+    const Pose X_WT = X_WV_ * X_VT_, X_WT_device = X_WV_ * X_VT_device_;
+    const Wrench wrench_hand_W = inWorld(step.wrench_hand_V);
+    copyTo(record.p_WT, X_WT.position);
+    copyTo(record.q_WT, wxyz(X_WT.rotation));
+    copyTo(record.p_WT_device, X_WT_device.position);
+    copyTo(record.q_WT_device, wxyz(X_WT_device.rotation));
+    copyTo(record.f_hand_W, wrench_hand_W.force);
+    copyTo(record.t_hand_W, wrench_hand_W.torque);
+    record.contacts = step.contacts;
+    record.candidates = step.candidates;
+    record.iterations = step.iterations;
+    record.max_penetration = step.max_penetration;
+    record.coupling_share = hand_coupling_.share();
+    record.rotation_share = hand_coupling_.rotationShare();
+    record.buttons = input.buttons;
+    record.tool = uint32_t(tool_);
+    record.waits_for_release = waits_for_release_;
+    record.device = input.device;
+    record.bone_order = history_ ? history_->finishedOrder() : 0;
+    return record;
+}
+
+}  // namespace bonemill

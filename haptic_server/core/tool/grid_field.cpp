@@ -1,0 +1,56 @@
+#include "haptic_server/core/tool/grid_field.h"
+
+namespace bonemill {
+namespace {
+
+// Far from the grid the bound is at least the way to the box outside of which nothing is inside the tool.
+double boundOutside(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& p_T) noexcept {
+    return box.isEmpty() ? double(SdfGrid::kOutsideDistance) : box.exteriorDistance(p_T);
+}
+
+}  // namespace
+
+void GridField::distances(const PointBatch<float>& points_T, float* out) const noexcept {
+    for (int i = 0; i < points_T.count; ++i) {
+        const Eigen::Vector3f p(points_T.x[i], points_T.y[i], points_T.z[i]);
+        out[i] = grid_.distanceAt(p);
+        if (out[i] == SdfGrid::kOutsideDistance) out[i] = float(boundOutside(box(), p.cast<double>()));
+    }
+}
+
+void GridField::distances(const PointBatch<double>& points_T, double* out) const noexcept {
+    for (int i = 0; i < points_T.count; ++i) {
+        const Eigen::Vector3d p(points_T.x[i], points_T.y[i], points_T.z[i]);
+        out[i] = grid_.contains(p) ? grid_.distanceExactly(p) : boundOutside(box(), p);
+    }
+}
+
+void GridField::sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept {
+    for (int i = 0; i < points_T.count; ++i) {
+        Eigen::Vector3f gradient = Eigen::Vector3f::Zero();
+        const Eigen::Vector3f p(points_T.x[i], points_T.y[i], points_T.z[i]);
+        out.distance[i] = grid_.sampleAt(p, gradient);
+        if (out.distance[i] == SdfGrid::kOutsideDistance)
+            out.distance[i] = float(boundOutside(box(), p.cast<double>()));
+        out.gx[i] = gradient.x(), out.gy[i] = gradient.y(), out.gz[i] = gradient.z();
+    }
+}
+
+void GridField::sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept {
+    for (int i = 0; i < points_T.count; ++i) {
+        const ToolSample at = sample(Eigen::Vector3d(points_T.x[i], points_T.y[i], points_T.z[i]));
+        out.distance[i] = at.distance;
+        out.gx[i] = at.gradient.x(), out.gy[i] = at.gradient.y(), out.gz[i] = at.gradient.z();
+    }
+}
+
+ToolSample GridField::sample(const Eigen::Vector3d& p_T) const noexcept {
+    if (!grid_.contains(p_T)) return {boundOutside(box(), p_T), Eigen::Vector3d::Zero()};
+    return {grid_.distanceExactly(p_T), grid_.gradient(p_T)};
+}
+
+double GridField::distanceBound(const Eigen::Vector3d& p_T) const noexcept {
+    return grid_.contains(p_T) ? grid_.distanceExactly(p_T) - grid_.spacing() : boundOutside(box(), p_T);
+}
+
+}  // namespace bonemill

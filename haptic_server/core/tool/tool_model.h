@@ -1,0 +1,37 @@
+// It is one tool in all the ways that the accuracy settings can ask for. Start-up builds it; then
+// it never changes.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "haptic_server/core/accuracy/accuracy_settings.h"
+#include "haptic_server/core/tool/grid_field.h"
+#include "haptic_server/core/tool/shape_field.h"
+
+namespace bonemill {
+
+class ToolModel {
+  public:
+    // Takes the scene's distance grid, and the shapes if the tool is made of shapes. `thinnest_radius` in m
+    // is used for a tool without shapes: its burr's. It allocates.
+    ToolModel(SdfGrid grid, const std::vector<ToolShape>& shapes, double thinnest_radius);
+
+    // Adds the grid of a refinement > 1 so that settings with it find it. It allocates.
+    void addRefinedGrid(int refinement, SdfGrid grid);
+
+    // What these settings ask for, or the nearest thing there is: a tool without shapes has only grids, the
+    // finest one not above the wanted refinement. It is RT-safe.
+    const ToolField& field(const AccuracySettings& settings) const noexcept;
+    const SdfGrid& grid() const noexcept { return grids_.front()->grid(); }
+    bool hasShapes() const noexcept { return shapes_ != nullptr; }
+
+  private:
+    std::vector<int> refinements_;                   // ascending, of grids_
+    std::vector<std::unique_ptr<GridField>> grids_;  // pointers stay valid when the model moves
+    std::unique_ptr<ShapeField> shapes_;
+    double thinnest_radius_;
+};
+
+}  // namespace bonemill

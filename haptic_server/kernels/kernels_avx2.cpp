@@ -1,2 +1,0 @@
-#define BONEMILL_CPU_LEVEL_NAMESPACE avx2
-#include "haptic_server/kernels/kernel_loops.h"

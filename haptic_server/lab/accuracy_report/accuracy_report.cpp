@@ -1,0 +1,161 @@
+#include "haptic_server/lab/accuracy_report/accuracy_report.h"
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <ostream>
+#include <thread>
+
+#include "common/base/user_error.h"
+#include "common/config/scene_tools.h"
+#include "haptic_server/lab/accuracy_report/plot.h"
+#include "haptic_server/lab/accuracy_report/sweep_settings.h"
+#include "haptic_server/scene/setup/scene_setup.h"
+
+namespace bonemill {
+namespace {
+
+const std::vector<int> kRefinements{2, 4};
+constexpr int kMostThreads = 4;
+
+using SteadyClock = std::chrono::steady_clock;
+
+double secondsSince(SteadyClock::time_point start) {
+    return std::chrono::duration<double>(SteadyClock::now() - start).count();
+}
+
+// Finds out whether the files can be written before minutes of work are spent.
+void makeFolder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw UserError("--out " + folder.string() + ": cannot be made (" + error.message() + ")");
+    writeTextFile(folder / "report.md", "accuracy-report has not finished\n");
+}
+
+std::string machineName() {
+    std::ifstream info("/proc/cpuinfo");
+    for (std::string line; std::getline(info, line);)
+        if (line.starts_with("model name")) return line.substr(std::min(line.size(), line.find(':') + 2));
+    return "unknown processor";
+}
+
+std::vector<int> refinementsOf(const std::vector<AccuracySettings>& settings) {
+    std::vector<int> refinements = kRefinements;
+    for (const AccuracySettings& s : settings)
+        if (s.sdf_refinement > 1) refinements.push_back(s.sdf_refinement);
+    std::sort(refinements.begin(), refinements.end());
+    refinements.erase(std::unique(refinements.begin(), refinements.end()), refinements.end());
+    return refinements;
+}
+
+std::vector<int> shellFactorsOf(const std::vector<AccuracySettings>& settings) {
+    std::vector<int> factors;
+    for (const AccuracySettings& s : settings) factors.push_back(s.shell_factor);
+    std::sort(factors.begin(), factors.end());
+    factors.erase(std::unique(factors.begin(), factors.end()), factors.end());
+    return factors;
+}
+
+// Has the finest level only: paths and truth are laid out with it.
+BoneModel layoutBone(const Simulation& simulation) {
+    return BoneModel(VoxelVolume(simulation.bone->volume), simulation.bone->lattice.leafCells(),
+                     ShellConfig{.spare_points = 1});
+}
+
+class Progress {
+  public:
+    Progress(std::ostream& out, size_t count) : out_(out), count_(count) {}
+    void operator()(const SettingFigures& f, size_t done) {
+        const double left = secondsSince(start_) / double(done) * double(count_ - done);
+        char text[256];
+        std::snprintf(text, sizeof text,
+                      "[%2zu/%zu] %s: force error %.3g %%, p99.9 %.3g us; about %.0f s left", done, count_,
+                      f.name.c_str(), 100 * f.errors.force_vector, f.times.p99_9, left);
+        out_ << text << std::endl;
+    }
+
+  private:
+    std::ostream& out_;
+    size_t count_;
+    SteadyClock::time_point start_ = SteadyClock::now();
+};
+
+// Measures everything; the files come later.
+ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::ostream& progress) {
+    const auto settings =
+        sweepSettings(simulation.accuracy, simulation.tools.front().built.model.hasShapes());
+    const ToolConfig tool_config = toolConfigOf(loaded, *toolsOf(loaded.scene).front());
+    const BuiltTool tool = buildTool(tool_config, refinementsOf(settings));
+    FixedTickConfig tick = simulation.fixedTick();
+    tick.tool.model = &tool.model;
+    // The truth is the wrench at the tool, whatever the hand gets of its torque.
+    tick.hand.max_torque *= tick.workspace_scale;
+    tick.workspace_scale = 1;
+
+    BoneModel bone = layoutBone(simulation);
+    TouchProbe probe(bone, tool.model);
+    const auto places =
+        findProbingPlaces(loaded.scene.simulated_operator(), bone, tick.tool.burr.radius, probe);
+    if (places.empty())
+        throw UserError(loaded.file.string() +
+                        ": the tool touches no bone, neither on the way of simulated_operator nor "
+                        "from the volume's faces; is volume.iso_value right?");
+    std::vector<ProbingStroke> strokes;
+    for (const ProbingPlace& place : places) strokes.push_back(makeStroke(place, {}, tick, probe));
+    PosePath milling;
+    const std::optional<TimeRemovalConfig>& removal = tick.effects.time_removal;
+    if (removal && removal->rate > 0) milling = millingPath(places.front(), tick);
+
+    progress << "truth along " << strokes.size() << " strokes" << std::endl;
+    const int threads = std::clamp(int(std::thread::hardware_concurrency()), 1, kMostThreads);
+    const auto truth = computeTruth(strokes, tick, bone, probe, threads);
+
+    AnalyticProbe plane({.tick = tick,
+                         .spacing = bone.volume.spacing().minCoeff(),
+                         .sdf_spacing = tool.model.grid().spacing(),
+                         .refinements = refinementsOf(settings),
+                         .shell_factors = shellFactorsOf(settings),
+                         .has_analytic_tool = tool.model.hasShapes()});
+    const SweepInput input{loaded.scene, bone.volume, bone.lattice.leafCells(), tick.tool, strokes, truth,
+                           milling,      plane};
+    ReportData data;
+    data.settings = sweep(input, settings, Progress(progress, settings.size()));
+    data.front = paretoFront(paretoPoints(data.settings));
+    data.truth = summaryOf(strokes, truth);
+    data.patches = plane.patchErrors();
+    data.scene = loaded.scene.name();
+    data.scene_file = loaded.file.string();
+    data.machine = machineName();
+    data.spacing = bone.volume.spacing().minCoeff();
+    data.burr_radius = tick.tool.burr.radius;
+    data.tick_period = tick.dt;
+    data.contact_width =
+        contactWidth(tick.gradient.contact.stiffness_per_area, tick.tool.burr.radius, data.truth.force_rms);
+    return data;
+}
+
+}  // namespace
+
+std::string accuracyReport(const AccuracyReportOptions& options, std::ostream& progress) {
+    const auto start = SteadyClock::now();
+    const LoadedScene loaded = loadScene(options.scene);
+    const std::filesystem::path out(options.out);
+    makeFolder(out);
+    progress << "reading the scene's volume" << std::endl;
+    Simulation simulation = makeSimulation(loaded);
+    for (const std::string& warning : simulation.warnings) progress << "warning: " << warning << '\n';
+    ReportData data = measureAll(loaded, simulation, progress);
+    data.budget_us = options.budget_us;
+    writeTextFile(out / "accuracy.csv", accuracyCsv(data));
+    writeTextFile(out / "patch.csv", patchCsv(data));
+    writeTextFile(out / "accuracy.json", accuracyJson(data));
+    writeTextFile(out / "report.md", reportText(data));
+    writeTextFile(out / "pareto.gnuplot", paretoScript(data, out / "pareto.png"));
+    progress << "measured in " << int(secondsSince(start)) << " s" << std::endl;
+    runGnuplot(out / "pareto.gnuplot");
+    std::string summary;
+    for (const std::string& line : reportConclusions(data)) summary += line + '\n';
+    return summary + "report: " + (out / "report.md").string() + '\n';
+}
+
+}  // namespace bonemill

@@ -1,0 +1,68 @@
+// Tells a run and the truth apart along the same device path. It computes in SI and has no shared state.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/geometry/pose.h"
+#include "haptic_server/lab/accuracy_report/timed_run.h"
+
+namespace bonemill {
+
+// One tick answers with the tool's pose in W, and with what the hand feels (axes W).
+struct Answer {
+    Pose X_WT;
+    Wrench hand_W;
+};
+std::vector<Answer> answersOf(const RunRecords& records);
+
+// These are root mean squares of the differences to the truth over the ticks in which the true force is at
+// least kFeltForce. Magnitudes are relative to the root mean square of the true ones, so that light touches
+// do not count as large errors.
+struct Errors {
+    static constexpr double kFeltForce = 0.2;  // N
+
+    double force_vector = 0;  // of 1: |difference of the forces|; what the settings are ranked by
+    double force = 0;         // of 1
+    double torque = 0;        // of 1; 0 where the truth has no torque
+    double direction = 0;     // rad between the forces
+    double position = 0;      // m
+    double rotation = 0;      // rad
+    size_t ticks = 0;
+};
+
+// Adds up over several paths.
+class ErrorSum {
+  public:
+    // Both are of the same path and have the same length.
+    void add(const std::vector<Answer>& answers, const std::vector<Answer>& truth);
+    Errors errors() const;
+
+  private:
+    double force_vector_ = 0, force_ = 0, true_force_ = 0, torque_ = 0, true_torque_ = 0, direction_ = 0,
+           position_ = 0, rotation_ = 0;
+    size_t ticks_ = 0;
+};
+
+// This is the root mean square of the second differences of the force, in N: what of it is not smooth from
+// tick to tick, if the path is smooth.
+class NoiseSum {
+  public:
+    void add(const std::vector<Answer>& answers);
+    double noise() const;
+
+  private:
+    double sum_ = 0;
+    size_t count_ = 0;
+};
+
+// The hand has put this energy into the algorithm along a path of device poses that starts in the air, in J
+// (trapezoidal rule, force and torque). A passive algorithm never lets it fall below zero. A closed path that
+// ends in the air must give `at_end` >= 0.
+struct PathEnergy {
+    double lowest = 0;  // anywhere on the path, its start included
+    double at_end = 0;
+};
+PathEnergy energyOf(const std::vector<Answer>& answers, std::span<const Pose> device);
+
+}  // namespace bonemill

@@ -1,0 +1,174 @@
+#include "haptic_server/lab/accuracy_report/plot.h"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <sstream>
+
+#include "common/base/user_error.h"
+#include "haptic_server/lab/accuracy_report/label_layout.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kSmallestError = 1e-3;  // %, for the logarithm
+constexpr int kCommandNotFound = 127;
+
+std::string quoted(const std::string& text) {
+    std::string out = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') out += '\\';
+        out += c;
+    }
+    return out + '"';
+}
+
+double errorPercent(const SettingFigures& f) {
+    return std::max(kSmallestError, 100 * f.errors.force_vector);
+}
+
+bool isPreset(const SettingFigures& f) {
+    return presetOfName(f.name).has_value();
+}
+
+std::string labelOf(const SettingFigures& f, size_t n) {
+    return isPreset(f) ? f.name : std::to_string(n + 1);
+}
+
+// Lays logarithmic axes on the picture: pixels, with the origin at the lower left.
+struct Axes {
+    static constexpr double kWidth = 1500, kHeight = 850;
+    static constexpr double kLeft = 0.06, kRight = 0.65, kBottom = 0.09, kTop = 0.93;  // of the picture
+    double x_low = INFINITY, x_high = 0, y_low = INFINITY, y_high = 0;
+
+    explicit Axes(const ReportData& data) {
+        for (const SettingFigures& f : data.settings) {
+            x_low = std::min(x_low, f.times.p99_9 / 1.3), x_high = std::max(x_high, f.times.p99_9 * 1.4);
+            y_low = std::min(y_low, errorPercent(f) / 2), y_high = std::max(y_high, errorPercent(f) * 2);
+        }
+        if (data.budget_us)
+            x_low = std::min(x_low, *data.budget_us / 1.1), x_high = std::max(x_high, *data.budget_us * 1.1);
+    }
+    Eigen::Vector2d pixel(double x, double y) const {
+        const double u = std::log(x / x_low) / std::log(x_high / x_low);
+        const double v = std::log(y / y_low) / std::log(y_high / y_low);
+        return {kWidth * (kLeft + u * (kRight - kLeft)), kHeight * (kBottom + v * (kTop - kBottom))};
+    }
+};
+
+std::string labels(const ReportData& data, const Axes& axes) {
+    std::vector<PlotLabel> all;
+    for (size_t n = 0; n < data.settings.size(); ++n) {
+        const SettingFigures& f = data.settings[n];
+        all.push_back({.point = axes.pixel(f.times.p99_9, errorPercent(f)), .text = labelOf(f, n)});
+    }
+    layOutLabels(all);
+    std::ostringstream text;
+    const auto screen = [](const Eigen::Vector2d& p) {
+        std::ostringstream place;
+        place << "screen " << p.x() / Axes::kWidth << ", screen " << p.y() / Axes::kHeight;
+        return place.str();
+    };
+    for (const PlotLabel& label : all) {
+        text << "set label " << quoted(label.text) << " at " << screen(label.center)
+             << " center noenhanced font \",10\" front\n";
+        if (label.needs_line)
+            text << "set arrow from " << screen(label.point) << " to " << screen(label.center)
+                 << " nohead lc rgb \"#b0b0b0\" back\n";
+    }
+    return text.str();
+}
+
+// Writes one line per chosen setting: p99.9 and error.
+template <class Choose>
+std::string block(const char* name, const ReportData& data, Choose&& choose) {
+    std::vector<std::pair<double, double>> points;
+    for (size_t n = 0; n < data.settings.size(); ++n)
+        if (choose(n)) points.emplace_back(data.settings[n].times.p99_9, errorPercent(data.settings[n]));
+    std::sort(points.begin(), points.end());
+    std::ostringstream text;
+    text << '$' << name << " << END_OF_DATA\n";
+    for (const auto& [time, error] : points) text << time << ' ' << error << '\n';
+    text << "END_OF_DATA\n";
+    return text.str();
+}
+
+// Says beside the plot what the numbers stand for.
+std::string legend(const ReportData& data) {
+    std::ostringstream text;
+    const double line = 0.84 / double(std::max<size_t>(24, data.settings.size()));
+    for (size_t n = 0; n < data.settings.size(); ++n) {
+        const SettingFigures& f = data.settings[n];
+        const std::string number = isPreset(f) ? "" : std::to_string(n + 1) + "  ";
+        text << "set label " << quoted(number + f.name + (f.is_in_force ? "  (in force)" : ""))
+             << " at screen 0.665, screen " << 0.92 - double(n) * line << " left noenhanced font \",10\"\n";
+    }
+    return text.str();
+}
+
+std::string settingsOfPicture(const ReportData& data, const Axes& axes, const std::filesystem::path& png) {
+    std::ostringstream script;
+    script << "set terminal pngcairo size " << Axes::kWidth << ',' << Axes::kHeight
+           << " font \"DejaVu Sans,11\"\nset output " << quoted(png.string()) << "\nset title "
+           << quoted(data.scene + ": force error against tick time") << " noenhanced font \",14\"\n";
+    script << "set lmargin at screen " << Axes::kLeft << "\nset rmargin at screen " << Axes::kRight
+           << "\nset bmargin at screen " << Axes::kBottom << "\nset tmargin at screen " << Axes::kTop << '\n';
+    script
+        << "set logscale xy\nset xrange [" << axes.x_low << ':' << axes.x_high << "]\nset yrange ["
+        << axes.y_low << ':' << axes.y_high
+        << "]\n"
+           "set xtics (1,2,3,5,7,10,15,20,30,50,70,100,150,200,300,500,700,1000,1500,2000,3000,5000,10000)\n"
+           "set ytics (0.001,0.002,0.005,0.01,0.02,0.05,0.1,0.2,0.5,1,2,5,10,20,50,100,200,500,1000)\n"
+           "set grid lc rgb \"#d0d0d0\"\nset key bottom left Left reverse samplen 2 opaque\n"
+           "set xlabel \"tick, p99.9, µs (this machine)\"\n"
+           "set ylabel \"force error against truth, % (RMS)\"\n";
+    if (data.budget_us)
+        script << "set arrow from " << *data.budget_us << ", graph 0 to " << *data.budget_us
+               << ", graph 1 nohead dt 2 lc rgb \"#c04040\"\nset label \"budget\" at " << *data.budget_us
+               << ", graph 0.97 right offset -0.5,0 tc rgb \"#c04040\"\n";
+    return script.str();
+}
+
+}  // namespace
+
+std::string paretoScript(const ReportData& data, const std::filesystem::path& png) {
+    const Axes axes(data);
+    const auto& all = data.settings;
+    return block("candidates", data, [&](size_t n) { return !isOtherLaw(all[n]); }) +
+           block("other_laws", data, [&](size_t n) { return isOtherLaw(all[n]); }) +
+           block("in_force", data, [&](size_t n) { return all[n].is_in_force; }) +
+           block("front", data, [&](size_t n) { return bool(data.front[n]); }) +
+           settingsOfPicture(data, axes, png) + legend(data) + labels(data, axes) +
+           "plot $front using 1:2 with steps lw 2 lc rgb \"#50a060\" title \"Pareto front\", \\\n"
+           " $candidates using 1:2 with points pt 7 ps 1.3 lc rgb \"#2050a0\" title \"gradient law\", \\\n"
+           " $other_laws using 1:2 with points pt 9 ps 1.5 lc rgb \"#d06050\" title \"other laws: their "
+           "difference\", \\\n"
+           " $in_force using 1:2 with points pt 6 ps 3 lw 2 lc rgb \"#202020\" title \"in force in the "
+           "scene\"\n";
+}
+
+void runGnuplot(const std::filesystem::path& script) {
+    std::string program = "gnuplot", argument = script.string();
+    char* const arguments[] = {program.data(), argument.data(), nullptr};
+    pid_t child = 0;
+    const int spawn_error = posix_spawnp(&child, "gnuplot", nullptr, nullptr, arguments, environ);
+    const std::string advice =
+        "; the picture is missing, the figures are written (Debian: apt install gnuplot-nox)";
+    if (spawn_error)
+        throw UserError(std::string("gnuplot cannot be run (") + std::strerror(spawn_error) + ')' + advice);
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+    if (WIFEXITED(status) && WEXITSTATUS(status) == kCommandNotFound)
+        throw UserError("gnuplot cannot be run" + advice);
+    throw UserError("gnuplot failed on " + script.string() +
+                    "; the picture is missing, the figures are written");
+}
+
+}  // namespace bonemill

@@ -1,0 +1,57 @@
+// Runs every setting along the same paths and measures it.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "haptic_server/lab/accuracy_report/analytic_probe.h"
+#include "haptic_server/lab/accuracy_report/milling_probe.h"
+#include "haptic_server/lab/accuracy_report/truth.h"
+#include "haptic_server/recording/statistics/tick_times.h"
+#include "proto/scene.pb.h"
+
+namespace bonemill {
+
+struct SettingFigures {
+    AccuracySettings settings;
+    std::string name;            // settingsName()
+    bool is_in_force = false;    // the scene's own
+    Errors errors;               // along the probing path; for other laws differences, not errors
+    double max_penetration = 0;  // m
+    double noise = 0;            // N
+    double closed_energy = 0;    // J: least that any closed stroke took from the hand
+    double lowest_energy = 0;    // J: anywhere on the strokes
+    PlaneErrors plane;           // burr on a plane, closed form
+    struct Removal {
+        double removed = 0, swept = 0, wanted = 0;  // m³, as in MillingRun
+        double error() const { return swept > 0 ? removed / swept - 1 : 0; }
+        double progress() const {
+            return wanted > 0 ? removed / wanted : 0;
+        }  // small: the burr does not get in
+    };
+    std::optional<Removal> removal;  // none where the scene does not mill
+    TickTimes times;                 // of all ticks
+    TickTimes probing_times, milling_times;
+    size_t ticks = 0;
+    uint32_t faults = 0;  // TickFault bits
+};
+
+struct SweepInput {
+    const scene::Scene& scene;
+    const VoxelVolume& volume;  // the scanned bone
+    Eigen::Vector3i leaf_cells;
+    const SpoTool& tool;  // its model with the refined grids that the settings ask for
+    const std::vector<ProbingStroke>& strokes;
+    const std::vector<Truth>& truth;  // of the strokes
+    const PosePath& milling;          // empty: the scene does not mill
+    AnalyticProbe& plane;
+};
+
+// The figures come in the order of `settings`. Calls progress(figures, done) after each; the order of those
+// calls may differ.
+using SweepProgress = std::function<void(const SettingFigures& figures, size_t done)>;
+std::vector<SettingFigures> sweep(const SweepInput& input, const std::vector<AccuracySettings>& settings,
+                                  const SweepProgress& progress);
+
+}  // namespace bonemill

@@ -1,0 +1,30 @@
+// Computes what a stroke should feel like: the same contact law and coupling on the same trilinear surface,
+// as finely as can be waited for.
+#pragma once
+
+#include "haptic_server/lab/accuracy_report/measures.h"
+#include "haptic_server/lab/accuracy_report/probing_path.h"
+
+namespace bonemill {
+
+struct Truth {
+    std::vector<Answer> answers;
+    double max_penetration = 0;   // m
+    int refinement = 0;           // of the voxels; wantedRefinement() unless memory forbade it
+    std::vector<Answer> coarser;  // the same with half that refinement: how far the truth can be off
+};
+inline constexpr int kLeastRefinement = 4, kMostRefinement = 16;
+
+// The voxels are so many times denser that the burr on a plane touches some 8 of them across already with 1
+// N: then the sums over the contact points are good to 0.1 % (patch.csv).
+int wantedRefinement(double spacing, const FixedTickConfig& tick) noexcept;
+
+// The truth has these settings: 2 × 2 contact points in each (refined) cell, analytic tool or its grid
+// refined 4 times, double precision, the most iterations.
+AccuracySettings truthSettings() noexcept;
+
+// There is one for each stroke. `tick` gives the rest of the configuration. It uses `threads` at a time.
+std::vector<Truth> computeTruth(const std::vector<ProbingStroke>& strokes, const FixedTickConfig& tick,
+                                const BoneModel& bone, const TouchProbe& probe, int threads);
+
+}  // namespace bonemill

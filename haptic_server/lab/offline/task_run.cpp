@@ -1,0 +1,74 @@
+#include "haptic_server/lab/offline/task_run.h"
+
+#include <spdlog/spdlog.h>
+
+#include <fstream>
+
+#include "common/base/user_error.h"
+#include "haptic_server/assessment/product/judge.h"
+#include "haptic_server/scene/setup/make_technique.h"
+
+namespace bonemill {
+
+TaskRun::TaskRun(const scene::Scene& scene, const Simulation& simulation, bool wanted)
+    : task_(simulation.task) {
+    if (!task_ && !wanted) return;
+    if (task_) breach_ = breachWatchOf(simulation);
+    technique_ = techniqueMaker(scene, simulation)();
+}
+
+void TaskRun::add(const TickRecord& record) {
+    if (technique_) technique_->add(record);
+    if (breach_) breach_->add(record);
+}
+
+void TaskRun::setEye(const Eigen::Vector3d& p_eye_W) {
+    if (technique_) technique_->setEye(p_eye_W);
+}
+
+TaskRun::Result TaskRun::judgeBone(const VoxelVolume& scanned, const VoxelVolume& now) {
+    technique_->finish();
+    if (!task_) return {technique_->assessment(), {}, technique_->beginS()};
+    ProductInput input{scanned, now, *task_};
+    if (breach_) input.breach = breach_->depth();
+    Product product = measureProduct(input);
+    for (const std::string& what : product.left_out) spdlog::warn("not measured: {}", what);
+    Assessment technique = technique_->assessment();
+    product.figures.insert(product.figures.end(), technique.figures.begin(), technique.figures.end());
+    Result result{judge(*task_, std::move(product.figures)), std::move(product.picture),
+                  technique_->beginS()};
+    result.assessment.series = std::move(technique.series);
+    result.assessment.moments = std::move(technique.moments);
+    return result;
+}
+
+nlohmann::json assessmentJson(const Assessment& assessment) {
+    nlohmann::json json{{"gates", nlohmann::json::array()},
+                        {"sub_scores", nlohmann::json::array()},
+                        {"figures", nlohmann::json::object()}};
+    if (!assessment.gates.empty()) json["passed"] = assessment.hasPassed();
+    for (const GateResult& gate : assessment.gates)
+        json["gates"].push_back(
+            {{"figure", gate.figure_id}, {"is_passed", gate.is_passed}, {"text", gate.text}});
+    for (const SubScore& score : assessment.sub_scores)
+        json["sub_scores"].push_back({{"figure", score.figure.id},
+                                      {"label", score.label},
+                                      {"value", score.figure.value},
+                                      {"score", score.score},
+                                      {"weight", score.weight}});
+    if (assessment.total)
+        json["total"] = {{"score", assessment.total->score},
+                         {"weights_version", assessment.total->weights_version},
+                         {"weights_hash", assessment.total->weights_hash}};
+    for (const Figure& figure : assessment.figures) json["figures"][figure.id] = figure.value;
+    return json;
+}
+
+void writeBytes(const std::string& path, const std::string& bytes) {
+    std::ofstream file(path, std::ios::binary);
+    file.write(bytes.data(), std::streamsize(bytes.size()));
+    file.close();
+    if (!file) throw UserError("cannot write " + path + ": is the folder there, writable and not full?");
+}
+
+}  // namespace bonemill

@@ -1,0 +1,44 @@
+// Follows an attempt at a scene's task from tick to tick and judges it in the end, as a live session does. It
+// is for one normal thread.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "haptic_server/assessment/measures/technique.h"
+#include "haptic_server/assessment/product/product.h"
+#include "haptic_server/scene/setup/scene_setup.h"
+
+namespace bonemill {
+
+class TaskRun {
+  public:
+    // In a scene without a task it does nothing, unless the technique is `wanted`. `simulation` must outlive
+    // it.
+    TaskRun(const scene::Scene& scene, const Simulation& simulation, bool wanted = false);
+
+    void add(const TickRecord& record);
+    // The trainee's eye is here from the next record on.
+    void setEye(const Eigen::Vector3d& p_eye_W);
+    struct Result {
+        Assessment assessment;
+        DeviationPicture picture;
+        double begin_s = 0;  // of the first record
+    };
+    // No record comes any more; there is a task, or the technique was wanted.
+    Result judgeBone(const VoxelVolume& scanned, const VoxelVolume& now);
+
+  private:
+    std::shared_ptr<const JudgedTask> task_;
+    std::optional<BreachWatch> breach_;
+    std::unique_ptr<Technique> technique_;
+};
+
+// For programs: {"passed", "gates": [...], "sub_scores": [...], "total", "figures": {id: value}}.
+nlohmann::json assessmentJson(const Assessment& assessment);
+
+// Writes a file. Throws UserError when that fails.
+void writeBytes(const std::string& path, const std::string& bytes);
+
+}  // namespace bonemill

@@ -1,0 +1,71 @@
+#include "haptic_server/recording/export/trajectory_writer.h"
+
+#include <spdlog/spdlog.h>
+
+#include <charconv>
+#include <cstdio>
+#include <memory>
+
+#include "common/base/user_error.h"
+#include "common/files/whole_file.h"
+#include "common/rt/clock.h"
+#include "haptic_server/scene/trajectory/recorded_row.h"
+
+namespace bonemill {
+namespace {
+
+template <class Number>
+void append(std::string& line, Number value) {
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+    line.append(text, end).push_back(',');
+}
+
+std::string lineOf(const JournalTick& tick) {
+    std::string line;
+    append(line, secondsOfNs(tick.start_ns));
+    for (const double p : tick.input.p_WT) append(line, p);
+    for (const double q : tick.input.q_WT) append(line, q);
+    append(line, tick.buttons);
+    for (const uint64_t number : numbersOf(tick.input, tick.device)) append(line, number);
+    append(line, tick.input.stale_factor);
+    line += tick.input.has_other_device ? textOfDevice(tick.input.other_device) : "";
+    return line + '\n';
+}
+
+// The first tick that took up an order to put the bone back; else the number of ticks.
+uint64_t firstPutBack(const Recording& recording) {
+    RecordedTicks ticks(recording);
+    const uint64_t at_first = ticks.at(0).input.decisions.bone_order;
+    if (recording.content().put_backs.contains(at_first)) return 0;
+    for (uint64_t tick = 0; tick < recording.ticks(); ++tick)
+        if (ticks.at(tick).input.decisions.bone_order != at_first) return tick;
+    return recording.ticks();
+}
+
+}  // namespace
+
+void writeTrajectory(const std::string& path, const Recording& recording) {
+    const uint64_t count = firstPutBack(recording);
+    if (count == 0 || recording.manifest().has_resumed_from())
+        throw UserError(path +
+                        ": the session does not begin on the scanned bone, as `simulate` does; "
+                        "`session verify` runs its ticks again");
+    if (count < recording.ticks())
+        spdlog::warn("{}: only the {:.3f} s before the bone was put back", path, recording.secondsOf(count));
+    WholeFile file(path);
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(std::fopen(file.part().c_str(), "w"),
+                                                              &std::fclose);
+    if (!out) throw UserError(path + ": cannot be written");
+    bool is_written =
+        std::fputs(("t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons," + recordedHeader() + "\n").c_str(),
+                   out.get()) >= 0;
+    RecordedTicks ticks(recording);
+    for (uint64_t tick = 0; tick < count && is_written; ++tick)
+        is_written = std::fputs(lineOf(ticks.at(tick)).c_str(), out.get()) >= 0;
+    if (!is_written || std::fflush(out.get()) != 0)
+        throw UserError(path + ": cannot be written to its end (disk full?)");
+    file.finish();
+}
+
+}  // namespace bonemill

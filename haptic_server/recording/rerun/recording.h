@@ -1,0 +1,93 @@
+// A recorded session, read from its journal and checked: what its ticks took in, when, and the bone at some
+// moments. It is read once and never changes; any thread may ask. An hour at 1 kHz takes some 200 MB.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/config/scene_file.h"
+#include "haptic_server/core/bone/bone_model.h"
+#include "haptic_server/core/bone/bone_snapshot.h"
+#include "haptic_server/recording/journal/journal_reader.h"
+
+namespace bonemill {
+
+// The bone as the ticks before `tick` left it.
+struct Keyframe {
+    uint64_t tick = 0;
+    std::shared_ptr<const BoneSnapshot> bone;  // null: as scanned
+};
+
+class Recording {
+  public:
+    // Throws UserError if it is no journal, or holds no ticks.
+    explicit Recording(const std::filesystem::path& path);
+
+    const std::filesystem::path& path() const noexcept { return path_; }
+    const JournalContent& content() const noexcept { return content_; }
+    const journal::Manifest& manifest() const noexcept { return content_.manifest; }
+    // How many there are: at least 1.
+    uint64_t ticks() const noexcept { return content_.ticks; }
+
+    // When it began, s since the first one.
+    double secondsOf(uint64_t tick) const;
+    // The last one that had begun by then; the first or the last one of all if there is none.
+    uint64_t tickAt(double seconds) const;
+    double lengthS() const { return secondsOf(ticks() - 1); }
+
+    // The ticks are decoded as they were written, some hundred at once: a block.
+    size_t blockOf(uint64_t tick) const;
+    std::vector<JournalTick> decode(size_t block) const;
+    // The device that the ticks before this one had; null: none was told of.
+    const DeviceCapabilities* deviceBefore(uint64_t tick) const;
+    // Ticks whose device differs in state from the tick before, and what it was then.
+    const std::map<uint64_t, DeviceReport>& deviceChanges() const noexcept { return device_changes_; }
+
+    // Of the session's beginning on. Throws UserError, also if a file that it reads is another one now:
+    // nothing of this PC is read that the session did not read.
+    LoadedScene scene() const;
+
+    struct Bones {
+        std::vector<Keyframe> keyframes;  // by tick; the first is that with which the session began
+        std::map<uint32_t, std::shared_ptr<const BoneSnapshot>> checkpoints;
+        std::string problem;  // for people, if some of them cannot be used; else empty
+    };
+    // Whoever made the journal: so much memory may its bones take.
+    static constexpr size_t kMostBoneBytes = size_t(4) << 30;
+    // Reads the file once more. `bone` is the scanned one of the scene. Throws UserError if the session began
+    // with another bone than the scanned one, or put it back to one, and that is not there; and if its
+    // bones take more memory.
+    Bones readBones(const BoneModel& bone, size_t most_bytes = kMostBoneBytes) const;
+
+  private:
+    bool isNext(const journal::Inputs& inputs, std::vector<JournalTick>& ticks) const;
+    void noteTick(const JournalTick& tick);
+    void requireTargets(const Bones& bones) const;
+
+    std::filesystem::path path_;
+    JournalContent content_;
+    std::vector<int64_t> first_starts_ns_;            // of the blocks' first ticks
+    std::map<uint64_t, DeviceCapabilities> devices_;  // by the first tick that had it
+    std::map<uint64_t, DeviceReport> device_changes_;
+    std::map<uint64_t, uint64_t> orders_taken_;  // to put the bone back: the ticks that took them up
+    DeviceReport device_;                        // of the tick that was noted last
+    uint64_t newest_order_ = 0;                  // of that tick
+};
+
+// Goes through the ticks of a recording, in any order, fastest one by one. It is for one thread.
+class RecordedTicks {
+  public:
+    // The recording must outlive this object.
+    explicit RecordedTicks(const Recording& recording) : recording_(recording) {}
+    // There is a tick of this number. The reference is good until the next call.
+    const JournalTick& at(uint64_t tick);
+
+  private:
+    const Recording& recording_;
+    std::vector<JournalTick> decoded_;
+};
+
+}  // namespace bonemill

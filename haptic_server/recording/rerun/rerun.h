@@ -1,0 +1,68 @@
+// Runs the ticks of a recording again: with the same build, from its first tick on, they come to the same
+// bits (docs/lab/recording.md). From a later one the bone is the same, and all else settles within a fraction
+// of a second: what effects have counted and warmed up begins anew there.
+//
+// It belongs to one normal thread; the mesher may read the bone meanwhile.
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "haptic_server/core/bone/bone_history.h"
+#include "haptic_server/core/tick/haptic_tick.h"
+#include "haptic_server/recording/rerun/recording.h"
+#include "haptic_server/scene/setup/scene_setup.h"
+
+namespace bonemill {
+
+using RecordedCheckpoints = std::map<uint32_t, std::shared_ptr<const BoneSnapshot>>;
+
+class Rerun {
+  public:
+    // All must outlive this object; `bone` is as scanned. Begins before the first tick, with `start`.
+    Rerun(const Recording& recording, const Simulation& simulation, const RecordedCheckpoints& checkpoints,
+          BoneModel& bone, const Keyframe& start);
+
+    // The bone becomes that of the keyframe, whose tick is the next one.
+    void startAt(const Keyframe& keyframe);
+
+    // The tick that step() runs; end() at the end.
+    uint64_t next() const noexcept { return next_; }
+    uint64_t end() const noexcept { return recording_.ticks(); }
+    bool isAtEnd() const noexcept { return next_ == end(); }
+    // Runs the next tick, which there is. The record is good until the next call; its start_ns is now, and
+    // its bone_order is the recording's.
+    const TickRecord& step();
+    // An order of the recording has put the bone back, or has begun to, in the last step.
+    bool isBonePutBack() const noexcept { return is_put_back_; }
+
+    BoneHistory& history() noexcept { return history_; }
+    const BoneHistory& history() const noexcept { return history_; }
+    // What is in force; nobody else chooses.
+    ToolSwitch& tools() noexcept { return tools_; }
+    AccuracySwitch& accuracies() noexcept { return accuracy_; }
+
+  private:
+    class Io;
+    void makeTick();
+    void choose(const TickDecisions& decisions);
+    void putBack(const TickDecisions& decisions);
+
+    const Recording& recording_;
+    const RecordedCheckpoints& checkpoints_;
+    const TickConfig& config_;
+    BoneModel& bone_;
+    BoneHistory history_;
+    ToolSwitch tools_;
+    AccuracySwitch accuracy_;
+    RecordedTicks ticks_;
+    std::unique_ptr<HapticTick> tick_;
+    TickRecord record_{};
+    uint64_t next_ = 0;
+    uint64_t bone_order_ = 0;  // of the recording, given last
+    uint64_t done_order_ = 0;  // of the recording, whose bone is there
+    bool is_put_back_ = false;
+    bool is_device_told_ = false;  // to tick_
+};
+
+}  // namespace bonemill

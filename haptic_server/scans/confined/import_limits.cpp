@@ -1,0 +1,72 @@
+#include "haptic_server/scans/confined/import_limits.h"
+
+#include <fstream>
+
+#include "common/base/user_error.h"
+#include "haptic_server/core/kernels/brick_layout.h"
+
+namespace bonemill {
+namespace {
+
+std::string sizeText(const std::vector<uint64_t>& dims) {
+    std::string text;
+    for (const uint64_t n : dims) text += (text.empty() ? "" : " x ") + std::to_string(n);
+    return text;
+}
+
+}  // namespace
+
+uint64_t availableMemory() {
+    std::ifstream meminfo("/proc/meminfo");
+    std::string key, unit;
+    uint64_t kib = 0;
+    while (meminfo >> key >> kib) {
+        std::getline(meminfo, unit);
+        if (key == "MemAvailable:") return kib * 1024;
+    }
+    return 0;
+}
+
+void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel, const std::string& file) {
+    if (dims.size() != 3)
+        throw UserError(file + ": has " + std::to_string(dims.size()) + " dimensions (" + sizeText(dims) +
+                        "); one volume of three is needed");
+    uint64_t voxels = 1;
+    for (const uint64_t n : dims) {
+        if (n < 2)
+            throw UserError(file + ": is only " + sizeText(dims) +
+                            " voxels; a volume needs 2 or more per axis");
+        if (n > kMaxVoxels || (voxels *= n) > kMaxVoxels)
+            throw UserError(file + ": claims " + sizeText(dims) +
+                            " voxels, more than 2^31; crop or resample it");
+    }
+    // Samples move from the reader's process to this one; what was moved is given back.
+    const uint64_t needed = voxels * bytes_per_voxel;
+    const uint64_t available = availableMemory();
+    if (available != 0 && needed > available)
+        throw UserError(file + ": " + sizeText(dims) + " voxels need " + std::to_string(needed >> 20) +
+                        " MiB to import and only " + std::to_string(available >> 20) +
+                        " MiB of memory are free; crop or resample it");
+}
+
+void checkAllCanBeBone(const std::vector<uint64_t>& dims, const std::string& file) {
+    uint64_t bricks = 1;
+    for (const uint64_t n : dims) bricks *= (n + 2 + kBrickCells - 1) / kBrickCells;
+    const uint64_t needed = bricks * kBrickSize * sizeof(uint16_t);
+    const uint64_t available = availableMemory();
+    if (available != 0 && needed > available)
+        throw UserError(file + ": all of its " + sizeText(dims) + " voxels may need " +
+                        std::to_string(needed >> 20) + " MiB as bone and only " +
+                        std::to_string(available >> 20) +
+                        " MiB of memory are free; name the part that is milled in volume.region, or crop or "
+                        "resample it");
+}
+
+void checkStoredBytes(uint64_t promised_bytes, uint64_t stored_bytes, const std::string& file) {
+    if (promised_bytes > stored_bytes)
+        throw UserError(file + ": the header promises " + std::to_string(promised_bytes) +
+                        " bytes of voxels, the file cannot hold more than " + std::to_string(stored_bytes) +
+                        "; it is cut short or damaged");
+}
+
+}  // namespace bonemill

@@ -1,0 +1,51 @@
+// Turns raw values into the bone's densities: window and iso-value.
+//
+// It is not RT-safe (it allocates) and has no shared state.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "haptic_server/core/volume/voxel_volume.h"
+#include "haptic_server/scans/analysis/propose_iso.h"
+
+namespace bonemill {
+
+// The scene asks for these raw values (HU for CT).
+struct DensityWindow {
+    std::optional<double> low;   // becomes density 0; absent: lowest finite value of the data
+    std::optional<double> high;  // becomes density 255; absent: highest finite value
+    std::optional<double> iso;   // bone surface; absent: RawVolume::surface_value, or proposeIso()
+};
+
+// These were used in the end.
+struct DensityMapping {
+    double low = 0;
+    double high = 1;
+    double iso_value = 0;
+    std::optional<IsoProposal> proposed = {};  // iso_value comes from there
+    Density iso = 0;                           // density of iso_value, 0 < iso < kMaxDensity
+
+    // It is linear, clamped to 0 .. kMaxDensity and rounded to nearest; NaN becomes 0 (air).
+    Density density(double raw) const noexcept;
+    double raw(double density_counts) const noexcept {
+        return low + (high - low) * density_counts / kMaxDensity;
+    }
+};
+
+// Throws UserError when the window is empty, the iso-value lies outside it or at its edge, or no
+// value is finite.
+DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window);
+
+VoxelVolume densify(const RawVolume& raw, const DensityMapping& mapping);
+// What clearFarFromBone(is_kept) makes of that (far_air.h), without memory for what it clears.
+VoxelVolume densifyNearBone(const RawVolume& raw, const DensityMapping& mapping,
+                            const std::function<bool(size_t)>& is_kept = {});
+// Gives the raw values' memory back as their densities come: both are never there as a whole.
+VoxelVolume densifyNearBone(RawVolume&& raw, const DensityMapping& mapping,
+                            const std::function<bool(size_t)>& is_kept = {});
+// Does chooseMapping and densify in one.
+VoxelVolume densify(const RawVolume& raw, const DensityWindow& window);
+
+}  // namespace bonemill

@@ -1,0 +1,225 @@
+#include "haptic_server/scans/dicom/dicom_folder.h"
+
+#include <algorithm>
+#include <cctype>
+#include <span>
+
+#include "common/base/user_error.h"
+#include "common/process/work_ahead.h"
+#include "haptic_server/scans/confined/import_limits.h"
+#include "haptic_server/scans/confined/memory_cap.h"
+#include "haptic_server/scans/dicom/dicom_headers.h"
+#include "haptic_server/scans/dicom/dicom_scan.h"
+#include "haptic_server/scans/dicom/dicom_segments.h"
+#include "haptic_server/scans/dicom/series_table.h"
+#include "haptic_server/scans/pixels/itk_image_file.h"
+#include "haptic_server/scans/pixels/physical_frame.h"
+
+namespace bonemill {
+namespace {
+
+using Slices = std::span<const DicomSlice>;
+
+// Slices that follow each other in one file.
+std::vector<Slices> filesOf(Slices slices) {
+    std::vector<Slices> files;
+    while (!slices.empty()) {
+        const auto other = std::ranges::find_if(
+            slices, [&](const DicomSlice& slice) { return slice.path != slices.front().path; });
+        const auto count = size_t(other - slices.begin());
+        files.push_back(slices.first(count));
+        slices = slices.subspan(count);
+    }
+    return files;
+}
+
+struct Pixels {
+    RawValues values;
+    DicomRescale applied;
+};
+
+Pixels pixelsOf(const Slices& of_file) {
+    Pixels pixels;
+    ItkImageFile image(ItkFormat::kDicom, of_file.front().path);
+    image.appendValues(pixels.values);
+    pixels.applied = image.appliedRescale();
+    return pixels;
+}
+
+void append(const DicomSlice& slice, Pixels& pixels, RawValues& values) {
+    const size_t size = size_t(slice.columns) * size_t(slice.rows), begin = size * size_t(slice.frame);
+    if (pixels.values.size() % size != 0 || pixels.values.size() < begin + size)
+        throw UserError(slice.path.string() +
+                        ": holds fewer pixels than its header says; the file is damaged");
+    const bool is_scaled = pixels.values.visit([&](auto samples) {
+        return appendRescaled(samples.subspan(begin, size), pixels.applied,
+                              slice.rescale.value_or(pixels.applied), values);
+    });
+    if (!is_scaled)
+        throw UserError(slice.path.string() +
+                        ": its frames are scaled too differently to be read; export it anew");
+    pixels.values.forget(begin, begin + size);
+}
+
+void readSlices(const std::vector<DicomSlice>& slices, RawValues& values) {
+    constexpr uint64_t kSampleBytes = 8, kHeldBytes = 2 + 4;  // the widest; while they become wider
+    const std::vector<Slices> files = filesOf(slices);
+    const uint64_t pixels = uint64_t(slices.front().columns) * uint64_t(slices.front().rows);
+    uint64_t bytes = 0;
+    for (const Slices& file : files)
+        bytes = std::max(bytes, mostMemoryToRead(file.front().path, kSampleBytes * pixels * file.size()));
+    const MemoryCap cap(memoryForAll(bytes, kHeldBytes * pixels * slices.size()));
+    workAhead(files, pixelsOf, [&](const Slices& of_file, Pixels of_pixels) {
+        for (const DicomSlice& slice : of_file) append(slice, of_pixels, values);
+    });
+}
+
+// Air is negative on no other scale.
+bool reachesAir(const RawValues& values) {
+    return values.range().low <= -500;
+}
+
+bool isSamePicture(const DicomSlice& a, const DicomSlice& b) {
+    if (a.frame != 0 || b.frame != 0) return false;
+    RawValues of_a, of_b;
+    readSlices({a}, of_a);
+    readSlices({b}, of_b);
+    return of_a == of_b;
+}
+
+// What a reader of the scan asks first.
+std::string describe(const DicomChoice& choice) {
+    const DicomStack& stack = choice.stack;
+    const DicomSlice& first = stack.slices.front();
+    std::string text = "DICOM " + titleOf(stack);
+    if (!first.series_description.empty()) text += " (" + first.series_description + ")";
+    if (!first.modality.empty()) text += ", " + first.modality;
+    if (!first.traits.kernel.empty()) text += ", kernel " + first.traits.kernel;
+    if (!first.contrast.empty()) text += ", contrast " + first.contrast;
+    text += ", " + std::to_string(stack.slices.size()) + " slices";
+    if (!stack.remark.empty()) text += "; " + stack.remark;
+    if (!choice.how_chosen.empty()) text += "; " + choice.how_chosen;
+    if (!choice.left_out.empty()) text += "; other series left out: " + choice.left_out;
+    return text;
+}
+
+RawVolume readChoice(const DicomChoice& choice, const std::string& name) {
+    const DicomStack& stack = choice.stack;
+    const DicomSlice& first = stack.slices.front();
+    const size_t depth = stack.slices.size();
+    constexpr uint64_t kPixelBytes = 4;  // a multi-frame file is read as a whole
+    checkVolumeSize({uint64_t(first.columns), uint64_t(first.rows), depth}, kPixelBytes, name);
+    RawVolume raw;
+    raw.values.reserve(size_t(first.columns) * size_t(first.rows) * depth);
+    readSlices(stack.slices, raw.values);
+    FileFrame frame;
+    frame.dims = {first.columns, first.rows, int(depth)};
+    frame.spacing_mm = {first.pixel_spacing_mm.x(), first.pixel_spacing_mm.y(), stack.slice_spacing_mm};
+    frame.directions << first.row_direction, first.column_direction, first.normal();
+    frame.origin_mm = first.position_mm;
+    if (!stack.places.empty()) {
+        const Eigen::Vector2i size(first.columns, first.rows);
+        const SliceGrid grid = gridAround(stack.places, size, first.pixel_spacing_mm, stack.slice_spacing_mm);
+        checkVolumeSize({uint64_t(grid.dims.x()), uint64_t(grid.dims.y()), uint64_t(grid.dims.z())},
+                        kPixelBytes, name);
+        raw.values = resampleStack(raw.values, stack.places, size, grid);
+        frame.dims = grid.dims;
+        frame.origin_mm +=
+            first.row_direction * grid.aside_mm.x() + first.column_direction * grid.aside_mm.y();
+    }
+    makeRightHanded(frame, name, raw.geometry, raw.values);
+    raw.is_hounsfield = first.isCt() && reachesAir(raw.values);
+    raw.description = describe(choice);
+    return raw;
+}
+
+RawVolume importFolder(const std::filesystem::path& folder, Subfolders subfolders, const DicomWish& wish) {
+    LeftOut left_out;
+    const auto files = filesOf(folder, subfolders, left_out);
+    if (files.empty()) throw UserError(folder.string() + ": the folder is empty; a DICOM series is needed");
+    const std::vector<DicomSlice> slices = slicesOfFiles(files, left_out);
+    if (slices.empty())
+        throw UserError(folder.string() + ": holds no DICOM slice that can be used: " + left_out.text());
+    RawVolume raw = readChoice(chooseStack(slices, wish, folder.string(), isSamePicture), folder.string());
+    if (!left_out.text().empty()) raw.description += "; files left out: " + left_out.text();
+    return raw;
+}
+
+std::filesystem::path folderOf(const std::filesystem::path& file) {
+    return file.has_parent_path() ? file.parent_path() : ".";
+}
+
+// What belongs to a file that is one slice lies beside it: folders below may be anything.
+RawVolume importAroundSlice(const std::filesystem::path& file, const DicomSlice& slice, DicomWish wish) {
+    if (wish.series_uid.empty()) wish.series_uid = slice.series_uid;
+    wish.file = folderOf(file) / file.filename();
+    RawVolume raw = importFolder(folderOf(file), Subfolders::kNo, wish);
+    raw.description += "; " + file.filename().string() + " is a slice of this series: the folder " +
+                       folderOf(file).string() + " was read";
+    return raw;
+}
+
+std::vector<std::string> listFiles(const std::vector<std::filesystem::path>& files,
+                                   const std::filesystem::path& path, LeftOut& left_out) {
+    SeriesTableNotes notes;
+    // Damage is told in a line of its own, so that it hides no other series.
+    const std::vector<DicomSlice> slices = slicesOfFiles(files, left_out, &notes.problems);
+    notes.left_out = left_out.text();
+    if (slices.empty())
+        throw UserError(path.string() + ": holds no DICOM slice that can be used: " +
+                        (notes.problems.empty() ? notes.left_out : notes.problems.front()));
+    return seriesTable(stacksOf(slices, isSamePicture), notes);
+}
+
+std::vector<std::string> listFolder(const std::filesystem::path& folder, Subfolders subfolders) {
+    LeftOut left_out;
+    const auto files = filesOf(folder, subfolders, left_out);
+    if (files.empty()) throw UserError(folder.string() + ": the folder is empty; a DICOM series is needed");
+    return listFiles(files, folder, left_out);
+}
+
+}  // namespace
+
+bool isDicomDirectory(const std::filesystem::path& file) {
+    constexpr const char* kMediaStorageDirectory = "1.2.840.10008.1.3.10";
+    std::string name = file.filename().string();
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::toupper(c)); });
+    return name == "DICOMDIR" || scanDicomFile(file).media_class == kMediaStorageDirectory;
+}
+
+bool isDicom(const std::filesystem::path& file) {
+    return scanDicomFile(file).kind != DicomKind::kNotDicom;
+}
+
+RawVolume importDicomFolder(const std::filesystem::path& folder, const DicomWish& wish) {
+    return importFolder(folder, Subfolders::kYes, wish);
+}
+
+RawVolume importDicomDirectory(const std::filesystem::path& file, const DicomWish& wish) {
+    RawVolume raw = importDicomFolder(folderOf(file), wish);
+    raw.description += "; " + file.filename().string() + " only names files: the folder " +
+                       folderOf(file).string() + " was read";
+    return raw;
+}
+
+RawVolume importDicomFile(const std::filesystem::path& file, const DicomWish& wish) {
+    const DicomScan scan = scanDicomFile(file);
+    if (scan.drawing == DicomDrawing::kSegmentation && scan.kind != DicomKind::kCutShort)
+        return importDicomSegments(file);
+    LeftOut left_out;
+    const auto slices = slicesOfFile(file, left_out);
+    if (slices.empty()) throw UserError(file.string() + ": cannot be used: " + left_out.text());
+    if (slices.size() == 1) return importAroundSlice(file, slices.front(), wish);
+    return readChoice(chooseStack(slices, wish, file.string(), isSamePicture), file.string());
+}
+
+std::vector<std::string> listDicomSeries(const std::filesystem::path& path) {
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error)) return listFolder(path, Subfolders::kYes);
+    if (isDicomDirectory(path)) return listFolder(folderOf(path), Subfolders::kYes);
+    LeftOut left_out;
+    if (slicesOfFile(path, left_out).size() > 1) return listFiles({path}, path, left_out);
+    return listFolder(folderOf(path), Subfolders::kNo);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,228 @@
+#include "haptic_server/scans/dicom/dicom_headers.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "common/base/user_error.h"
+#include "common/process/work_ahead.h"
+#include "haptic_server/scans/confined/memory_cap.h"
+#include "haptic_server/scans/dicom/dicom_frames.h"
+#include "haptic_server/scans/dicom/dicom_scan.h"
+#include "haptic_server/scans/pixels/decimal_numbers.h"
+#include "haptic_server/scans/pixels/itk_image_file.h"
+
+namespace bonemill {
+namespace {
+
+constexpr size_t kMaxEdge = 16384;  // detectors of today have 4096; more is a damaged header
+
+DicomTraits traitsOf(const ItkImageFile& image) {
+    const auto text = [&](const char* tag) { return withoutPadding(image.dicomTag(tag)); };
+    DicomTraits traits;
+    traits.acquisition_number = text("0020|0012");
+    traits.temporal_position = text("0020|0100");
+    traits.b_value = text("0018|9087");
+    traits.kernel = text("0018|1210");
+    traits.image_type = text("0008|0008");
+    traits.acquisition_time = text("0008|0032");
+    traits.content_time = text("0008|0033");
+    return traits;
+}
+
+// All images of one file have this in common.
+DicomSlice headerOf(const ItkImageFile& image, const std::filesystem::path& path) {
+    const ItkImageHeader& header = image.header();
+    DicomSlice slice;
+    slice.path = path;
+    slice.series_uid = image.dicomTag("0020|000e");
+    slice.series_description = image.dicomTag("0008|103e");
+    slice.modality = image.dicomTag("0008|0060");
+    slice.traits = traitsOf(image);
+    slice.contrast = image.dicomTag("0018|0010");
+    if (header.dims.size() < 2 || header.dims[0] > kMaxEdge || header.dims[1] > kMaxEdge)
+        throw UserError(path.string() + ": claims an image of absurd size; the header is damaged");
+    slice.columns = int(header.dims[0]);
+    slice.rows = int(header.dims[1]);
+    slice.rescale = rescaleFromTexts(image.dicomTag("0028|1053"), image.dicomTag("0028|1052"), path.string());
+    return slice;
+}
+
+void putAt(const DicomPlace& place, DicomSlice& slice) {
+    slice.position_mm = place.position_mm;
+    slice.row_direction = place.row_direction;
+    slice.column_direction = place.column_direction;
+    slice.pixel_spacing_mm = place.pixel_spacing_mm;
+    slice.axes_rounding = place.rounding;
+}
+
+// What a frame says goes before what its file does.
+void takeTraits(const DicomTraits& of_frame, DicomTraits& traits) {
+    for (const auto trait :
+         {&DicomTraits::acquisition_number, &DicomTraits::temporal_position, &DicomTraits::b_value,
+          &DicomTraits::kernel, &DicomTraits::image_type, &DicomTraits::acquisition_time})
+        if (!(of_frame.*trait).empty()) traits.*trait = of_frame.*trait;
+}
+
+// Frames of which only some say their scale would not be alike.
+void checkRescales(const std::vector<DicomFrame>& frames, const DicomSlice& common) {
+    if (common.rescale) return;
+    const auto says = [](const DicomFrame& frame) { return frame.rescale.has_value(); };
+    const auto silent = std::ranges::find_if_not(frames, says);
+    if (silent != frames.end() && std::ranges::any_of(frames, says))
+        throw UserError(common.path.string() + " frame " + std::to_string(silent - frames.begin() + 1) +
+                        ": does not state its Rescale Slope and Intercept, other frames do; export it anew");
+}
+
+std::vector<DicomSlice> slicesOf(const std::vector<DicomFrame>& frames, const DicomSlice& common) {
+    checkRescales(frames, common);
+    std::vector<DicomSlice> slices(frames.size(), common);
+    for (size_t f = 0; f < frames.size(); ++f) {
+        slices[f].frame = int(f);
+        putAt(frames[f].place, slices[f]);
+        if (frames[f].rescale) slices[f].rescale = frames[f].rescale;
+        takeTraits(frames[f].traits, slices[f].traits);
+    }
+    return slices;
+}
+
+// Reads the slices of one file, or none and the reason: the file cannot belong to a volume.
+std::vector<DicomSlice> readHeader(const std::filesystem::path& path, LeftOut& left_out) {
+    const ItkImageFile image(ItkFormat::kDicom, path);
+    const size_t frames = image.header().dims.size() > 2 ? size_t(image.header().dims[2]) : 1;
+    if (image.header().components != 1 || image.dicomTag("0028|0004").rfind("PALETTE", 0) == 0) {
+        left_out.add("colour images (RGB or palette)", path);
+        return {};
+    }
+    if (frames == 1 && (image.dicomTag("0020|0032").empty() || image.dicomTag("0020|0037").empty())) {
+        left_out.add("images without a position in the patient", path);
+        return {};
+    }
+    DicomSlice slice = headerOf(image, path);
+    if (frames == 1) {
+        putAt(placeFromTexts(
+                  {image.dicomTag("0020|0032"), image.dicomTag("0020|0037"), image.dicomTag("0028|0030")},
+                  kTwoDigits, path.string()),
+              slice);
+        return {slice};
+    }
+    const std::vector<DicomFrame> places = readFrames(path);
+    if (places.size() != frames) {
+        left_out.add("multi-frame images that do not say where each frame lies", path);
+        return {};
+    }
+    return slicesOf(places, slice);
+}
+
+}  // namespace
+
+void LeftOut::add(const std::string& reason, const std::filesystem::path& file) {
+    for (Entry& entry : entries_)
+        if (entry.reason == reason) return void(++entry.count);
+    entries_.push_back({reason, file.filename().string(), 1});
+}
+
+void LeftOut::add(const LeftOut& more) {
+    for (const Entry& entry : more.entries_) {
+        const auto same = std::ranges::find(entries_, entry.reason, &Entry::reason);
+        if (same != entries_.end())
+            same->count += entry.count;
+        else
+            entries_.push_back(entry);
+    }
+}
+
+std::string LeftOut::text() const {
+    std::string text;
+    for (const Entry& entry : entries_)
+        text += (text.empty() ? "" : ", ") + std::to_string(entry.count) + " " + entry.reason + " (" +
+                entry.example + (entry.count > 1 ? ", ...)" : ")");
+    return text;
+}
+
+namespace {
+
+std::vector<DicomSlice> leaveDrawingOut(DicomDrawing drawing, const std::filesystem::path& path,
+                                        LeftOut& left_out) {
+    left_out.add(drawing == DicomDrawing::kSegmentation
+                     ? "DICOM segmentations (SEG), each of which is a label map: give its file by name "
+                       "(volume.label_path, make-case --labels)"
+                     : "DICOM contours, surfaces or label maps (RTSTRUCT and others), which 3D Slicer loads "
+                       "and exports as .seg.nrrd or NIfTI",
+                 path);
+    return {};
+}
+
+}  // namespace
+
+std::vector<DicomSlice> slicesOfFile(const std::filesystem::path& path, LeftOut& left_out) {
+    const DicomScan scan = scanDicomFile(path);
+    switch (scan.kind) {
+        case DicomKind::kNotDicom:
+            left_out.add("files that are not DICOM", path);
+            return {};
+        case DicomKind::kNoImage:
+            if (scan.drawing != DicomDrawing::kNone) return leaveDrawingOut(scan.drawing, path, left_out);
+            left_out.add("DICOM files without an image", path);
+            return {};
+        case DicomKind::kCutShort:
+            throw UserError(path.string() + ": the DICOM file is cut short or damaged: " + scan.problem);
+        case DicomKind::kImage:
+            if (scan.drawing != DicomDrawing::kNone) return leaveDrawingOut(scan.drawing, path, left_out);
+            break;
+    }
+    return readHeader(path, left_out);
+}
+
+std::vector<DicomSlice> slicesOfFiles(const std::vector<std::filesystem::path>& files, LeftOut& left_out,
+                                      std::vector<std::string>* damaged) {
+    struct OfFile {
+        std::vector<DicomSlice> slices;
+        LeftOut left_out;
+        std::string problem;
+    };
+    uint64_t bytes = 0;
+    for (const auto& file : files) bytes = std::max(bytes, mostMemoryToRead(file, 0));
+    const MemoryCap cap(memoryForAll(bytes, bytes));
+    std::vector<DicomSlice> slices;
+    workAhead(
+        files,
+        [&](const std::filesystem::path& file) {
+            OfFile of_file;
+            try {
+                of_file.slices = slicesOfFile(file, of_file.left_out);
+            } catch (const UserError& error) {
+                if (!damaged) throw;
+                of_file.problem = error.what();
+            }
+            return of_file;
+        },
+        [&](const std::filesystem::path&, OfFile of_file) {
+            left_out.add(of_file.left_out);
+            slices.insert(slices.end(), of_file.slices.begin(), of_file.slices.end());
+            if (!of_file.problem.empty()) damaged->push_back(std::move(of_file.problem));
+        });
+    return slices;
+}
+
+// Links to folders are not followed, for they may lead in circles.
+std::vector<std::filesystem::path> filesOf(const std::filesystem::path& folder, Subfolders subfolders,
+                                           LeftOut& left_out) {
+    std::vector<std::filesystem::path> files, others;
+    std::error_code error, unreadable;
+    for (std::filesystem::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        if (subfolders == Subfolders::kNo) entry.disable_recursion_pending();
+        if (entry->is_regular_file(unreadable))
+            files.push_back(entry->path());
+        else if (entry->is_symlink(unreadable) || !entry->is_directory(unreadable))
+            others.push_back(entry->path());
+    }
+    if (error) throw UserError("cannot list the folder " + folder.string() + ": " + error.message());
+    std::sort(files.begin(), files.end());  // the same messages and choices on every file system
+    std::sort(others.begin(), others.end());
+    for (const auto& other : others) left_out.add("links or devices that are no files", other);
+    return files;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,190 @@
+#include "haptic_server/scans/dicom/dicom_series.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "common/base/user_error.h"
+#include "haptic_server/scans/dicom/bone_series.h"
+#include "haptic_server/scans/dicom/dicom_parts.h"
+
+namespace bonemill {
+namespace {
+
+// Headers carry decimal text; these are coarser than its rounding and finer than any real difference.
+constexpr double kSameDirection = 1e-3;
+constexpr double kSamePixelSpacingMm = 1e-4;
+constexpr size_t kMostScouts = 3;  // a series of so few pictures is no scan
+
+bool belongTogether(const DicomSlice& a, const DicomSlice& b) {
+    const auto isNear = [](const auto& u, const auto& v, double most) {
+        return (u - v).cwiseAbs().maxCoeff() <= most;
+    };
+    return a.series_uid == b.series_uid && a.columns == b.columns && a.rows == b.rows &&
+           isNear(a.row_direction, b.row_direction, kSameDirection) &&
+           isNear(a.column_direction, b.column_direction, kSameDirection) &&
+           isNear(a.pixel_spacing_mm, b.pixel_spacing_mm, kSamePixelSpacingMm);
+}
+
+using Groups = std::vector<std::vector<DicomSlice>>;
+
+// The same groups come of the slices in any order of series.
+Groups groupsOf(const std::vector<DicomSlice>& slices) {
+    Groups groups;
+    for (const DicomSlice& slice : slices) {
+        const auto found = std::ranges::find_if(
+            groups, [&](const auto& group) { return belongTogether(group.front(), slice); });
+        if (found == groups.end())
+            groups.push_back({slice});
+        else
+            found->push_back(slice);
+    }
+    std::ranges::stable_sort(groups, {}, [](const auto& group) { return group.front().series_uid; });
+    return groups;
+}
+
+std::vector<DicomSlice> strangersOf(const std::vector<DicomSlice>& group, const Groups& groups) {
+    std::vector<DicomSlice> strangers;
+    for (const auto& other : groups)
+        if (&other != &group && other.front().series_uid == group.front().series_uid)
+            strangers.insert(strangers.end(), other.begin(), other.end());
+    return strangers;
+}
+
+using SeriesAndName = std::pair<std::string, std::string>;
+
+SeriesAndName seriesAndName(const DicomStack& stack) {
+    return {stack.slices.front().series_uid, stack.name};
+}
+
+void countSharedNames(std::vector<DicomStack>& stacks) {
+    std::map<SeriesAndName, int> all, counted;
+    for (const DicomStack& stack : stacks) ++all[seriesAndName(stack)];
+    for (DicomStack& stack : stacks) {
+        const SeriesAndName shared = seriesAndName(stack);
+        if (all[shared] > 1) stack.name += "/" + std::to_string(++counted[shared]);
+    }
+}
+
+std::string sizeAndTitle(const DicomStack& stack) {
+    const DicomSlice& first = stack.slices.front();
+    return std::to_string(stack.slices.size()) + " slices " + std::to_string(first.columns) + "x" +
+           std::to_string(first.rows) + " of " + (first.modality.empty() ? "" : first.modality + " ") +
+           titleOf(stack) + (first.series_description.empty() ? "" : " (" + first.series_description + ")");
+}
+
+std::string listOf(const std::vector<const DicomStack*>& stacks, std::string (*say)(const DicomStack&)) {
+    constexpr size_t kMostListed = 8;
+    std::string text;
+    for (size_t s = 0; s < stacks.size(); ++s) {
+        if (s == kMostListed) return text + "; ...";
+        text += (text.empty() ? "" : "; ") + say(*stacks[s]);
+    }
+    return text;
+}
+
+std::string nameAndSize(const DicomStack& stack) {
+    return stack.name + " (" + std::to_string(stack.slices.size()) + " slices)";
+}
+
+bool areParts(const DicomStack& a, const DicomStack& b) {
+    return !a.told_by.empty() && belongTogether(a.slices.front(), b.slices.front());
+}
+
+// What people type has no control characters, and need not repeat what was counted.
+bool isNamed(const DicomStack& stack, const std::string& wanted) {
+    return stack.name == wanted || stack.name.substr(0, stack.name.rfind('/')) == wanted;
+}
+
+bool isWanted(const DicomStack& stack, const DicomWish& wish) {
+    return (wish.series_uid.empty() || stack.slices.front().series_uid == wish.series_uid) &&
+           (wish.acquisition.empty() || isNamed(stack, wish.acquisition));
+}
+
+bool holds(const DicomStack& stack, const std::filesystem::path& file) {
+    return std::ranges::any_of(stack.slices, [&](const DicomSlice& slice) { return slice.path == file; });
+}
+
+auto rankOf(const DicomStack& stack, const DicomWish& wish) {
+    const DicomTraits& traits = stack.slices.front().traits;
+    const bool is_scan = stack.slices.size() > kMostScouts;
+    return std::tuple(isWanted(stack, wish), !wish.file.empty() && is_scan && holds(stack, wish.file),
+                      stack.told_by.empty() || stack.problem.empty(), is_scan && stack.slices.front().isCt(),
+                      stack.slices.size(), -acquisitionOf(stack).value_or(std::numeric_limits<double>::max()),
+                      traits.image_type.starts_with("ORIGINAL"), isBoneKernel(traits.kernel));
+}
+
+std::string nameOfWish(const DicomWish& wish) {
+    std::string text = wish.series_uid.empty() ? "" : "series " + wish.series_uid;
+    if (!wish.acquisition.empty()) text += (text.empty() ? "" : ", ") + ("acquisition " + wish.acquisition);
+    return text;
+}
+
+std::vector<const DicomStack*> pointersTo(const std::vector<DicomStack>& stacks) {
+    std::vector<const DicomStack*> pointers;
+    for (const DicomStack& stack : stacks) pointers.push_back(&stack);
+    return pointers;
+}
+
+// The parts of its series are named, other stacks listed.
+DicomChoice choiceOf(const std::vector<DicomStack>& stacks, const DicomStack& best) {
+    DicomChoice choice;
+    std::vector<const DicomStack*> parts, others;
+    for (const DicomStack& stack : stacks) {
+        if (areParts(best, stack))
+            parts.push_back(&stack);
+        else if (&stack != &best)
+            others.push_back(&stack);
+    }
+    choice.left_out = listOf(others, sizeAndTitle);
+    if (!parts.empty())
+        choice.how_chosen = "the series holds " + std::to_string(parts.size()) +
+                            " stacks that overlap, told apart by " + best.told_by + ": " +
+                            listOf(parts, nameAndSize) + "; taken: " + best.name +
+                            "; volume.acquisition (make-case: --acquisition) takes another";
+    choice.stack = best;
+    return choice;
+}
+
+}  // namespace
+
+std::vector<DicomStack> stacksOf(const std::vector<DicomSlice>& slices,
+                                 const IsSamePicture& is_same_picture) {
+    const Groups groups = groupsOf(slices);
+    std::vector<DicomStack> stacks;
+    for (const auto& group : groups)
+        for (DicomStack& part : partsOf(group, strangersOf(group, groups), is_same_picture))
+            stacks.push_back(std::move(part));
+    countSharedNames(stacks);
+    return stacks;
+}
+
+std::string titleOf(const DicomStack& stack) {
+    return "series " + stack.slices.front().series_uid +
+           (stack.name.empty() ? "" : ", acquisition " + stack.name);
+}
+
+bool isScout(const DicomStack& stack) {
+    return stack.slices.size() <= kMostScouts ||
+           stack.slices.front().traits.image_type.find("LOCALIZER") != std::string::npos;
+}
+
+DicomChoice chooseStack(const std::vector<DicomSlice>& slices, const DicomWish& wish,
+                        const std::string& folder, const IsSamePicture& is_same_picture) {
+    // No picture of a series is read that is not wanted.
+    const auto is_same = [&](const DicomSlice& a, const DicomSlice& b) {
+        return (!wish.series_uid.empty() && a.series_uid != wish.series_uid) || is_same_picture(a, b);
+    };
+    const std::vector<DicomStack> stacks = stacksOf(slices, is_same);
+    const auto best =
+        std::ranges::max_element(stacks, {}, [&](const DicomStack& stack) { return rankOf(stack, wish); });
+    if (!isWanted(*best, wish))
+        throw UserError(folder + ": holds no " + nameOfWish(wish) + "; it holds " +
+                        listOf(pointersTo(stacks), sizeAndTitle));
+    if (!best->problem.empty()) throw UserError(folder + ": " + best->problem);
+    return choiceOf(stacks, *best);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,46 @@
+// Chooses the files of a folder that make one volume, and their order: from headers, never from file names.
+//
+// There is no DICOM library in here: tests feed it headers. Positions and spacings are in mm and LPS, as
+// in the files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "haptic_server/scans/dicom/dicom_stack.h"
+
+namespace bonemill {
+
+// Which stack is wanted; what is empty leaves it to the rule.
+struct DicomWish {
+    std::string series_uid;
+    std::string acquisition;     // DicomStack::name, or what stands before its "/"
+    std::filesystem::path file;  // the stack that holds it goes before others of the series
+};
+
+struct DicomChoice {
+    DicomStack stack;
+    std::string how_chosen;  // for people: where stacks of the series overlap; else empty
+    std::string left_out;    // for people: other stacks in the folder
+};
+
+// Slices of one series with the same orientation, size and pixel spacing as the first of them belong
+// together, and of those that overlap the ones of one acquisition or phase (dicom_parts.h). Series
+// come in the order of their UIDs. Stacks of a series that share a name are counted: "1/1", "1/2". There is
+// one slice at least.
+std::vector<DicomStack> stacksOf(const std::vector<DicomSlice>& slices, const IsSamePicture& is_same_picture);
+
+// What tells a stack from all others of the folder: series, and its name where it has one.
+std::string titleOf(const DicomStack& stack);
+
+bool isScout(const DicomStack& stack);  // it is no scan: a localizer, or of too few slices
+
+// Of the stacks that are wished for, proper parts of a series go before others, then CT before all else, then
+// the one with the most slices, then the lowest number of acquisition, originals before what was derived of
+// them, and bone kernels (bone_series.h). Throws UserError, naming `folder` and the files and positions at
+// fault.
+DicomChoice chooseStack(const std::vector<DicomSlice>& slices, const DicomWish& wish,
+                        const std::string& folder, const IsSamePicture& is_same_picture);
+
+}  // namespace bonemill

@@ -1,0 +1,221 @@
+#include "haptic_server/scans/dicom/dicom_stack.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/base/units.h"
+#include "common/base/user_error.h"
+#include "common/math/pinned_math.h"
+#include "common/text/printed_text.h"
+#include "haptic_server/scans/dicom/dicom_gaps.h"
+
+namespace bonemill {
+namespace {
+
+// Headers carry decimal text; these are coarser than its rounding and finer than any real difference.
+constexpr double kSamePlaceMm = 1e-3;
+constexpr double kSpacingTolerance = 0.02;  // of the median distance: nothing to speak of
+constexpr double kMaxTiltDegrees = 0.1;
+constexpr double kMostGantryTiltDegrees = 45;  // gantries tilt by 30 at most
+constexpr double kSaidRounding = 1e-3;         // 0.06 degrees
+// Scanners write positions in steps of 0.1 mm at most; so far a slice is from its place then, or this share
+// of a distance.
+constexpr double kRoundingMm = 0.055;
+constexpr double kMostRounding = 0.2;
+constexpr double kMostFiner = 4;  // so much finer than most distances a grid may get by the least
+
+void note(std::string& remark, const std::string& text) {
+    remark += (remark.empty() || text.empty() ? "" : "; ") + text;
+}
+
+// One of each place stays. Pictures that differ there are of two acquisitions: the stack's problem.
+void dropCopies(DicomStack& stack, const Eigen::Vector3d& normal, const IsSamePicture& is_same_picture) {
+    std::vector<DicomSlice> kept{stack.slices.front()};
+    for (size_t s = 1; s < stack.slices.size(); ++s) {
+        const DicomSlice& slice = stack.slices[s];
+        if (placeAlong(normal, slice) - placeAlong(normal, kept.back()) >= kSamePlaceMm) {
+            kept.push_back(slice);
+            continue;
+        }
+        stack.has_several = !is_same_picture(kept.back(), slice);
+        if (!stack.has_several) continue;
+        stack.problem =
+            "two slices lie at the same place and differ: " + nameAndPlace(kept.back(), normal) + " and " +
+            nameAndPlace(slice, normal) +
+            "; the series holds several acquisitions that nothing in the headers tells apart: keep "
+            "the files of one of them";
+        return;
+    }
+    if (const size_t copies = stack.slices.size() - kept.size())
+        note(stack.remark, std::to_string(copies) + " copies of slices left out");
+    stack.slices = std::move(kept);
+}
+
+std::vector<SlicePlace> placesOf(const std::vector<DicomSlice>& slices) {
+    std::vector<SlicePlace> places;
+    for (const DicomSlice& slice : slices) {
+        const DicomSlice& first = slices.front();
+        const Eigen::Vector3d from_first = slice.position_mm - first.position_mm;
+        places.push_back({first.normal().dot(from_first),
+                          {first.row_direction.dot(from_first), first.column_direction.dot(from_first)}});
+    }
+    return places;
+}
+
+double medianOf(std::vector<double> numbers) {
+    std::ranges::sort(numbers);
+    return numbers[numbers.size() / 2];
+}
+
+// The medians do not see the few slices that are not where the others are.
+size_t farthestAside(const std::vector<SlicePlace>& places) {
+    std::vector<double> distances(places.size(), 0);
+    for (const int axis : {0, 1}) {
+        std::vector<double> slopes, starts;
+        const size_t half = places.size() / 2;
+        for (size_t s = 0; s + half < places.size(); ++s)
+            slopes.push_back((places[s + half].aside_mm[axis] - places[s].aside_mm[axis]) /
+                             (places[s + half].along_mm - places[s].along_mm));
+        const double slope = medianOf(slopes);
+        for (const SlicePlace& place : places)
+            starts.push_back(place.aside_mm[axis] - slope * place.along_mm);
+        const double start = medianOf(starts);
+        for (size_t s = 0; s < places.size(); ++s) distances[s] += std::abs(starts[s] - start);
+    }
+    return size_t(std::ranges::max_element(distances) - distances.begin());
+}
+
+// A tilted gantry moves each slice aside by its share; everything else is no one stack.
+std::string problemOfShifts(const std::vector<DicomSlice>& slices, const std::vector<SlicePlace>& places) {
+    const Eigen::Vector2d slope = places.back().aside_mm / places.back().along_mm;
+    const double most = std::max(0.1 * slices[0].pixel_spacing_mm.minCoeff(), kRoundingMm);
+    const auto is_straight = [&](const SlicePlace& place) {
+        return (place.aside_mm - slope * place.along_mm).norm() <= most;
+    };
+    if (std::ranges::all_of(places, is_straight)) return {};
+    return nameOfSlice(slices[farthestAside(places)]) +
+           " is shifted sideways against the other slices; the series is not one straight stack";
+}
+
+// The slices' distance if it were the same everywhere, by least squares.
+double evenStep(const std::vector<SlicePlace>& places) {
+    const double middle = double(places.size() - 1) / 2;
+    double products = 0, squares = 0;
+    for (size_t s = 0; s < places.size(); ++s) {
+        products += (double(s) - middle) * places[s].along_mm;
+        squares += (double(s) - middle) * (double(s) - middle);
+    }
+    return products / squares;
+}
+
+// How far slices lie from even places, which may all be moved together.
+double unevennessOf(const std::vector<SlicePlace>& places) {
+    const double step = evenStep(places);
+    double low = 0, high = 0;
+    for (size_t s = 0; s < places.size(); ++s) {
+        low = std::min(low, places[s].along_mm - step * double(s));
+        high = std::max(high, places[s].along_mm - step * double(s));
+    }
+    return (high - low) / 2;
+}
+
+bool areEven(const std::vector<SlicePlace>& places, const SliceDistances& distances) {
+    return unevennessOf(places) <= std::min(kRoundingMm, kMostRounding * distances.median);
+}
+
+double tiltDegrees(const std::vector<SlicePlace>& places) {
+    return pinned::atan2(places.back().aside_mm.norm(), places.back().along_mm) / kDegree;
+}
+
+// Slices further aside were acquired in another way, and most of a slice would lie beside its neighbours.
+std::string problemOfTilt(double tilt_deg) {
+    if (tilt_deg <= kMostGantryTiltDegrees) return {};
+    return printed(
+        "the slices are stacked %.1f degrees off their normal, more than any gantry tilts; resample the "
+        "series first",
+        tilt_deg);
+}
+
+// All that is wrong is said at once, and of a tilt that alone would be mended where something else is wrong.
+std::string problemsOf(const DicomStack& stack, const std::vector<SlicePlace>& places, double tilt_deg,
+                       const std::vector<DicomSlice>& strangers) {
+    std::string problems;
+    const std::string shifts = problemOfShifts(stack.slices, places);
+    note(problems, shifts);
+    note(problems, problemOfGap(stack.slices, places, strangers));
+    note(problems, problemOfTilt(tilt_deg));
+    const bool is_mere_tilt = tilt_deg > kMaxTiltDegrees && tilt_deg <= kMostGantryTiltDegrees;
+    if (!problems.empty() && shifts.empty() && is_mere_tilt)
+        note(problems, printed("beside that, the gantry is tilted by %.2f degrees", tilt_deg));
+    return problems;
+}
+
+// The places are as good as the directions that they were measured along.
+void noteRounding(DicomStack& stack) {
+    double rounding = 0;
+    for (const DicomSlice& slice : stack.slices) rounding = std::max(rounding, slice.axes_rounding);
+    if (rounding > kSaidRounding)
+        note(stack.remark, printed("the orientation is rounded in the files: it may be off by %.2g degrees",
+                                   rounding / kDegree));
+}
+
+// Says why and how the slices are to be resampled.
+void resample(DicomStack& stack, std::vector<SlicePlace> places, double tilt_deg,
+              const std::vector<DicomSlice>& strangers) {
+    const SliceDistances distances = distancesOf(places);
+    std::string why;
+    if (tilt_deg > kMaxTiltDegrees) note(why, printed("gantry tilt of %.2f degrees", tilt_deg));
+    if (stack.is_uneven) note(why, printed("slices %.4g to %.4g mm apart", distances.least, distances.most));
+    const double pixel_mm = stack.slices.front().pixel_spacing_mm.maxCoeff();
+    note(stack.remark, "resampled to a regular grid (" + why +
+                           "): between slices surfaces may be off by up to " +
+                           printed("%.2g mm", std::max(distances.most, pixel_mm) / 2));
+    note(stack.remark, strangersInGaps(stack.slices, places, strangers));
+    if (stack.is_uneven)
+        stack.slice_spacing_mm =
+            std::min(distances.median, std::max(distances.least, distances.median / kMostFiner));
+    stack.places = std::move(places);
+}
+
+void findPlaces(DicomStack& stack, const std::vector<DicomSlice>& strangers) {
+    std::vector<SlicePlace> places = placesOf(stack.slices);
+    const double tilt_deg = tiltDegrees(places), uneven_mm = unevennessOf(places);
+    const SliceDistances distances = distancesOf(places);
+    stack.slice_spacing_mm = evenStep(places);
+    stack.problem = problemsOf(stack, places, tilt_deg, strangers);
+    stack.is_uneven = !areEven(places, distances);
+    if (!stack.problem.empty()) return;
+    noteRounding(stack);
+    if (tilt_deg > kMaxTiltDegrees || stack.is_uneven)
+        return resample(stack, std::move(places), tilt_deg, strangers);
+    if (uneven_mm > kSpacingTolerance * distances.median)
+        note(stack.remark,
+             printed("slices lie up to %.2g mm from where they are taken to be: rounded positions",
+                     2 * uneven_mm));
+}
+
+}  // namespace
+
+DicomStack arrangedStack(std::vector<DicomSlice> slices, const std::vector<DicomSlice>& strangers,
+                         const IsSamePicture& is_same_picture) {
+    DicomStack stack;
+    stack.slices = std::move(slices);
+    const Eigen::Vector3d normal = stack.slices.front().normal();
+    std::ranges::stable_sort(stack.slices, {},
+                             [&](const DicomSlice& slice) { return placeAlong(normal, slice); });
+    try {
+        dropCopies(stack, normal, is_same_picture);
+    } catch (const UserError& error) {  // one of the pictures cannot be read
+        stack.problem = error.what();
+    }
+    if (!stack.problem.empty()) return stack;
+    if (stack.slices.size() == 1)
+        stack.problem = "a volume needs 2 or more slices; there is one (" +
+                        stack.slices.front().path.filename().string() + ")";
+    else
+        findPlaces(stack, strangers);
+    return stack;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,108 @@
+#include "haptic_server/scans/dicom/series_table.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "common/text/printed_text.h"
+#include "haptic_server/scans/dicom/bone_series.h"
+#include "haptic_server/scans/dicom/dicom_series.h"
+#include "haptic_server/scans/dicom/series_rows.h"
+
+namespace bonemill {
+namespace {
+
+constexpr size_t kMostRows = 1000, kMostProblems = 8;
+constexpr size_t kLongestCell = 64, kLongestLine = 600;  // a damaged header may claim to have any text
+
+using Row = std::array<std::string, kSeriesColumns.size()>;
+
+std::string shortened(std::string text, size_t most) {
+    text = printable(std::move(text));
+    return text.size() > most ? text.substr(0, most - 3) + "..." : text;
+}
+
+std::string cell(const std::string& text) {
+    return text.empty() ? "-" : shortened(text, kLongestCell);
+}
+
+std::string voxelOf(const DicomStack& stack) {
+    const Eigen::Vector2d& pixel_mm = stack.slices.front().pixel_spacing_mm;
+    const std::string z = stack.slice_spacing_mm > 0 ? printed("%.4g", stack.slice_spacing_mm) : "?";
+    return printed("%.4g x %.4g x ", pixel_mm.x(), pixel_mm.y()) + z;
+}
+
+void add(std::string& remark, const std::string& text) {
+    remark += (remark.empty() || text.empty() ? "" : "; ") + text;
+}
+
+std::string remarkOf(const DicomStack& stack) {
+    std::string remark = stack.problem.empty() ? "" : "cannot be used: " + stack.problem;
+    if (stack.problem.empty() && isScout(stack)) add(remark, "scout");
+    add(remark, stack.remark);
+    if (!stack.told_by.empty()) add(remark, "told from stacks that overlap it by " + stack.told_by);
+    return remark.empty() ? "-" : shortened(remark, kLongestLine);
+}
+
+Row rowOf(const DicomStack& stack) {
+    const DicomSlice& first = stack.slices.front();
+    return {cell(first.series_uid),
+            cell(stack.name),
+            cell(first.modality),
+            cell(first.series_description),
+            cell(first.traits.kernel),
+            cell(first.contrast),
+            std::to_string(stack.slices.size()),
+            std::to_string(first.columns) + "x" + std::to_string(first.rows),
+            voxelOf(stack),
+            remarkOf(stack)};
+}
+
+// Columns begin below each other; the last one has no end.
+std::vector<std::string> aligned(const std::vector<Row>& rows) {
+    std::vector<std::string> lines(rows.size());
+    for (size_t column = 0; column < kSeriesColumns.size(); ++column) {
+        size_t width = 0;
+        for (const Row& row : rows) width = std::max(width, row[column].size());
+        for (size_t r = 0; r < rows.size(); ++r) {
+            lines[r] += rows[r][column];
+            if (column + 1 < kSeriesColumns.size())
+                lines[r] += std::string(width + 2 - rows[r][column].size(), ' ');
+        }
+    }
+    return lines;
+}
+
+void recommend(const std::vector<DicomStack>& stacks, std::vector<std::string>& lines) {
+    const BoneRecommendation best = recommendForBone(stacks);
+    if (!best.stack) {
+        lines.push_back("recommended for bone: none, for no stack here can be used");
+        return;
+    }
+    const std::string &uid = best.stack->slices.front().series_uid, &name = best.stack->name;
+    lines.push_back("recommended for bone: " + titleOf(*best.stack) + ": " + best.why);
+    lines.push_back("to take it: volume { series_uid: " + sceneText(uid) +
+                    (name.empty() ? "" : " acquisition: " + sceneText(name)) + " } in a scene, --series " +
+                    quoted(uid) + (name.empty() ? "" : " --acquisition " + quoted(name)) + " for make-case");
+}
+
+}  // namespace
+
+std::vector<std::string> seriesTable(const std::vector<DicomStack>& stacks, const SeriesTableNotes& notes) {
+    std::vector<Row> rows(1);
+    std::ranges::copy(kSeriesColumns, rows.front().begin());
+    for (size_t s = 0; s < std::min(stacks.size(), kMostRows); ++s) rows.push_back(rowOf(stacks[s]));
+    std::vector<std::string> lines = aligned(rows);
+    if (stacks.size() > kMostRows)
+        lines.push_back("and " + std::to_string(stacks.size() - kMostRows) + " more");
+    recommend(stacks, lines);
+    for (size_t p = 0; p < std::min(notes.problems.size(), kMostProblems); ++p)
+        lines.push_back("cannot be read: " + notes.problems[p]);
+    if (notes.problems.size() > kMostProblems)
+        lines.push_back("cannot be read: " + std::to_string(notes.problems.size() - kMostProblems) + " more");
+    if (!notes.left_out.empty()) lines.push_back("files left out: " + notes.left_out);
+    for (std::string& line : lines) line = shortened(line, 2 * kLongestLine);
+    return lines;
+}
+
+}  // namespace bonemill

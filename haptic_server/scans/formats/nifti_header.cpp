@@ -1,0 +1,222 @@
+#include "haptic_server/scans/formats/nifti_header.h"
+
+#include <zlib.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "common/base/user_error.h"
+
+namespace bonemill {
+namespace {
+
+// These are the offsets of the fields in nifti1.h.
+constexpr size_t kHeaderBytes = 348;
+constexpr size_t kDimOffset = 40;
+constexpr size_t kBitpixOffset = 72;
+constexpr size_t kPixdimOffset = 76;
+constexpr size_t kVoxOffsetOffset = 108;
+constexpr size_t kSlopeOffset = 112;
+constexpr size_t kInterceptOffset = 116;
+constexpr size_t kUnitsOffset = 123;
+constexpr size_t kQformCodeOffset = 252;
+constexpr size_t kSformCodeOffset = 254;
+constexpr size_t kQuaternOffset = 256;
+constexpr size_t kQoffsetOffset = 268;
+constexpr size_t kSrowOffset = 280;
+constexpr size_t kSformEnd = 328;
+constexpr size_t kMagicOffset = 344;
+constexpr int kNifti2HeaderBytes = 540;
+constexpr double kMaxExtensionBytes = 64 << 20;
+// Two forms that say the same place it so near.
+constexpr double kSameFormMm = 0.05;
+
+class Header {
+  public:
+    explicit Header(const std::filesystem::path& path) {
+        const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
+        if (file) is_complete_ = gzread(file.get(), bytes_.data(), kHeaderBytes) == int(kHeaderBytes);
+        swapped_ = at<int32_t>(0) != int32_t(kHeaderBytes);
+    }
+    bool isComplete() const { return is_complete_; }
+
+    template <class T>
+    T at(size_t offset) const {
+        std::array<char, sizeof(T)> raw;
+        std::memcpy(raw.data(), bytes_.data() + offset, sizeof(T));
+        if (swapped_) std::reverse(raw.begin(), raw.end());
+        return std::bit_cast<T>(raw);
+    }
+    std::string magic() const { return {bytes_.data() + kMagicOffset, 3}; }
+
+  private:
+    std::array<char, kHeaderBytes> bytes_{};
+    bool is_complete_ = false;
+    bool swapped_ = false;
+};
+
+// ITK takes the singular values of these numbers and aborts the process when one is not finite.
+bool isGeometryFinite(const Header& header) {
+    constexpr float kFarthest = 1e9f;
+    const auto isFine = [&](size_t offset) { return std::abs(header.at<float>(offset)) < kFarthest; };
+    for (size_t offset = kPixdimOffset; offset < kPixdimOffset + 16; offset += 4)
+        if (!isFine(offset)) return false;
+    for (size_t offset = kQuaternOffset; offset < kSformEnd; offset += 4)
+        if (!isFine(offset)) return false;
+    return true;
+}
+
+double mmPerUnit(const Header& header) {
+    switch (header.at<int8_t>(kUnitsOffset) & 7) {
+        case 1:
+            return 1000;
+        case 3:
+            return 1e-3;
+        default:  // mm, or not said
+            return 1;
+    }
+}
+
+Eigen::Vector3i dimsOf(const Header& header) {
+    const int axes = header.at<int16_t>(kDimOffset);
+    Eigen::Vector3i dims = Eigen::Vector3i::Ones();
+    for (int a = 0; a < std::min(axes, 3); ++a) dims[a] = header.at<int16_t>(kDimOffset + 2 + 2 * size_t(a));
+    return dims;
+}
+
+// The columns of the matrix are a step along each index axis. The first two axes of
+// NIfTI (N) point to the right and to the front, those of LPS to the left and the back.
+FileFrame frameOf(const Header& header, const Eigen::Matrix3d& step_N, const Eigen::Vector3d& origin_N) {
+    const Eigen::Vector3d to_LPS = mmPerUnit(header) * Eigen::Vector3d(-1, -1, 1);
+    const Eigen::Matrix3d step = to_LPS.asDiagonal() * step_N;
+    FileFrame frame{.dims = dimsOf(header),
+                    .spacing_mm = step.colwise().norm(),
+                    .directions = step,
+                    .origin_mm = to_LPS.cwiseProduct(origin_N)};
+    for (int a = 0; a < 3; ++a)
+        if (frame.spacing_mm[a] > 0) frame.directions.col(a) /= frame.spacing_mm[a];
+    return frame;
+}
+
+FileFrame sformOf(const Header& header) {
+    Eigen::Matrix3d step;
+    Eigen::Vector3d origin;
+    for (int row = 0; row < 3; ++row) {
+        const size_t at = kSrowOffset + 16 * size_t(row);
+        for (int a = 0; a < 3; ++a) step(row, a) = header.at<float>(at + 4 * size_t(a));
+        origin[row] = header.at<float>(at + 12);
+    }
+    return frameOf(header, step, origin);
+}
+
+FileFrame qformOf(const Header& header) {
+    const auto number = [&](size_t offset) { return double(header.at<float>(offset)); };
+    const double b = number(kQuaternOffset), c = number(kQuaternOffset + 4), d = number(kQuaternOffset + 8);
+    const double a = std::sqrt(std::max(0.0, 1 - b * b - c * c - d * d));
+    Eigen::Matrix3d step = Eigen::Quaterniond(a, b, c, d).normalized().toRotationMatrix();
+    for (int axis = 0; axis < 3; ++axis) step.col(axis) *= number(kPixdimOffset + 4 + 4 * size_t(axis));
+    if (number(kPixdimOffset) < 0) step.col(2) = -step.col(2);  // qfac
+    return frameOf(header, step,
+                   {number(kQoffsetOffset), number(kQoffsetOffset + 4), number(kQoffsetOffset + 8)});
+}
+
+// How far one voxel may lie from itself.
+double distanceMm(const FileFrame& a, const FileFrame& b) {
+    double most = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        Eigen::Vector3d index;
+        for (int axis = 0; axis < 3; ++axis) index[axis] = corner >> axis & 1 ? a.dims[axis] - 1 : 0;
+        const auto place = [&](const FileFrame& frame) -> Eigen::Vector3d {
+            return frame.origin_mm + frame.directions * frame.spacing_mm.cwiseProduct(index);
+        };
+        most = std::max(most, (place(a) - place(b)).norm());
+    }
+    return most;
+}
+
+void takeFrame(const Header& header, NiftiHeader& out) {
+    const bool has_sform = header.at<int16_t>(kSformCodeOffset) > 0;
+    const bool has_qform = header.at<int16_t>(kQformCodeOffset) > 0;
+    out.has_patient_space = has_sform || has_qform;
+    if (has_sform)
+        out.frame = sformOf(header);
+    else if (has_qform)
+        out.frame = qformOf(header);
+    if (!has_sform || !has_qform) return;
+    const double apart_mm = distanceMm(*out.frame, qformOf(header));
+    if (apart_mm <= kSameFormMm) return;
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        "its sform and qform place voxels up to %.1f mm apart: the sform is taken, as the standard says",
+        apart_mm);
+    out.remark = text;
+}
+
+// A slope of 0 means that nothing is scaled, but the library adds the intercept even so; a slope that it
+// finds too small it takes for 1.
+void checkScale(const Header& header, const std::string& file) {
+    constexpr float kLeastSlope = 1e-15f;
+    const float slope = header.at<float>(kSlopeOffset), intercept = header.at<float>(kInterceptOffset);
+    if (!std::isfinite(slope) || !std::isfinite(intercept))
+        throw UserError(
+            file +
+            ": its NIfTI header scales values by no number (scl_slope, scl_inter); write the file anew");
+    if ((slope == 0 && intercept != 0) || (slope != 0 && std::abs(slope) < kLeastSlope))
+        throw UserError(file + ": its NIfTI header has a scl_inter without a scl_slope to go with it; set " +
+                        "scl_slope to 1, or scl_inter to 0");
+}
+
+// The library takes their absolute values or 1 where there is no sform, and gives up where there is one.
+void checkVoxelSize(const Header& header, const std::string& file) {
+    for (size_t a = 1; a <= std::min<size_t>(size_t(header.at<int16_t>(kDimOffset)), 3); ++a)
+        if (!(header.at<float>(kPixdimOffset + 4 * a) > 0))
+            throw UserError(file + ": its NIfTI header states a voxel size (pixdim) that is not above 0; " +
+                            "write it in mm");
+}
+
+}  // namespace
+
+NiftiHeader readNiftiHeader(const std::filesystem::path& path) {
+    const Header header(path);
+    const std::string file = path.string();
+    if (!header.isComplete())
+        throw UserError(file + ": is too short (or its gzip is too damaged) for a NIfTI file");
+    if (header.at<int32_t>(0) == kNifti2HeaderBytes)
+        throw UserError(file + ": is NIfTI-2; convert it to NIfTI-1");
+    if (header.at<int32_t>(0) != int32_t(kHeaderBytes) || header.magic() != "n+1")
+        throw UserError(file + ": is not a single-file NIfTI-1 volume");
+    const int axes = header.at<int16_t>(kDimOffset);
+    bool dims_ok = axes >= 1 && axes <= 7;
+    for (int a = 1; dims_ok && a <= axes; ++a) dims_ok = header.at<int16_t>(kDimOffset + 2 * size_t(a)) > 0;
+    if (!dims_ok)
+        throw UserError(file + ": its NIfTI header states impossible dimensions; the file is damaged");
+    if (!isGeometryFinite(header))
+        throw UserError(file + ": its NIfTI header holds positions that are no numbers; the file is damaged");
+    const float data_offset = header.at<float>(kVoxOffsetOffset);
+    if (!(data_offset >= float(kHeaderBytes) && double(data_offset) < kMaxExtensionBytes))
+        throw UserError(file +
+                        ": its NIfTI header puts the voxels at an impossible place; the file is damaged");
+    checkScale(header, file);
+    checkVoxelSize(header, file);
+    const int bits = header.at<int16_t>(kBitpixOffset);
+    if (bits <= 0 || bits % 8 != 0)
+        throw UserError(file + ": its NIfTI header states " + std::to_string(bits) +
+                        " bits per voxel; whole bytes are needed");
+    NiftiHeader out{.data_offset = uint64_t(data_offset),
+                    .bytes_per_voxel = uint64_t(bits / 8),
+                    .has_patient_space = false,
+                    .frame = {},
+                    .remark = {}};
+    takeFrame(header, out);
+    return out;
+}
+
+}  // namespace bonemill

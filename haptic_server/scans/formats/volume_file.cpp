@@ -1,0 +1,163 @@
+#include "haptic_server/scans/formats/volume_file.h"
+
+#include <optional>
+
+#include "common/base/user_error.h"
+#include "common/files/require_file.h"
+#include "haptic_server/scans/confined/import_limits.h"
+#include "haptic_server/scans/formats/image_stack.h"
+#include "haptic_server/scans/formats/meta_image_header.h"
+#include "haptic_server/scans/formats/nifti_header.h"
+#include "haptic_server/scans/formats/stored_bytes.h"
+#include "haptic_server/scans/nrrd/nrrd_header.h"
+#include "haptic_server/scans/pixels/itk_image_file.h"
+#include "haptic_server/scans/pixels/physical_frame.h"
+
+namespace bonemill {
+namespace {
+
+struct FileFacts {
+    std::string format;
+    StoredData data;
+    double mm_per_unit = 1;
+    bool has_patient_space = true;
+    bool has_spacing = true;              // libraries take 1 mm where it is not said
+    uint64_t stored_bytes_per_voxel = 0;  // 0: as many as the library's
+    std::optional<FileFrame> frame;       // nothing: the library's
+    std::string remark;
+    NrrdSegments segments = {};
+    std::optional<Eigen::Vector3d> spacing_mm = {};  // what the scene says of it
+};
+
+// Axes of one voxel beyond the third do not make it less of a volume.
+std::vector<uint64_t> volumeDims(std::vector<uint64_t> dims) {
+    while (dims.size() > 3 && dims.back() == 1) dims.pop_back();
+    return dims;
+}
+
+FileFrame frameOf(const ItkImageHeader& header, double mm_per_unit) {
+    FileFrame frame;
+    for (int a = 0; a < 3; ++a) {
+        frame.dims[a] = int(header.dims[size_t(a)]);
+        frame.spacing_mm[a] = header.spacing[size_t(a)] * mm_per_unit;
+        frame.origin_mm[a] = header.origin[size_t(a)] * mm_per_unit;
+        frame.directions.col(a) = Eigen::Vector3d(header.axis[size_t(a)].data());
+    }
+    return frame;
+}
+
+std::string segmentRemark(const Segments& segments) {
+    if (segments.list.empty()) return {};
+    return ", " + std::to_string(segments.list.size()) + " segments" +
+           (segments.are_layered ? " in layers" : "");
+}
+
+void requireSpacing(ItkFormat format, const FileFacts& facts, const std::string& file) {
+    if (facts.has_spacing && facts.spacing_mm)
+        throw UserError(file + ": says the voxels' size itself; leave volume.spacing_mm out");
+    if (facts.spacing_mm) return checkSpacing(*facts.spacing_mm, file);
+    if (!facts.has_spacing)
+        throw UserError(
+            file +
+            ": says nothing of the voxels' size; write volume.spacing_mm, or write it into the header in mm "
+            "(" +
+            (format == ItkFormat::kNrrd ? "spacings or space directions" : "ElementSpacing = X Y Z") + ")");
+}
+
+FileFrame frameFor(const FileFacts& facts, const ItkImageHeader& header) {
+    FileFrame frame = facts.frame.value_or(frameOf(header, facts.mm_per_unit));
+    if (facts.spacing_mm) frame.spacing_mm = *facts.spacing_mm;
+    return frame;
+}
+
+RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const FileFacts& facts) {
+    const std::string file = path.string();
+    requireFile(facts.data.file);  // The library opens it with the header.
+    ItkImageFile image(format, path);
+    const ItkImageHeader& header = image.header();
+    if (header.components != 1 && (facts.segments.empty() || header.components > kMostSegments))
+        throw UserError(file + ": has " + std::to_string(header.components) +
+                        " values per voxel (colour or vectors); one number per voxel is needed");
+    const std::vector<uint64_t> dims = volumeDims(header.dims);
+    const uint64_t copies = format == ItkFormat::kNifti ? 2 : 1;  // its library fills a buffer of its own
+    const uint64_t layers = header.components;
+    checkVolumeSize(dims, copies * layers * header.bytes_per_voxel, file);
+    requireSpacing(format, facts, file);
+    const uint64_t voxels = dims[0] * dims[1] * dims[2];
+    const uint64_t stored = facts.stored_bytes_per_voxel;
+    const uint64_t needed = layers * voxels * (stored > 0 ? stored : header.bytes_per_voxel);
+    checkStoredBytes(needed, countStoredBytes(facts.data, needed), file);
+    RawVolume raw;
+    raw.values.reserve(size_t(layers * voxels));
+    image.appendValues(raw.values);
+    if (!facts.segments.empty())
+        raw.segments = joinLayers(facts.segments, uint32_t(layers), raw.values, file);
+    const bool flipped = makeRightHanded(frameFor(facts, header), file, raw.geometry, raw.values);
+    raw.lacks_patient_axes = !facts.has_patient_space;
+    raw.description = facts.format + (flipped ? ", left-handed: third axis reversed" : "") +
+                      (facts.remark.empty() ? "" : ", " + facts.remark) + segmentRemark(raw.segments);
+    return raw;
+}
+
+using Packing = StoredData::Packing;
+
+}  // namespace
+
+RawVolume importNrrd(const std::filesystem::path& path, const std::optional<Eigen::Vector3d>& spacing_mm) {
+    const NrrdHeader header = readNrrdHeader(path);
+    if (namesSeveralFiles(header.data_file))
+        throw UserError(path.string() + ": spreads its voxels over several files (data file: " +
+                        header.data_file + "); write them into one");
+    FileFacts facts{.format = "NRRD",
+                    .data = StoredData{path, header.bytes},
+                    .mm_per_unit = header.mm_per_unit,
+                    .has_patient_space = header.has_patient_space,
+                    .has_spacing = header.has_spacing,
+                    .frame = {},
+                    .remark = {},
+                    .segments = header.segments,
+                    .spacing_mm = spacing_mm};
+    if (!header.data_file.empty()) facts.data = StoredData{path.parent_path() / header.data_file};
+    // ITK's NRRD library finds short gzip data itself.
+    if (header.encoding != "raw") facts.data.packing = Packing::kOther;
+    RawVolume raw = readThrough(ItkFormat::kNrrd, path, facts);
+    if (header.exact_geometry && isSameGeometry(*header.exact_geometry, raw.geometry))
+        raw.geometry = *header.exact_geometry;
+    return raw;
+}
+
+RawVolume importNifti(const std::filesystem::path& path) {
+    const NiftiHeader header = readNiftiHeader(path);
+    FileFacts facts{.format = "NIfTI",
+                    .data = StoredData{path, header.data_offset},
+                    .has_patient_space = header.has_patient_space,
+                    .stored_bytes_per_voxel = header.bytes_per_voxel,
+                    .frame = header.frame,
+                    .remark = header.remark};
+    if (path.extension() == ".gz") facts.data = StoredData{path, 0, Packing::kDeflate, 0, header.data_offset};
+    if (header.frame) checkFrame(*header.frame, path.string());
+    return readThrough(ItkFormat::kNifti, path, facts);
+}
+
+RawVolume importMetaImage(const std::filesystem::path& path,
+                          const std::optional<Eigen::Vector3d>& spacing_mm) {
+    const MetaImageHeader header = readMetaImageHeader(path);
+    FileFacts facts{.format = "MetaImage",
+                    .data = StoredData{path, header.bytes},
+                    .mm_per_unit = header.mm_per_unit,
+                    .has_patient_space = header.has_patient_space,
+                    .has_spacing = header.has_spacing,
+                    .frame = {},
+                    .remark = {},
+                    .spacing_mm = spacing_mm};
+    if (!header.data_file.empty()) facts.data = StoredData{path.parent_path() / header.data_file};
+    if (header.is_compressed) {
+        checkStoredBytes(header.packed_bytes, countStoredBytes(facts.data, header.packed_bytes),
+                         path.string());
+        facts.data.packing = Packing::kDeflate;
+        facts.data.packed_bytes = header.packed_bytes;
+    }
+    return readThrough(ItkFormat::kMetaImage, path, facts);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,45 @@
+// Reads a scanned volume from any format we accept; the one entrance for files of bone.
+//
+//   folder                DICOM series (docs/teach/volumes.md: how a series is chosen, ordered and checked)
+//   .nrrd .nhdr           NRRD, attached or detached, raw/gzip/text, either byte order
+//   .nii .nii.gz          NIfTI-1
+//   .mha .mhd             MetaImage
+//   .inv3                 InVesalius project
+//   .dcm, any DICOM file  a multi-frame file; of a single slice its series, of a DICOMDIR its folder
+//   folder                PNG or TIFF images, one of each slice
+//   .stl .ply             closed surface
+//
+// Lengths in m, world frame W = LPS of the file (x to the patient's left, y back, z up). Start-up
+// only: allocates, and starts a process that reads (guarded_import.h, import_program.h); not RT-safe, not for
+// two threads at once.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "haptic_server/core/volume/raw_volume.h"
+
+namespace bonemill {
+
+struct ImportOptions {
+    std::string series_uid = {};   // which DICOM series of the folder; empty: by rule (dicom_series.h)
+    std::string acquisition = {};  // which of its stacks, as listSeries() names them; empty: by rule
+    std::optional<double> surface_voxel_mm = {};     // of a surface's voxels; default: its longest edge / 128
+    double surface_value = 1000;                     // of voxels inside of a surface
+    std::optional<Eigen::Vector3d> spacing_mm = {};  // of voxels whose file or folder does not say it
+};
+
+// Throws UserError with one message: what is wrong, in which file, what to do.
+RawVolume importVolume(const std::filesystem::path& path, const ImportOptions& options = {});
+
+// Does the same in this process: for debuggers and sanitizers. A damaged DICOM file may abort it.
+RawVolume importVolumeHere(const std::filesystem::path& path, const ImportOptions& options = {});
+
+// A table of the DICOM stacks in a folder, and which of them to take for bone: printable lines. Throws
+// UserError.
+std::vector<std::string> listSeries(const std::filesystem::path& path);
+std::vector<std::string> listSeriesHere(const std::filesystem::path& path);
+
+}  // namespace bonemill

@@ -1,0 +1,101 @@
+#include "haptic_server/scans/labels/segment_text.h"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "common/base/user_error.h"
+#include "haptic_server/scans/labels/material_ids.h"
+
+namespace bonemill {
+namespace {
+
+constexpr const char* kLayered = "layered";
+constexpr const char* kSingle = "single";
+
+std::optional<Eigen::Vector3d> colorFromText(const std::string& text) {
+    if (text == "-") return std::nullopt;
+    std::istringstream words(text);
+    Eigen::Vector3d color;
+    for (double& part : color)
+        if (!(words >> part) || !(part >= 0 && part <= 1)) throw std::length_error("colour");
+    return color;
+}
+
+std::vector<uint32_t> labelsFromText(const std::string& text) {
+    std::istringstream words(text);
+    std::vector<uint32_t> labels;
+    for (uint32_t label; words >> label;) {
+        if (label > kMostLabel || (!labels.empty() && label <= labels.back()))
+            throw std::length_error("labels");
+        labels.push_back(label);
+    }
+    if (!words.eof()) throw std::length_error("labels");
+    return labels;
+}
+
+std::string namesOf(const Segments& segments) {
+    constexpr size_t kMostNames = 40;
+    std::string names;
+    for (size_t n = 0; n < std::min(segments.list.size(), kMostNames); ++n)
+        names += (n == 0 ? "" : ", ") + segments.list[n].name;
+    return segments.list.size() > kMostNames ? names + ", ..." : names;
+}
+
+}  // namespace
+
+bool isSegmentName(const std::string& name) {
+    return !name.empty() && name.size() <= kLongestSegmentName &&
+           std::ranges::none_of(name, [](unsigned char c) { return c < ' ' || c == 0x7f; });
+}
+
+std::string textOfSegments(const Segments& segments) {
+    if (segments.list.empty()) return {};
+    std::ostringstream text;
+    text << (segments.are_layered ? kLayered : kSingle) << '\n';
+    for (const Segment& segment : segments.list) {
+        text << segment.name << '\n';
+        if (segment.color)
+            text << segment.color->transpose();
+        else
+            text << '-';
+        text << '\n';
+        for (const uint32_t label : segment.labels) text << label << ' ';
+        text << '\n';
+    }
+    return text.str();
+}
+
+Segments segmentsFromText(const std::string& text) {
+    Segments segments;
+    std::istringstream lines(text);
+    std::string line, color, labels;
+    if (!std::getline(lines, line)) return segments;
+    if (line != kLayered && line != kSingle) throw std::length_error("layers");
+    segments.are_layered = line == kLayered;
+    while (std::getline(lines, line)) {
+        if (!isSegmentName(line) || segments.list.size() == kMostSegments || !std::getline(lines, color) ||
+            !std::getline(lines, labels))
+            throw std::length_error("segments");
+        segments.list.push_back({line, colorFromText(color), labelsFromText(labels)});
+    }
+    return segments;
+}
+
+std::vector<uint32_t> labelsOfSegment(const Segments& segments, const std::string& name,
+                                      const std::string& file) {
+    if (segments.list.empty())
+        throw UserError(file + ": names no segments; give label numbers, or a .seg.nrrd or DICOM SEG");
+    std::vector<uint32_t> labels;
+    bool is_there = false;
+    for (const Segment& segment : segments.list) {
+        if (segment.name != name) continue;
+        is_there = true;
+        labels.insert(labels.end(), segment.labels.begin(), segment.labels.end());
+    }
+    if (!is_there)
+        throw UserError(file + ": has no segment \"" + name + "\"; there are: " + namesOf(segments));
+    return labels;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,39 @@
+// Our own reading of a NRRD header adds this to ITK's: units, where the data are, and our exact geometry.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "haptic_server/core/volume/raw_volume.h"
+#include "haptic_server/scans/nrrd/nrrd_segments.h"
+
+namespace bonemill {
+
+struct NrrdHeader {
+    uint64_t bytes = 0;                            // length of the header; attached data begin here
+    std::string encoding;                          // "raw", "gzip", "ascii", ...
+    std::string data_file;                         // empty: attached
+    double mm_per_unit = 1;                        // from "space units", else from "units" of the axes
+    bool has_spacing = false;                      // says something of the voxels' size
+    bool has_patient_space = false;                // its "space" names the patient's sides
+    std::optional<VolumeGeometry> exact_geometry;  // from nrrd_writer.h
+    NrrdSegments segments;                         // of a label map
+};
+
+// Reads at most 1 MiB. Throws UserError when it is no NRRD file, or its units or directions are not lengths,
+// or its units differ from axis to axis.
+NrrdHeader readNrrdHeader(const std::filesystem::path& path);
+
+inline constexpr const char* kNrrdGeometryKey = "bonemill geometry";
+
+// The text is "nx ny nz sx sy sz px py pz qw qx qy qz": voxels, then hexadecimal floats in m.
+std::string geometryToText(const VolumeGeometry& geometry);
+// Nothing when that is no geometry, such as one with a spacing that is not above 0.
+std::optional<VolumeGeometry> geometryFromText(const std::string& text);
+
+// Are these the same voxels at the same places, within the rounding of decimal text?
+bool isSameGeometry(const VolumeGeometry& a, const VolumeGeometry& b);
+
+}  // namespace bonemill

@@ -1,0 +1,30 @@
+// Writes volumes as attached NRRD (NRRD0004, little endian), in LPS and mm as every viewer expects.
+//
+// A key/value line "bonemill geometry" repeats the geometry as hexadecimal floats, because decimal mm cannot
+// bring back every double of m; importVolume uses it as long as it agrees with the standard fields, so that
+// the geometry of our own files returns bit for bit. It is not RT-safe. Throws UserError when the file
+// cannot be written.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+#include "haptic_server/core/volume/voxel_volume.h"
+#include "haptic_server/scans/nrrd/nrrd_stream.h"
+
+namespace bonemill {
+
+// `values` are x fastest, exactly geometry.voxelCount() of them.
+void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,
+               std::span<const uint8_t> values, NrrdEncoding encoding = NrrdEncoding::kGzip);
+void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,
+               std::span<const uint16_t> values, NrrdEncoding encoding = NrrdEncoding::kGzip);
+void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,
+               std::span<const float> values, NrrdEncoding encoding = NrrdEncoding::kGzip);
+
+// Writes the densities (counts, 16 bit) without the border of air.
+void writeNrrd(const std::filesystem::path& path, const VoxelVolume& volume,
+               NrrdEncoding encoding = NrrdEncoding::kGzip);
+
+}  // namespace bonemill

@@ -1,0 +1,58 @@
+#include "haptic_server/scans/pixels/dicom_rescale.h"
+
+#include <cmath>
+#include <vector>
+
+#include "common/base/user_error.h"
+#include "haptic_server/scans/pixels/decimal_numbers.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kMostRounded = 0.25;  // of a stored value, which is a whole number
+
+double scaleNumber(const std::string& text, double fallback, const char* what, const std::string& image) {
+    if (text.empty()) return fallback;
+    const auto numbers = decimalNumbers(text);
+    if (!numbers || numbers->size() != 1)
+        throw UserError(image + ": its " + what + " \"" + text + "\" is no number; the header is damaged");
+    return numbers->front();
+}
+
+}  // namespace
+
+std::optional<DicomRescale> rescaleFromTexts(const std::string& slope, const std::string& intercept,
+                                             const std::string& image) {
+    if (slope.empty() && intercept.empty()) return std::nullopt;
+    const DicomRescale rescale{scaleNumber(slope, 1, "Rescale Slope", image),
+                               scaleNumber(intercept, 0, "Rescale Intercept", image)};
+    if (rescale.slope == 0)
+        throw UserError(image + ": its Rescale Slope is 0, which makes all values the same; export it anew");
+    return rescale;
+}
+
+template <class T>
+bool appendRescaled(std::span<const T> samples, const DicomRescale& applied, const DicomRescale& wanted,
+                    RawValues& values) {
+    if (wanted == applied) {
+        values.append(samples);
+        return true;
+    }
+    std::vector<float> scaled;
+    scaled.reserve(samples.size());
+    for (const T sample : samples) {
+        const double share = (double(sample) - applied.intercept) / applied.slope;
+        const double stored = std::nearbyint(share);
+        if (!(std::abs(share - stored) <= kMostRounded)) return false;
+        scaled.push_back(float(wanted.slope * stored + wanted.intercept));
+    }
+    values.append(std::span<const float>(scaled));
+    return true;
+}
+
+template bool appendRescaled(std::span<const uint8_t>, const DicomRescale&, const DicomRescale&, RawValues&);
+template bool appendRescaled(std::span<const int16_t>, const DicomRescale&, const DicomRescale&, RawValues&);
+template bool appendRescaled(std::span<const uint16_t>, const DicomRescale&, const DicomRescale&, RawValues&);
+template bool appendRescaled(std::span<const float>, const DicomRescale&, const DicomRescale&, RawValues&);
+
+}  // namespace bonemill

@@ -1,0 +1,32 @@
+// How a DICOM image's stored values become what they mean (HU for CT): slope * stored + intercept.
+//
+// There is no Eigen in here: ITK's sources include it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "haptic_server/core/volume/raw_values.h"
+
+namespace bonemill {
+
+struct DicomRescale {
+    double slope = 1;
+    double intercept = 0;
+    bool operator==(const DicomRescale&) const = default;
+};
+
+// Of the texts of Rescale Slope and Intercept; nothing when both are empty. Throws UserError naming `image`
+// when one of them is no number, or the slope is 0.
+std::optional<DicomRescale> rescaleFromTexts(const std::string& slope, const std::string& intercept,
+                                             const std::string& image);
+
+// Appends samples that the library has scaled by `applied` as `wanted` would have scaled them. It is false
+// when their rounding does not let the stored values be found again. T is any type of RawValues::Samples.
+template <class T>
+bool appendRescaled(std::span<const T> samples, const DicomRescale& applied, const DicomRescale& wanted,
+                    RawValues& values);
+
+}  // namespace bonemill

@@ -1,0 +1,166 @@
+#include "haptic_server/scans/solid_mesh/mesh_file.h"
+
+#include <assimp/BaseImporter.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cctype>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+#include "common/base/units.h"
+#include "common/base/user_error.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kMetresPerFileUnit = kMillimetre;
+constexpr uintmax_t kLargestFile = uintmax_t(512) << 20;  // 10 million binary STL triangles
+
+constexpr size_t kStlHeader = 80;
+constexpr size_t kStlTriangle = 50;
+
+std::string lowerExtension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return extension.empty() ? extension : extension.substr(1);
+}
+
+std::string filesOf(const SolidKind& kind) {
+    return std::string("an .") + kind.extension[0] + " or ." + kind.extension[1] + " file";
+}
+
+std::string readBytes(const std::filesystem::path& path, const SolidKind& kind) {
+    const std::string name = path.string();
+    std::error_code error;
+    if (!std::filesystem::exists(path, error))
+        throw UserError(name + ": there is no such mesh file; check the path of the " + kind.name);
+    if (!std::filesystem::is_regular_file(path, error))
+        throw UserError(name + ": not a file; name " + filesOf(kind));
+    const uintmax_t size = std::filesystem::file_size(path, error);
+    if (error || size > kLargestFile)
+        throw UserError(name + ": too large for a " + kind.name + "; simplify the mesh below 512 MiB");
+    if (size == 0) throw UserError(name + ": the file is empty; export the " + kind.name + "'s mesh again");
+    std::string bytes(size, '\0');
+    std::ifstream file(path, std::ios::binary);
+    if (!file.read(bytes.data(), std::streamsize(size)))
+        throw UserError(name + ": cannot be read; check its permissions");
+    return bytes;
+}
+
+// Binary STL may start with "solid" too: then its length still tells.
+bool isTextStl(std::string_view bytes) {
+    return bytes.substr(0, 5) == "solid" && bytes.substr(0, 4096).find('\0') == std::string_view::npos;
+}
+
+// A binary STL says how long it must be; the loader's own check knows nothing better to say
+// than "cannot determine".
+void checkBinaryStl(std::string_view bytes, const std::string& name) {
+    if (bytes.size() < kStlHeader + sizeof(uint32_t))
+        throw UserError(name +
+                        ": not an STL file: neither text starting with \"solid\" nor long enough for binary");
+    uint32_t count = 0;
+    std::memcpy(&count, bytes.data() + kStlHeader, sizeof count);
+    const uint64_t needed = kStlHeader + sizeof count + uint64_t(count) * kStlTriangle;
+    if (needed != bytes.size())
+        throw UserError(name + ": damaged or not an STL file: its header announces " + std::to_string(count) +
+                        " triangles, which take " + std::to_string(needed) + " bytes, but it has " +
+                        std::to_string(bytes.size()) + "; export it again");
+    if (count == 0) throw UserError(name + ": holds no triangles; export the surface as triangles");
+}
+
+// The loader goes on for ever where a header does not end, and believes any number of elements.
+void checkPly(std::string_view bytes, const std::string& name) {
+    constexpr size_t kLongestHeader = 1 << 16;
+    constexpr std::string_view kEnd = "\nend_header";
+    const size_t end = bytes.substr(0, kLongestHeader).find(kEnd);
+    if (!bytes.starts_with("ply") || end == std::string_view::npos)
+        throw UserError(name +
+                        ": not a PLY file, or cut short: its header does not start with \"ply\" and end "
+                        "with \"end_header\"; export it again");
+    std::istringstream lines{std::string(bytes.substr(0, end))};
+    const auto left = double(bytes.size() - end - kEnd.size());
+    double elements = 0;
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::string word, kind, count;
+        if (!(words >> word >> kind >> count) || word != "element") continue;
+        const double number = std::strtod(count.c_str(), nullptr);
+        elements += number >= 0 ? number : left + 1;
+    }
+    if (!(elements <= left))  // a byte each at least
+        throw UserError(name +
+                        ": damaged: its header announces more vertices and faces than the file can hold; "
+                        "export it again");
+}
+
+// Content must not choose one of the library's fifty other loaders.
+void keepOnlyLoader(Assimp::Importer& importer, const std::string& extension) {
+    for (size_t i = importer.GetImporterCount(); i-- > 0;) {
+        Assimp::BaseImporter* loader = importer.GetImporter(i);
+        const std::string_view extensions = loader->GetInfo()->mFileExtensions;
+        if (extensions == extension) continue;
+        importer.UnregisterLoader(loader);
+        delete loader;  // unregistering passes the ownership on
+    }
+}
+
+// The time that the library takes to cut up a face grows with the square of its corners, or faster.
+void checkFaces(const aiScene& scene, const std::string& name) {
+    constexpr unsigned kMostCorners = 1000;
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m)
+        for (unsigned f = 0; f < scene.mMeshes[m]->mNumFaces; ++f)
+            if (const unsigned corners = scene.mMeshes[m]->mFaces[f].mNumIndices; corners > kMostCorners)
+                throw UserError(name + ": has a face of " + std::to_string(corners) + " corners, more than " +
+                                std::to_string(kMostCorners) + "; export the surface as triangles");
+}
+
+std::vector<Eigen::Vector3d> cornersOf(const aiScene& scene) {
+    std::vector<Eigen::Vector3d> corners;
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+        const aiMesh& mesh = *scene.mMeshes[m];
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            const aiFace& face = mesh.mFaces[f];
+            if (face.mNumIndices != 3) continue;
+            for (int c = 0; c < 3; ++c) {
+                const aiVector3D& v = mesh.mVertices[face.mIndices[c]];
+                corners.push_back(kMetresPerFileUnit * Eigen::Vector3d(v.x, v.y, v.z));
+            }
+        }
+    }
+    return corners;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> readMeshFile(const std::filesystem::path& path, const SolidKind& kind) {
+    const std::string name = path.string();
+    const std::string extension = lowerExtension(path);
+    if (extension != kind.extension[0] && extension != kind.extension[1])
+        throw UserError(name + ": a " + kind.name + "'s mesh is " + filesOf(kind) +
+                        "; convert it to one of them");
+    const std::string bytes = readBytes(path, kind);
+    if (extension == "stl" && !isTextStl(bytes)) checkBinaryStl(bytes, name);
+
+    if (extension == "ply") checkPly(bytes, name);
+    Assimp::Importer importer;
+    keepOnlyLoader(importer, extension);
+    const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, extension.c_str());
+    if (scene != nullptr) {
+        checkFaces(*scene, name);
+        scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
+    }
+    if (scene == nullptr)
+        throw UserError(name + ": cannot be read as ." + extension + ": " + importer.GetErrorString() +
+                        "; export the mesh again");
+    return cornersOf(*scene);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,172 @@
+#include "haptic_server/scene/setup/scene_materials.h"
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+#include "common/base/units.h"
+#include "common/base/user_error.h"
+#include "common/config/scene_tools.h"
+#include "haptic_server/assessment/measures/force_meter.h"
+#include "haptic_server/scans/analysis/volume_text.h"
+#include "haptic_server/scans/densify/protected_distance.h"
+#include "haptic_server/scans/densify/resample_labels.h"
+#include "haptic_server/scans/import/import_volume.h"
+#include "haptic_server/scans/labels/material_ids.h"
+#include "haptic_server/scans/labels/segment_text.h"
+#include "haptic_server/scene/setup/refuse_field.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kBeyondWarning = kMillimetre;  // m: so much farther a structure is still seen, and named
+
+MaterialRule ruleOf(const scene::Material& material) {
+    MaterialRule rule;
+    rule.has_range = material.has_from_value() || material.has_below_value();
+    if (material.has_from_value()) rule.from = material.from_value();
+    if (material.has_below_value()) rule.below = material.below_value();
+    rule.labels.assign(material.label().begin(), material.label().end());
+    return rule;
+}
+
+std::optional<Eigen::Vector3d> colorOfSegment(const Segments& segments, const scene::Material& material) {
+    for (const std::string& name : material.segment())
+        for (const Segment& segment : segments.list)
+            if (segment.name == name && segment.color) return segment.color;
+    return std::nullopt;
+}
+
+// Adds the labels of the segments that the materials name.
+void findSegments(const LoadedScene& loaded, const Segments& segments, std::vector<MaterialRule>& rules) {
+    const std::string& file = loaded.scene.volume().label_path();
+    for (int n = 0; n < loaded.scene.material_size(); ++n) {
+        const scene::Material& material = loaded.scene.material(n);
+        const std::string path = "material[" + std::to_string(n) + "]";
+        if (segments.are_layered && material.label_size() > 0)
+            refuseField(loaded, path + ".label[0]",
+                        ": the labels of " + file + " lie in several layers; name its segments instead");
+        for (int s = 0; s < material.segment_size(); ++s) {
+            try {
+                const auto labels = labelsOfSegment(segments, material.segment(s), file);
+                rules[size_t(n)].labels.insert(rules[size_t(n)].labels.end(), labels.begin(), labels.end());
+            } catch (const UserError& error) {
+                refuseField(loaded, path + ".segment[" + std::to_string(s) + "]",
+                            std::string(": ") + error.what());
+            }
+        }
+    }
+}
+
+// Throws UserError that names the field.
+RawVolume importLabels(const LoadedScene& loaded) {
+    try {
+        return importVolume(resolvePath(loaded, loaded.scene.volume().label_path()));
+    } catch (const UserError& error) {
+        refuseField(loaded, "volume.label_path", std::string(": ") + error.what());
+    }
+}
+
+// What is measured near structures (near.force) knows how near the burr was.
+double protectedReachOf(const scene::Scene& scene) {
+    const scene::Effects& effects = scene.effects();
+    double reach = DistanceBins::kLimits.back() * kPerMillimetre;
+    if (effects.has_protected_structures())
+        reach = std::max(reach, effects.protected_structures().warning_distance_mm());
+    if (effects.has_virtual_fixture()) reach = std::max(reach, effects.virtual_fixture().distance_mm());
+    double burr = 0;
+    for (const scene::Tool* tool : toolsOf(scene))
+        burr = std::max({burr, tool->burr_radius_mm(), tool->burr_tip_radius_mm()});
+    return (reach + burr) * kMillimetre + kBeyondWarning;
+}
+
+std::string textOf(const ResampledLabels& labels, const VolumeGeometry& file, const std::string& label_path) {
+    std::ostringstream text;
+    text.precision(3);
+    text << label_path << ": labels of " << edgesText(file.dims.cast<double>()) << " voxels of "
+         << edgesText(file.spacing * kPerMillimetre) << " mm, resampled; they cover " << 100 * labels.covered
+         << " % of the volume";
+    return text.str();
+}
+
+}  // namespace
+
+MaterialTable materialTableOf(const scene::Scene& scene) {
+    MaterialTable table;
+    if (scene.material_size() > 0) table.emplace_back();
+    for (const scene::Material& material : scene.material())
+        table.push_back({.stiffness_factor = material.stiffness_factor(),
+                         .specific_energy = material.specific_energy_j_per_mm3() * kPerCubicMillimetre,
+                         .is_protected = material.is_protected()});
+    return table;
+}
+
+std::vector<std::string> materialNamesOf(const scene::Scene& scene) {
+    std::vector<std::string> names;
+    for (const scene::Material& material : scene.material()) names.push_back(material.name());
+    return names;
+}
+
+bool wantsVertexMaterials(const scene::Scene& scene) {
+    return scene.effects().bleeding().material_size() > 0 ||
+           std::ranges::any_of(scene.material(), [](const scene::Material& m) { return m.has_color(); });
+}
+
+bool wantsProperties(const scene::Scene& scene) {
+    const scene::Effects& effects = scene.effects();
+    return scene.material_size() > 0 ||
+           (effects.has_energy_removal() && effects.energy_removal().density_exponent() > 0);
+}
+
+ScannedMaterials scannedMaterialsOf(const LoadedScene& loaded, const RawVolume& raw,
+                                    std::vector<std::string>& remarks) {
+    if (loaded.scene.material_size() == 0) return {};
+    std::vector<MaterialRule> rules;
+    for (const scene::Material& material : loaded.scene.material()) rules.push_back(ruleOf(material));
+    const std::string& label_path = loaded.scene.volume().label_path();
+    if (label_path.empty()) return {materialIds(raw, rules), {}};
+    const RawVolume file = importLabels(loaded);
+    findSegments(loaded, file.segments, rules);
+    ScannedMaterials materials;
+    for (const scene::Material& material : loaded.scene.material())
+        materials.segment_colors.push_back(colorOfSegment(file.segments, material));
+    try {
+        ResampledLabels labels = resampleLabels(file, rules, raw.geometry, label_path);
+        if (!labels.is_exact) remarks.push_back(textOf(labels, file.geometry, label_path));
+        materials.label_edge = file.geometry.spacing.minCoeff();
+        materials.ids = materialIds(raw, rules, std::move(labels.ids));
+        return materials;
+    } catch (const UserError& error) {
+        refuseField(loaded, "volume.label_path", std::string(": ") + error.what());
+    }
+}
+
+scene::Scene shownSceneOf(const scene::Scene& scene, const SegmentColors& colors) {
+    scene::Scene shown = scene;
+    for (size_t n = 0; n < colors.size(); ++n) {
+        scene::Material& material = *shown.mutable_material(int(n));
+        if (material.has_color() || !colors[n]) continue;
+        material.mutable_color()->set_red(colors[n]->x());
+        material.mutable_color()->set_green(colors[n]->y());
+        material.mutable_color()->set_blue(colors[n]->z());
+    }
+    return shown;
+}
+
+std::shared_ptr<const DistanceField> protectedFieldOf(const LoadedScene& loaded,
+                                                      const BoneProperties& properties,
+                                                      const Eigen::Vector3d& spacing) {
+    const scene::Effects& effects = loaded.scene.effects();
+    if (!effects.has_protected_structures() && !effects.has_virtual_fixture()) return nullptr;
+    std::shared_ptr<const DistanceField> field =
+        protectedDistance(properties, materialTableOf(loaded.scene), spacing, protectedReachOf(loaded.scene));
+    if (!field)
+        refuseField(
+            loaded,
+            effects.has_protected_structures() ? "effects.protected_structures" : "effects.virtual_fixture",
+            " finds nothing to protect: no voxel is of a material with is_protected; check its range or "
+            "labels");
+    return field;
+}
+
+}  // namespace bonemill

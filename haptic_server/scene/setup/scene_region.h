@@ -1,0 +1,39 @@
+// Gives the part of the scan that the scene names (volume.region) voxels that suit its burrs. It is for
+// start-up only.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/config/scene_file.h"
+#include "haptic_server/core/volume/index_box.h"
+#include "haptic_server/core/volume/surroundings.h"
+#include "haptic_server/scans/densify/densify.h"
+
+namespace bonemill {
+
+// The voxels of the scan that the scene's bone comes from; empty: its region lies elsewhere.
+IndexBox usedVoxels(const LoadedScene& loaded, const VolumeGeometry& scan);
+
+// Says it if walls of the scan, within the region if there is one, are too thin to become bone.
+void remarkThinWalls(const LoadedScene& loaded, const RawVolume& scan, double iso_value,
+                     std::vector<std::string>& remarks);
+
+// The scan without the pieces that the scene drops, cut in two. Needs a scene with a volume.region.
+struct CutScan {
+    RawVolume region;  // resampled
+    Surroundings surroundings;
+};
+// What was done, and why so finely, is added to the remarks. Throws UserError.
+CutScan cutRegion(const LoadedScene& loaded, RawVolume scan, const DensityMapping& mapping,
+                  std::vector<std::string>& remarks);
+
+// Of a scan this large the pieces are those of coarser voxels where there is a region, with numbers of their
+// own.
+bool hasCoarsePieces(const VolumeGeometry& scan);
+
+// Resampling leaves specks beside pieces that were dropped: what is smaller than a few of the scan's voxels
+// goes.
+void removeSpecks(VoxelVolume& region, const VolumeGeometry& scan);
+
+}  // namespace bonemill

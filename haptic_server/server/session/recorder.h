@@ -1,0 +1,123 @@
+// The recorder thread works with this: it empties the tick's ring into trace and statistics and keeps the
+// newest record at hand.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "common/rt/spsc_ring.h"
+#include "haptic_server/assessment/measures/technique.h"
+#include "haptic_server/assessment/product/breach_watch.h"
+#include "haptic_server/recording/journal/journal.h"
+#include "haptic_server/recording/statistics/event_sum.h"
+#include "haptic_server/recording/statistics/run_statistics.h"
+#include "haptic_server/recording/statistics/trace_writer.h"
+
+namespace bonemill {
+
+// Clients are shown this of the loop's health.
+struct LoopHealth {
+    uint64_t ticks = 0;
+    double rate_hz = 0;      // over the last full second
+    double tick_p50_us = 0;  // of the same second
+    double tick_p99_us = 0;
+    double tick_max_us = 0;
+    uint64_t dropped_ticks = 0;
+    uint32_t faults = 0;
+};
+
+// What the ticks of an attempt told; before the first one, those of the session.
+struct AttemptFigures {
+    double max_force = 0;  // N, of the wrench on the hand
+    EffectStatistics effects;
+    std::optional<double> breach = {};  // m beside the task's planned line; none without one
+};
+
+class Recorder {
+  public:
+    // `recorded` says what the records hold of effects; `breach` is there where the task has a planned line.
+    Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded = {},
+             std::optional<BreachWatch> breach = {});
+
+    // Before the first drain(), it begins a trace, which takes the place of the file that is there; an empty
+    // path is none. Throws UserError when it cannot be created.
+    void openTrace(const std::string& path);
+    // Likewise: all records go into the journal as well, which must outlive this.
+    void keepJournal(Journal* journal) { journal_ = journal; }
+    // The recorder thread takes what is in the ring, every few milliseconds.
+    void drain();
+    // Once the tick has ended this takes the rest and closes the trace. False: some of the trace is lost,
+    // because it could not be written or because the ring was full (statistics().lostRecords()).
+    bool finish();
+
+    // Any normal thread may ask.
+    std::optional<TickRecord> latest() const;
+    // It is the newest record, with what happened in all ticks since the call before.
+    struct Since {
+        TickRecord latest;
+        EventSum events;
+        double removed;  // m³
+    };
+    std::optional<Since> takeSince();
+    // These changes of the device are new since the call before.
+    std::vector<DeviceChange> takeDeviceChanges();
+    LoopHealth health() const;
+    // Any normal thread begins an attempt: its figures count from the first record on that says that this
+    // order to put the bone back is done. Then nothing is damaged or dead any more.
+    void beginAttempt(uint64_t bone_order);
+    AttemptFigures attempt() const;
+    // Before the first drain(): every attempt from now on is measured, too, by what this makes (not null).
+    using MakeTechnique = std::function<std::unique_ptr<Technique>()>;
+    void measureTechnique(MakeTechnique make) { make_technique_ = std::move(make); }
+    // Any normal thread ends the measuring of the attempt, and gets what was measured; null if it has not
+    // begun.
+    std::unique_ptr<Technique> takeTechnique();
+    // Any normal thread tells where the trainee's eye is, whenever it moves.
+    void setEye(const Eigen::Vector3d& p_eye_W);
+    // This is called before finish() and says what the tick thread's page faults were after its first second.
+    void setPageFaults(const PageFaults& faults) { statistics_.setPageFaults(faults); }
+    // The mesher thread says at its end how long the ticks' cuts waited for the publisher.
+    void setCutToPublisher(const LatencyHistogram& cut_to_publisher) {
+        statistics_.setCutToPublisher(cut_to_publisher);
+    }
+    // Whoever has joined the publisher thread calls this.
+    void setPublished(const PublishFigures& published) { statistics_.setPublished(published); }
+    // The statistics may be read after finish() only.
+    const RunStatistics& statistics() const { return statistics_; }
+
+  private:
+    void addToWindow(const TickRecord& record);
+    void takeUpAttempt();
+    void beginAsked();
+    bool isIncomplete() const;
+    void addToAttempt(const TickRecord& record);
+
+    SpscRing<TickRecord>& ring_;
+    RunStatistics statistics_;
+    RecordedEffects recorded_;
+    std::optional<TraceWriter> trace_;
+    bool is_trace_torn_ = false;
+    Journal* journal_ = nullptr;
+    LatencyHistogram window_;  // tick compute time in the second under way
+    int64_t window_start_ns_ = 0;
+    std::optional<BreachWatch> breach_;
+    AttemptFigures attempt_;
+    uint64_t bone_order_ = 0;  // the attempt's
+    MakeTechnique make_technique_;
+    std::mutex technique_mutex_;  // guards what is below; held for as long as a drain()
+    std::unique_ptr<Technique> technique_;
+    mutable std::mutex mutex_;  // guards what is below
+    std::optional<TickRecord> latest_;
+    EventSum new_events_;  // since takeSince()
+    double new_removed_ = 0;
+    std::vector<DeviceChange> new_device_changes_;  // since takeDeviceChanges()
+    LoopHealth health_;
+    AttemptFigures shown_attempt_;  // as of latest_
+    std::optional<Eigen::Vector3d> p_eye_W_;
+    std::optional<uint64_t> asked_bone_order_;  // by beginAttempt()
+};
+
+}  // namespace bonemill

@@ -1,0 +1,82 @@
+// Clients may ask this of a session, and the session says this of itself in return. All members belong to
+// the publisher thread.
+#pragma once
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/commands/order_limits.h"
+#include "haptic_server/core/bone/checkpoints.h"
+#include "haptic_server/core/tick/accuracy_switch.h"
+#include "haptic_server/core/tick/tool_switch.h"
+#include "haptic_server/scene/setup/scene_setup.h"
+#include "haptic_server/server/session/attempt_keeper.h"
+#include "haptic_server/server/session/journal_keeper.h"
+#include "haptic_server/server/session/recorder.h"
+#include "haptic_server/server/session/replay_orders.h"
+#include "haptic_server/server/session/session_export.h"
+#include "haptic_server/teaching/lessons/lesson_book.h"
+#include "haptic_server/teaching/lessons/remark_book.h"
+#include "proto/topics.pb.h"
+
+namespace bonemill {
+
+// The commands act on this; the tick takes each up by itself.
+struct SessionControls {
+    BoneHistory& history;
+    AccuracySwitch& accuracy;
+    ToolSwitch& tools;
+    std::atomic<bool>& stop_requested;
+    SessionExport& bone_export;
+    std::atomic<uint32_t>& reset_orders;  // counts the orders to reset the device
+    LessonBook& lesson;
+    AttemptKeeper& attempts;
+    OrderLimits& limits;
+    JournalKeeper& journal;
+    ReplayOrders* replay = nullptr;  // there where a recording is shown
+};
+
+class SessionCommands {
+  public:
+    // References must outlive this object. With `only_instructors` all others may only look.
+    SessionCommands(const scene::Scene& scene, const BoneModel& bone, const Recorder& recorder,
+                    const SessionControls& controls, bool only_instructors);
+
+    // The answer is "done" or "refused: <why>"; nothing means that the command has begun, and its end
+    // comes with takeResult().
+    std::optional<std::string> carryOut(const topics::Command& command);
+    // This is how the command that was begun has ended, once it has: "done" or "failed: <why>".
+    std::optional<std::string> takeResult() { return controls_.bone_export.takeResult(); }
+    void waitForResult() { controls_.bone_export.wait(); }
+    LessonBook& lesson() noexcept { return controls_.lesson; }
+    JournalKeeper& journal() noexcept { return controls_.journal; }
+    Checkpoints& checkpoints() noexcept { return checkpoints_; }
+    AttemptKeeper& attempts() noexcept { return controls_.attempts; }
+    RemarkBook& remarks() noexcept { return remarks_; }
+    // Fills in the session clock, the pause, the checkpoints and what the bone has lost.
+    void describe(topics::Status& status) const;
+    const ToolSwitch& tools() const noexcept { return controls_.tools; }
+    const AccuracySwitch& accuracy() const noexcept { return controls_.accuracy; }
+
+  private:
+    std::string refusalOf(const topics::Command& command) const;
+    std::optional<std::string> carryOutInReplay(const topics::Command& command);
+    std::string setAccuracy(const std::string& name);
+    std::string selectTool(uint32_t index);
+    std::string restore(uint32_t checkpoint);
+    double sessionS() const;
+
+    SessionControls controls_;
+    const Recorder& recorder_;
+    Checkpoints checkpoints_;
+    RemarkBook remarks_;
+    double voxel_mm3_;
+    bool is_switchable_;
+    const char* effect_of_gradient_law_;  // null: none
+    bool only_instructors_;
+    bool is_exam_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,132 @@
+#include "haptic_server/server/session/shown_effects.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/units.h"
+#include "common/config/viewer_effects.h"
+#include "haptic_server/core/effects/burr_probes.h"
+#include "haptic_server/scene/setup/scene_effects.h"
+
+namespace bonemill {
+namespace {
+
+constexpr size_t kMostWarnings = 32;  // in a status
+
+// The tick's bits go out as they are.
+static_assert(int(kEventSpindleStalled) == topics::EffectState::SPINDLE_STALLED);
+static_assert(int(kEventNearProtected) == topics::EffectState::NEAR_PROTECTED);
+static_assert(int(kEventProtectedTouched) == topics::EffectState::PROTECTED_TOUCHED);
+static_assert(int(kEventProtectedDamaged) == topics::EffectState::PROTECTED_DAMAGED);
+static_assert(int(kEventTooHot) == topics::EffectState::TOO_HOT);
+
+// A client drops a state with a number that is none.
+double finite(float value) {
+    return std::isfinite(value) ? double(value) : 0;
+}
+
+// Returns those that are the viewer's alone.
+scene::Effects viewerEffectsOf(scene::Effects effects) {
+    keepViewerEffects(effects);
+    return effects;
+}
+
+bool isAnyListed(const scene::Effects& effects) {
+    return effects.ByteSizeLong() > 0;
+}
+
+}  // namespace
+
+void describeToViewers(const scene::Scene& scene, topics::SceneInfo& info) {
+    const scene::Effects effects = viewerEffectsOf(scene.effects());
+    if (isAnyListed(effects)) *info.mutable_viewer_effects() = effects;
+    for (const scene::Material& material : scene.material()) {
+        scene::Material& shown = *info.add_materials();
+        shown.set_name(material.name());
+        if (material.has_color()) *shown.mutable_color() = material.color();
+        if (material.is_protected()) shown.set_is_protected(true);
+    }
+}
+
+void describeBurr(const scene::Scene& scene, const Burr& burr, topics::SceneInfo& info) {
+    info.clear_burr_balls_m();
+    if (std::ranges::none_of(scene.material(), [](const auto& m) { return m.is_protected(); })) return;
+    for (const BurrProbe& probe : BurrProbes(burr)) {
+        for (const double coordinate : probe.center_T) info.add_burr_balls_m(float(coordinate));
+        info.add_burr_balls_m(float(probe.radius));
+    }
+}
+
+double warningDistanceOf(const scene::Effects& effects) {
+    const bool is_fixture_only = effects.has_virtual_fixture() && !effects.has_protected_structures();
+    return (is_fixture_only ? effects.virtual_fixture().distance_mm()
+                            : effects.protected_structures().warning_distance_mm()) *
+           kMillimetre;
+}
+
+ShownEffects::ShownEffects(const scene::Effects& effects)
+    : recorded_(recordedEffectsOf(effects)), is_seen_(isAnyListed(viewerEffectsOf(effects))) {}
+
+topics::EffectState ShownEffects::at(const EffectRecord& newest, const EventSum& events,
+                                     double removed) const {
+    topics::EffectState state;
+    state.set_events(events.events);
+    state.set_removed_mm3(removed * kPerCubicMillimetre);
+    if (recorded_.burr || is_seen_) state.set_spin_speed(finite(newest.spin_speed));
+    if (recorded_.burr) {
+        state.set_burr_force_n(finite(newest.burr_force));
+        state.set_axis_torque_nm(finite(newest.axis_torque));
+        state.set_cutting_power_w(finite(newest.cutting_power));
+    }
+    if (recorded_.heat) {
+        state.set_temperature_c(finite(newest.temperature));
+        state.set_necrotic_mm3(finite(newest.necrotic_volume) * kPerCubicMillimetre);
+    }
+    if (!recorded_.protection) return state;
+    state.set_protected_force_n(finite(newest.protected_force));
+    state.set_damaged_mm3(finite(newest.damaged_volume) * kPerCubicMillimetre);
+    state.set_event_id(events.structure);
+    if (newest.protected_id == 0 || !std::isfinite(newest.protected_distance)) return state;
+    state.set_protected_id(newest.protected_id);
+    state.set_protected_distance_m(double(newest.protected_distance));
+    return state;
+}
+
+void ShownEffects::describe(const EffectStatistics& statistics, const std::vector<std::string>& materials,
+                            topics::Status& status) const {
+    if (hasTraining()) fill(statistics, materials, *status.mutable_training());
+}
+
+void ShownEffects::describe(const EffectStatistics& statistics, const std::vector<std::string>& materials,
+                            topics::Attempt& attempt) const {
+    if (hasTraining()) fill(statistics, materials, *attempt.mutable_training());
+    constexpr size_t kMostStructures = 64;  // a viewer takes no more
+    for (std::string& name : statistics.touched(materials))
+        if (size_t(attempt.structures_touched_size()) < kMostStructures)
+            attempt.add_structures_touched(std::move(name));
+}
+
+void ShownEffects::fill(const EffectStatistics& statistics, const std::vector<std::string>& materials,
+                        topics::Training& training) const {
+    if (recorded_.protection) {
+        training.set_damaged_mm3(statistics.damaged() * kPerCubicMillimetre);
+        training.set_max_protected_force_n(statistics.maxProtectedForce());
+        if (const auto distance = statistics.leastProtectedDistance())
+            training.set_least_distance_mm(*distance * kPerMillimetre);
+        training.set_nearest_structure(statistics.nearest(materials));
+    }
+    if (recorded_.heat) {
+        training.set_necrotic_mm3(statistics.necrotic() * kPerCubicMillimetre);
+        if (const auto temperature = statistics.maxTemperature())
+            training.set_max_temperature_c(*temperature);
+    }
+    std::vector<std::string> warnings = statistics.warnings(materials);
+    if (warnings.size() > kMostWarnings) {
+        const size_t more = warnings.size() - (kMostWarnings - 1);
+        warnings.resize(kMostWarnings - 1);
+        warnings.push_back("and " + std::to_string(more) + " more");
+    }
+    for (std::string& warning : warnings) training.add_warnings(std::move(warning));
+}
+
+}  // namespace bonemill

@@ -1,0 +1,176 @@
+#include "haptic_server/surface/mesh/leaf_mesher.h"
+
+#include <algorithm>
+
+#include "haptic_server/core/volume/marching_cubes_table.h"
+#include "haptic_server/surface/mesh/smooth_gradient.h"
+
+namespace bonemill {
+namespace {
+
+constexpr uint32_t kNoVertex = UINT32_MAX;
+
+// Steps from the low voxel to the iso-value, rounded to nearest; low and high lie on different sides of iso.
+int stepsToIso(Density low, Density high, Density iso, int steps_per_cell) noexcept {
+    static_assert(2 * uint64_t(kMaxDensity) * MeshGrid::kMostStepsPerCell + kMaxDensity <= UINT32_MAX);
+    const uint32_t rise = uint32_t(std::abs(int(high) - int(low)));
+    const uint32_t to_iso = uint32_t(std::abs(int(iso) - int(low)));
+    const uint32_t steps = (2 * to_iso * uint32_t(steps_per_cell) + rise) / (2 * rise);
+    return std::clamp(int(steps), 1, steps_per_cell - 1);
+}
+
+}  // namespace
+
+LeafMesher::LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice, int most_steps_per_cell,
+                       const BoneProperties* properties)
+    : volume_(volume),
+      lattice_(lattice),
+      properties_(properties),
+      grid_(volume, lattice, most_steps_per_cell),
+      triangles_(cubeTriangles()),
+      crossed_(lattice.leafCells()),
+      inverse_spacing_(volume.spacing().cwiseInverse().cast<float>()) {}
+
+std::optional<NodeMesh> LeafMesher::mesh(LeafId leaf) {
+    NodeMesh mesh;
+    mesh.leaf = leaf;
+    mesh.revision = lattice_.version(leaf);
+    mesh.origin = grid_.leafOrigin(leaf);
+    mesh.step = grid_.step();
+    vertices_.clear();
+    indices_.clear();
+    materials_.clear();
+    const bool is_being_written = (mesh.revision & 1) != 0;
+    if (is_being_written) return std::nullopt;
+    readVoxels(lattice_.cellsOf(leaf));
+    // The voxels were read with acquire, so this read cannot be older than they are.
+    if (lattice_.version(leaf) != mesh.revision) return std::nullopt;
+    meshCells();
+    mesh.vertices = vertices_;  // exactly as much memory as they need
+    mesh.indices = indices_;
+    const auto has_material = [](MaterialId material) { return material != kNoMaterial; };
+    if (std::ranges::any_of(materials_, has_material)) mesh.materials = materials_;
+    return mesh;
+}
+
+// Copies all voxels that the mesh depends on: those around the cells, and one more on each side for
+// the gradients.
+void LeafMesher::readVoxels(const IndexBox& cells) {
+    first_voxel_ = cells.min;
+    cells_ = cells.max - cells.min + Eigen::Vector3i::Ones();
+    stride_[1] = size_t(cells_.x()) + 3;
+    stride_[2] = stride_[1] * (size_t(cells_.y()) + 3);
+    density_.resize(stride_[2] * (size_t(cells_.z()) + 3) + kCellLanes);
+    const IndexBox voxels = IndexBox{cells.min.array() - 1, cells.max.array() + 2}.clamped(
+        Eigen::Vector3i::Constant(-1), volume_.dims());
+    volume_.forEachPart(voxels, [&](const IndexBox& part, size_t from) {
+        const Eigen::Vector3i size = part.max - part.min + Eigen::Vector3i::Ones();
+        Density* to = density_.data() + cornerIndex(part.min - first_voxel_);
+        for (int k = 0; k < size.z(); ++k)
+            for (int j = 0; j < size.y(); ++j) {
+                const size_t row =
+                    from + VoxelVolume::kStrideY * size_t(j) + VoxelVolume::kStrideZ * size_t(k);
+                Density* out = to + stride_[1] * size_t(j) + stride_[2] * size_t(k);
+                for (int i = 0; i < size.x(); ++i) out[i] = volume_.at(row + size_t(i));
+            }
+    });
+}
+
+// Are there voxels on both sides of iso among the cells' corners?
+bool LeafMesher::hasSurface() const noexcept {
+    Density low = kMaxDensity, high = 0;
+    for (int k = 0; k <= cells_.z(); ++k)
+        kernels().range_of_rows(density_.data() + cornerIndex({0, 0, k}), cells_.x() + 1, stride_[1],
+                                cells_.y() + 1, low, high);
+    return low < volume_.iso() && high >= volume_.iso();
+}
+
+void LeafMesher::meshCells() {
+    if (!hasSurface()) return;
+    edge_vertex_.assign(3 * density_.size(), kNoVertex);
+    crossed_.find(
+        cells_,
+        [&](int k, size_t row_size, uint8_t* sides) {
+            kernels().cell_sides({density_.data() + cornerIndex({0, 0, k}), stride_[1], stride_[2]},
+                                 cells_.x() + 1, cells_.y(), volume_.iso(), row_size, sides);
+        },
+        [&](int i, int j, int k, int inside) {
+            emitCell(inside, {i, j, k});
+        });
+}
+
+void LeafMesher::emitCell(int config, const Eigen::Vector3i& cell) {
+    const CubeTriangles& triangles = triangles_[size_t(config)];
+    for (int t = 0; t < triangles.count; ++t)
+        for (const uint8_t edge : triangles.edges[size_t(t)]) {
+            const CubeEdge e = kCubeEdges[edge];
+            const Eigen::Vector3i low(e.low_corner & 1, e.low_corner >> 1 & 1, e.low_corner >> 2 & 1);
+            indices_.push_back(vertexOnEdge(cell + low, e.axis));
+        }
+}
+
+uint32_t LeafMesher::vertexOnEdge(const Eigen::Vector3i& local, int axis) {
+    uint32_t& vertex = edge_vertex_[3 * cornerIndex(local) + size_t(axis)];
+    if (vertex == kNoVertex) {
+        vertex = uint32_t(vertices_.size());
+        addVertex(local, axis);
+    }
+    return vertex;
+}
+
+void LeafMesher::addVertex(const Eigen::Vector3i& local, int axis) {
+    const size_t low = cornerIndex(local);
+    const size_t high = low + stride_[axis];
+    const int steps = stepsToIso(density_[low], density_[high], volume_.iso(), grid_.stepsPerCell());
+    Eigen::Vector3i position = local * grid_.stepsPerCell();
+    position[axis] += steps;
+
+    const Eigen::Vector3i voxel = first_voxel_ + local;
+    const Eigen::Vector3i next = voxel + Eigen::Vector3i::Unit(axis);
+    const float fraction = float(steps) / float(grid_.stepsPerCell());
+    const Eigen::Vector3f gradient =
+        gradientAt(voxel, low) * (1 - fraction) + gradientAt(next, high) * fraction;
+    // A one-voxel plate or grain has no gradient: the way out of the bone along the edge is a normal too.
+    const float way_out = density_[low] > density_[high] ? 1.0f : -1.0f;
+    const Eigen::Vector3f normal = gradient.isZero(0) ? Eigen::Vector3f(way_out * Eigen::Vector3f::Unit(axis))
+                                                      : Eigen::Vector3f(-gradient);
+    const OctahedralNormal packed = encodeNormal(normal);  // of any length
+    vertices_.push_back(
+        {uint16_t(position.x()), uint16_t(position.y()), uint16_t(position.z()), packed.u, packed.v});
+    if (properties_ || paint_)
+        materials_.push_back(shownAt(density_[low] >= volume_.iso(), voxel, axis, low, normal));
+}
+
+uint8_t LeafMesher::shownAt(bool is_low_inside, const Eigen::Vector3i& low_voxel, int axis, size_t low,
+                            const Eigen::Vector3f& normal) const noexcept {
+    const Eigen::Vector3i high_voxel = low_voxel + Eigen::Vector3i::Unit(axis);
+    const Eigen::Vector3i& inside = is_low_inside ? low_voxel : high_voxel;
+    if (paint_)
+        if (const uint8_t zone = paint_->between(inside, is_low_inside ? high_voxel : low_voxel)) return zone;
+    return properties_ ? materialUnder(inside, is_low_inside ? low : low + stride_[axis], normal)
+                       : kNoMaterial;
+}
+
+// The voxels around the edge alone decide it, so that leaves agree. Outside the volume the original
+// density is 0.
+MaterialId LeafMesher::materialUnder(const Eigen::Vector3i& inside, size_t corner,
+                                     const Eigen::Vector3f& normal) const noexcept {
+    const Eigen::Vector3f inwards = -normal.cwiseProduct(inverse_spacing_).normalized();
+    const Eigen::Vector3i step = inwards.array().round().cast<int>();
+    const Eigen::Vector3i below = inside + step;
+    const size_t below_corner = size_t(ptrdiff_t(corner) + step.x() + step.y() * ptrdiff_t(stride_[1]) +
+                                       step.z() * ptrdiff_t(stride_[2]));
+    const bool is_denser_below = density_[below_corner] >= volume_.iso() &&
+                                 properties_->original(below) > properties_->original(inside);
+    return properties_->material(is_denser_below ? below : inside);
+}
+
+Eigen::Vector3f LeafMesher::gradientAt(const Eigen::Vector3i& voxel, size_t corner) const noexcept {
+    return smoothGradient(voxel, volume_.dims(), inverse_spacing_, density_.data() + corner, stride_);
+}
+
+NodeMesh meshLeaf(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf) {
+    return LeafMesher(volume, lattice).mesh(leaf).value();
+}
+
+}  // namespace bonemill

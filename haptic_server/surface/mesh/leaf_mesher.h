@@ -1,0 +1,86 @@
+// This makes the iso-surface of one octree leaf by marching cubes over the leaf's cells, with vertices on the
+// grid edges.
+//
+// A vertex lies where the density, interpolated linearly along its edge, equals the iso-value, rounded to the
+// steps of MeshGrid and kept one step away from both voxels, so that vertices of different edges never
+// coincide. Its normal is minus the density's smoothed gradient (smooth_gradient.h), interpolated by the same
+// fraction. Position and normal depend only on the voxels around the edge, in integer or IEEE single
+// arithmetic: the leaves that share an edge get the same vertex, bit for bit. A voxel is inside the bone when
+// its density >= iso.
+//
+// With `properties` a vertex also says what the bone under it is made of: as the inside voxel of its edge, or
+// as the next one below the surface if that is bone, too, and was denser: a voxel that bone fills only partly
+// looks like something less dense. A task's zones take its place where they have something to show
+// (zone_paint.h).
+//
+// It is not RT-safe (it allocates).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "haptic_server/core/volume/bone_properties.h"
+#include "haptic_server/core/volume/crossed_cells.h"
+#include "haptic_server/core/volume/marching_cubes_table.h"
+#include "haptic_server/surface/mesh/mesh_grid.h"
+#include "haptic_server/surface/mesh/zone_paint.h"
+
+namespace bonemill {
+
+// It meshes one leaf after another with reused memory, for one thread at a time. Volume and lattice
+// must outlive it.
+class LeafMesher {
+  public:
+    // most_steps_per_cell is as for MeshGrid. Without `properties` (which must outlive it) no vertex
+    // has a material.
+    LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice,
+               int most_steps_per_cell = MeshGrid::kMostStepsPerCell,
+               const BoneProperties* properties = nullptr);
+
+    // From now on vertices show these zones; null: none. It must outlive this object.
+    void setPaint(const ZonePaint* paint) noexcept { paint_ = paint; }
+
+    // The revision is the leaf's version; the mesh is empty without surface. There is none if the voxels were
+    // written while they were copied, which is the shorter part of the work.
+    std::optional<NodeMesh> mesh(LeafId leaf);
+
+  private:
+    void readVoxels(const IndexBox& cells);
+    bool hasSurface() const noexcept;
+    Eigen::Vector3f gradientAt(const Eigen::Vector3i& voxel, size_t corner) const noexcept;
+    void meshCells();
+    void emitCell(int config, const Eigen::Vector3i& cell);
+    uint32_t vertexOnEdge(const Eigen::Vector3i& local, int axis);
+    void addVertex(const Eigen::Vector3i& local, int axis);
+    uint8_t shownAt(bool is_low_inside, const Eigen::Vector3i& low_voxel, int axis, size_t low,
+                    const Eigen::Vector3f& normal) const noexcept;
+    MaterialId materialUnder(const Eigen::Vector3i& inside, size_t corner,
+                             const Eigen::Vector3f& normal) const noexcept;
+
+    size_t cornerIndex(const Eigen::Vector3i& local) const noexcept {
+        return size_t(local.x() + 1) + stride_[1] * size_t(local.y() + 1) +
+               stride_[2] * size_t(local.z() + 1);
+    }
+
+    const VoxelVolume& volume_;
+    const LeafLattice& lattice_;
+    const BoneProperties* properties_;
+    const ZonePaint* paint_ = nullptr;
+    MeshGrid grid_;
+    const std::array<CubeTriangles, 256>& triangles_;
+    CrossedCells crossed_;
+    Eigen::Vector3f inverse_spacing_;
+    Eigen::Vector3i first_voxel_;  // of the leaf in hand; locals count from here
+    Eigen::Vector3i cells_;        // of the leaf in hand, per axis
+    size_t stride_[3] = {1, 0, 0};
+    std::vector<Density> density_;  // cells_ + 3 voxels per axis from local (-1, -1, -1) on, x fastest
+    std::vector<PackedVertex> vertices_;
+    std::vector<uint32_t> indices_;
+    std::vector<uint8_t> materials_;     // per vertex, with properties or zones
+    std::vector<uint32_t> edge_vertex_;  // per corner and axis: vertex on the edge that starts there
+};
+
+// The mesh is that of a volume at rest.
+NodeMesh meshLeaf(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf);
+
+}  // namespace bonemill

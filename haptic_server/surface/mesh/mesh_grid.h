@@ -1,0 +1,47 @@
+// The vertices of all node meshes lie on an integer grid: the same point is the same integer in every leaf.
+//
+// A cell is stepsPerCell() steps wide on each axis; steps 0 are voxel (0, 0, 0), and voxel (i, j, k) lies at
+// stepsPerCell() * (i, j, k). Thread-safe after construction; the lattice must outlive it.
+#pragma once
+
+#include "common/geometry/node_mesh.h"
+#include "haptic_server/core/volume/leaf_lattice.h"
+
+namespace bonemill {
+
+class MeshGrid {
+  public:
+    static constexpr int kMostStepsPerCell = 16383;  // 32 bits hold a density times that
+    // This is streamed. The cell fills a high byte and the place in it a low one, which packs best.
+    static constexpr int kStreamedStepsPerCell = 256;
+
+    // Throws std::invalid_argument when a leaf is so large (over 21845 cells) that 16 bits cannot hold
+    // its vertices.
+    MeshGrid(const VoxelVolume& volume, const LeafLattice& lattice,
+             int most_steps_per_cell = kMostStepsPerCell);
+
+    int stepsPerCell() const noexcept { return steps_per_cell_; }
+
+    // This is the first cell's low corner, in V and m, and the same in steps.
+    Eigen::Vector3f leafOrigin(LeafId leaf) const noexcept;
+    Eigen::Vector3f step() const noexcept { return step_.cast<float>(); }
+    Eigen::Vector3i leafOriginSteps(LeafId leaf) const noexcept {
+        return lattice_.cellsOf(leaf).min * steps_per_cell_;
+    }
+
+    Eigen::Vector3i stepsOf(LeafId leaf, const PackedVertex& vertex) const noexcept {
+        return leafOriginSteps(leaf) + Eigen::Vector3i(vertex.x, vertex.y, vertex.z);
+    }
+    // The place is in V and m, and exactly the same for the same steps, whichever leaf they come from.
+    Eigen::Vector3d position(const Eigen::Vector3i& steps) const noexcept {
+        return step_.cwiseProduct(steps.cast<double>());
+    }
+
+  private:
+    const LeafLattice& lattice_;
+    int steps_per_cell_;
+    Eigen::Vector3d spacing_;  // m
+    Eigen::Vector3d step_;     // m
+};
+
+}  // namespace bonemill

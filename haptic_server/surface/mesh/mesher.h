@@ -1,0 +1,62 @@
+// Keeps the node meshes up with the voxels: finds the leaves that changed, meshes them, hands the results on.
+//
+// Runs in its own normal thread beside the tick, which writes voxels between LeafLattice::beginWrite and
+// endWrite. Takes no lock: a leaf is read between two reads of its version, and read again in a later pass if
+// the version was odd or moved. It is not RT-safe, and one thread calls all members.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "haptic_server/surface/mesh/leaf_mesher.h"
+
+namespace bonemill {
+
+class Mesher {
+  public:
+    // All must outlive the mesher. most_steps_per_cell as for MeshGrid, properties as for LeafMesher.
+    Mesher(const VoxelVolume& volume, const LeafLattice& lattice,
+           int most_steps_per_cell = MeshGrid::kMostStepsPerCell, const BoneProperties* properties = nullptr);
+
+    using Sink = std::function<void(NodeMesh&&)>;
+    static constexpr uint32_t kAllLeaves = std::numeric_limits<uint32_t>::max();
+
+    struct PassResult {
+        uint32_t read = 0;     // leaves whose voxels were read
+        uint32_t pending = 0;  // leaves still to be read: beyond the budget, or being written
+    };
+
+    // Meshes the leaves whose voxels changed since they were last meshed (at first: all), at most max_leaves
+    // of them; goes on from there in the next pass. The sink gets each mesh that changed; a leaf that lost
+    // its surface once comes as an empty mesh, one that never had any does not come. Exceptions of the sink
+    // pass through; that leaf counts as meshed.
+    PassResult pass(const Sink& sink, uint32_t max_leaves = kAllLeaves);
+
+    // Meshes those of these leaves (lattice indices) that changed since they were last meshed. False: the
+    // tick wrote them meanwhile and some are still due.
+    bool catchUp(const IndexBox& leaves, const Sink& sink);
+
+    // Vertices show these zones from now on; null: none. It must outlive the mesher. Leaves that it may
+    // change are due again, with a newer revision. It looks at every voxel's zone.
+    void setPaint(const ZonePaint* paint);
+
+    // Every leaf has been meshed at least once: the sink has seen the whole bone.
+    bool hasMeshedAll() const noexcept { return meshed_leaves_ == meshed_version_.size(); }
+
+  private:
+    bool catchUp(LeafId leaf, const Sink& sink);
+    bool tryMesh(LeafId leaf, const Sink& sink);
+
+    const LeafLattice& lattice_;
+    LeafMesher leaf_mesher_;
+    std::vector<uint32_t> meshed_version_;
+    size_t meshed_leaves_ = 0;    // leaves meshed at least once
+    std::vector<bool> has_mesh_;  // what the sink was told last
+    const ZonePaint* paint_ = nullptr;
+    uint32_t repaints_ = 0;  // each one makes revisions newer
+    LeafId next_leaf_ = 0;   // where the next pass starts, so that busy leaves do not starve the others
+};
+
+}  // namespace bonemill

@@ -1,0 +1,27 @@
+// Makes the surface of the bone around the part that is milled, for people to look at: node meshes like all
+// others, which never change.
+//
+// Marching cubes over the scan's own voxels; triangles that lie in the milled part as a whole are left out.
+// In each node meshoptimizer then takes triangles away while the surface moves by less than
+// kSurroundingsMoved voxels; the nodes' borders stay as they are, so that no crack opens. It is not RT-safe
+// (it allocates), but thread-safe.
+#pragma once
+
+#include <functional>
+
+#include "common/geometry/node_mesh.h"
+#include "haptic_server/core/volume/surroundings.h"
+
+namespace bonemill {
+
+inline constexpr double kSurroundingsMoved = 0.15;
+
+// So many leaf numbers they take at most.
+uint32_t surroundingsLeafCount(const VolumeGeometry& scan);
+
+// The sink gets the meshes (V, m), numbered from first_leaf on; empty ones do not come. False from it ends
+// the work.
+using SurroundingsSink = std::function<bool(NodeMesh&&)>;
+void meshSurroundings(const Surroundings& surroundings, uint32_t first_leaf, const SurroundingsSink& sink);
+
+}  // namespace bonemill

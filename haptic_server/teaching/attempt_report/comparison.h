@@ -1,0 +1,39 @@
+// An attempt beside those of experts in the same scene: how many standard deviations each figure is away, and
+// the band in which experts are over the attempt. It says what is different, not what is better. The
+// functions are pure; any thread may call them.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "haptic_server/teaching/attempt_report/attempt_result.h"
+
+namespace bonemill {
+
+struct ComparedFigure {
+    std::string id;
+    double z = 0;                    // (value - mean) / deviation
+    double mean = 0, deviation = 0;  // of the experts
+    size_t experts = 0;
+};
+// Of one column of the table "bucket": mean ± 2 deviations of the experts.
+struct Envelope {
+    std::string column_id;
+    std::vector<double> low, high;  // NaN where experts have no such value
+};
+struct ExpertComparison {
+    size_t experts = 0;
+    std::vector<ComparedFigure> figures;
+    std::vector<Envelope> envelopes;
+};
+
+inline constexpr size_t kLeastExperts = 5;
+
+// Of the results of experts only those of the same scene count, and of them figures of the same version.
+// Nothing with fewer than kLeastExperts; a figure that fewer have, or that is the same for all, is left out.
+std::optional<ExpertComparison> compareWith(std::span<const AttemptResult> experts,
+                                            const AttemptResult& result);
+
+}  // namespace bonemill

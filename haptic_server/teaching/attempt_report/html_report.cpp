@@ -1,0 +1,215 @@
+#include "haptic_server/teaching/attempt_report/html_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "haptic_server/assessment/measures/moments.h"
+#include "haptic_server/teaching/attempt_report/charts.h"
+#include "haptic_server/teaching/attempt_report/report_style.h"
+#include "haptic_server/teaching/attempt_report/report_text.h"
+
+namespace bonemill {
+namespace {
+
+constexpr size_t kWorst = 3;
+constexpr size_t kMostShownFigures = 120;
+constexpr size_t kMostPictureBytes = size_t(4) << 20;
+
+std::string element(const std::string& name, const std::string& content, const std::string& attributes = "") {
+    return '<' + name + (attributes.empty() ? "" : " " + attributes) + '>' + content + "</" + name + '>';
+}
+
+std::string headOf(const AttemptResult& result) {
+    return "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'>"
+           "<meta http-equiv='Content-Security-Policy' content=\"default-src 'none'; style-src "
+           "'unsafe-inline'; img-src data:\">"
+           "<meta name='viewport' content='width=device-width'>" +
+           element("title", escaped(result.scene_title + ", " + result.pseudonym)) +
+           element("style", kReportStyle) + "</head><body>";
+}
+
+std::string verdictOf(const Assessment& assessment) {
+    if (assessment.gates.empty()) return element("p", "No gates in this task", "class='verdict none'");
+    const auto failed = std::ranges::count(assessment.gates, false, &GateResult::is_passed);
+    if (failed == 0) return element("p", "Passed", "class='verdict passed'");
+    return element(
+        "p",
+        "Not passed: " + std::to_string(failed) + " of " + std::to_string(assessment.gates.size()) + " gates",
+        "class='verdict failed'");
+}
+
+std::string titleOf(const AttemptResult& result) {
+    const std::string facts = element("b", escaped(result.pseudonym)) + " · attempt " +
+                              std::to_string(result.number) + " · " + escaped(utcText(result)) + " · " +
+                              clockText(result.duration_s) + (result.is_exam ? " · examination" : "");
+    return element("header",
+                   element("div", element("h1", escaped(result.scene_title)) + element("p", facts)) +
+                       verdictOf(result.assessment));
+}
+
+std::string gatesOf(const Assessment& assessment) {
+    std::string rows;
+    for (const GateResult& gate : assessment.gates)
+        rows += element("tr",
+                        element("td", gate.is_passed ? "✓ passed" : "✗ failed") +
+                            element("td", escaped(gate.label)) + element("td", escaped(gate.text)),
+                        gate.is_passed ? "class='passed'" : "class='failed'");
+    return rows.empty()
+               ? ""
+               : element("section", element("h2", "Gates") + element("table", rows, "class='gates'"));
+}
+
+std::string totalOf(const Assessment& assessment) {
+    if (!assessment.total) return "";
+    const Total& total = *assessment.total;
+    return element("p",
+                   "Total " + element("b", roundedText(100 * total.score) + " of 100") +
+                       " with the teacher's weights, version " + std::to_string(total.weights_version) +
+                       " (" + escaped(total.weights_hash) + ")",
+                   "class='total'");
+}
+
+std::string subScoresOf(const Assessment& assessment) {
+    std::string rows;
+    for (const SubScore& sub : assessment.sub_scores) {
+        const std::string limits = roundedText(sub.worst) + " → " + valueText(sub.best, sub.figure.unit);
+        rows += element(
+            "tr", element("td", escaped(sub.label)) +
+                      element("td", escaped(valueText(sub.figure.value, sub.figure.unit)), "class='n'") +
+                      element("td", escaped(limits), "class='n'") +
+                      element("td", scoreBarSvg(sub.score), "class='score'") +
+                      element("td", roundedText(100 * sub.score), "class='n'"));
+    }
+    if (rows.empty()) return "";
+    const std::string head = element(
+        "tr",
+        "<th></th><th class='n'>measured</th><th class='n'>0 → 100 at</th><th></th><th class='n'>score</th>");
+    return element("section", element("h2", "Scores") + element("table", head + rows, "class='scores'") +
+                                  totalOf(assessment));
+}
+
+std::string picturesOf(const std::vector<ReportPicture>& pictures) {
+    std::string out;
+    for (const ReportPicture& picture : pictures) {
+        const bool is_known = picture.media_type == "image/png" || picture.media_type == "image/svg+xml";
+        if (!is_known || picture.data.size() > kMostPictureBytes) continue;
+        out += element("figure", "<img alt='" + escaped(picture.caption) +
+                                     "' src='data:" + picture.media_type + ";base64," + base64(picture.data) +
+                                     "'>" + element("figcaption", escaped(picture.caption)));
+    }
+    return out.empty() ? "" : element("section", out, "class='pictures'");
+}
+
+std::string worstMomentsOf(const std::vector<Moment>& worst, double begin_s) {
+    std::string rows;
+    for (size_t n = 0; n < worst.size(); ++n)
+        rows += element("tr",
+                        element("td", std::to_string(n + 1), "class='mark'") +
+                            element("td", clockText(worst[n].t_s - begin_s), "class='n'") +
+                            element("td", escaped(worst[n].text)) +
+                            element("td", element("code", "--at " + coordinate(worst[n].t_s)), "class='n'"));
+    return rows.empty() ? "" : element("table", rows, "class='moments'");
+}
+
+std::string timeLineOf(const AttemptResult& result, double begin_s) {
+    const std::vector<Moment> worst = worstOf(result.assessment.moments, kWorst);
+    const std::string replay =
+        result.journal.empty()
+            ? ""
+            : " · " + element("code", "haptic_server replay " + escaped(result.journal) + " --at …");
+    const std::string line = timeLineSvg(result.assessment, worst, begin_s);
+    if (line.empty() && worst.empty()) return "";
+    return element("section", element("h2", "The attempt, and its worst moments" + replay) + line +
+                                  worstMomentsOf(worst, begin_s));
+}
+
+// Scores where there are some, else the time that it took.
+std::string attemptsOf(const std::vector<AttemptResult>& own) {
+    if (own.size() < 2) return "";
+    const bool have_totals = std::ranges::all_of(
+        own, [](const AttemptResult& result) { return result.assessment.total.has_value(); });
+    std::vector<double> values;
+    for (const AttemptResult& result : own)
+        values.push_back(have_totals ? 100 * result.assessment.total->score : result.duration_s);
+    const std::optional<LearningCurve> curve = fitLearningCurve(values);
+    const std::string unit = have_totals ? "" : "s";
+    std::string words = have_totals ? "Total score by attempt." : "Time by attempt.";
+    if (own.size() >= 3) {
+        const double mean =
+            (values[values.size() - 1] + values[values.size() - 2] + values[values.size() - 3]) / 3;
+        words += " Mean of the last three: " + valueText(mean, unit) + ".";
+    }
+    if (curve)
+        words += " The curve goes from " + valueText(curve->first, unit) + " towards " +
+                 valueText(curve->limit, unit) + "; attempts scatter by " +
+                 valueText(curve->deviation, unit) + ".";
+    return element("figure", attemptsSvg(values, unit, curve) + element("figcaption", escaped(words)));
+}
+
+std::string comparedOf(const AttemptResult& result, const ReportExtras& extras) {
+    std::string out = attemptsOf(extras.own);
+    if (extras.comparison) {
+        for (const char* column : {"force", "path", "time"}) {
+            const std::string chart = envelopeSvg(result.assessment, *extras.comparison, column);
+            if (chart.empty()) continue;
+            out += element(
+                "figure",
+                chart + element("figcaption", "Fifths of what was removed; band: mean ± 2 SD of " +
+                                                  std::to_string(extras.comparison->experts) + " experts"));
+        }
+    }
+    return out.empty() ? ""
+                       : element("section", element("h2", "Beside other attempts") +
+                                                element("div", out, "class='charts'"));
+}
+
+std::string zOf(const std::optional<ExpertComparison>& comparison, const std::string& id) {
+    if (!comparison) return "";
+    const auto found = std::ranges::find(comparison->figures, id, &ComparedFigure::id);
+    if (found == comparison->figures.end()) return element("td", "");
+    char text[32];
+    std::snprintf(text, sizeof text, "%+.1f", found->z);
+    return element("td", text, std::abs(found->z) > 2 ? "class='n far'" : "class='n'");
+}
+
+std::string figuresOf(const AttemptResult& result, const ReportExtras& extras) {
+    std::string rows;
+    size_t shown = 0;
+    for (const Figure& figure : result.assessment.figures) {
+        if (++shown > kMostShownFigures) break;
+        rows += element("tr", element("td", escaped(figure.label)) +
+                                  element("td", escaped(valueText(figure.value, figure.unit)), "class='n'") +
+                                  zOf(extras.comparison, figure.id) +
+                                  element("td", "@" + std::to_string(figure.version),
+                                          "class='id' title='" + escaped(figure.id) + "@" +
+                                              std::to_string(figure.version) + "'"));
+    }
+    const std::string z = extras.comparison ? " · z: standard deviations from the experts' mean" : "";
+    return element("section",
+                   element("h2", "All figures, with their definitions' versions" + z) +
+                       element("table", rows, "class='figures'"),
+                   "class='all'");
+}
+
+std::string footOf(const AttemptResult& result) {
+    return element(
+        "footer",
+        "Scene " + escaped(result.scene_id) + ", hash " + escaped(result.scene_hash) +
+            ". One attempt says little: judge by the mean of three or more. What each figure is, and "
+            "what it does not say: docs/teach/assessment.md. bonemill is no medical device.");
+}
+
+}  // namespace
+
+std::string htmlReport(const AttemptResult& result, const ReportExtras& extras) {
+    const Assessment& assessment = result.assessment;
+    return headOf(result) + titleOf(result) +
+           element(
+               "div",
+               element("div", gatesOf(assessment) + subScoresOf(assessment)) + picturesOf(extras.pictures),
+               "class='top'") +
+           timeLineOf(result, extras.begin_s) + comparedOf(result, extras) + figuresOf(result, extras) +
+           footOf(result) + "</body></html>\n";
+}
+
+}  // namespace bonemill

@@ -1,0 +1,44 @@
+// The folder of a class' results: beside the class table, one JSON file and one report per attempt, and the
+// statements for learning record stores. They say who did what, so that they are their user's alone. Normal
+// threads; it waits for the disk.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "haptic_server/teaching/attempt_report/attempt_result.h"
+#include "haptic_server/teaching/attempt_report/html_report.h"
+
+namespace bonemill {
+
+class ResultFolder {
+  public:
+    // `class_folder` is the class table's. The folder `results` in it is made with the first result; experts'
+    // results lie in `experts`, where the teacher puts them.
+    explicit ResultFolder(std::filesystem::path class_folder) : class_folder_(std::move(class_folder)) {}
+
+    std::filesystem::path results() const { return class_folder_ / "results"; }
+    std::filesystem::path experts() const { return class_folder_ / "experts"; }
+    std::filesystem::path statements() const { return results() / "xapi.jsonl"; }
+
+    // Writes STEM.json and STEM.html, each whole or not at all, and adds the statement. The report shows this
+    // person's attempts before, and experts', as they lie there. `begin_s` is the attempt's in the session.
+    // Throws UserError.
+    void write(const AttemptResult& result, std::vector<ReportPicture> pictures, double begin_s) const;
+
+    // The results of one scene (by its hash) and one person, or of anybody with an empty pseudonym, in the
+    // order of time. A person's are looked for by the files' names. What is no result is passed over: a
+    // person's edit must not cost the others theirs. At most kMostRead files are read, the newest by name.
+    static constexpr size_t kMostRead = 400;
+    static std::vector<AttemptResult> read(const std::filesystem::path& folder, const std::string& scene_hash,
+                                           const std::string& pseudonym);
+
+  private:
+    std::filesystem::path class_folder_;
+};
+
+// The text of a file of at most `most` bytes; throws UserError.
+std::string readBounded(const std::filesystem::path& file, size_t most);
+
+}  // namespace bonemill

@@ -1,0 +1,37 @@
+// The scenes that people can choose: the scene files of some folders, as a list for viewers and for a
+// terminal.
+//
+// It is for start-up: reads files, allocates. A file that cannot be a scene is listed with what is wrong with
+// it and never ends the program.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/files/require_apart.h"
+#include "proto/topics.pb.h"
+
+namespace bonemill {
+
+struct ListedScene {
+    topics::SceneChoice choice;
+    std::string file;
+    std::vector<NamedFile> files = {};  // all that the scene reads
+};
+
+// So many are listed at most; viewers take no more.
+inline constexpr size_t kMostListedScenes = 64;
+inline constexpr size_t kMostPictureBytes = 64u << 10;
+
+// Lists `*.textproto` of each folder by name, in the order of the folders. Of two files of one name the first
+// counts. What a scene names is looked for, not read: title, task, tools, time, and the picture `NAME.png`
+// beside it. Throws UserError for a folder that cannot be read.
+std::vector<ListedScene> listScenes(const std::vector<std::string>& folders);
+
+// One line per scene, and one more for what is wrong with it.
+std::string sceneTable(const std::vector<ListedScene>& scenes);
+
+// The id of the listed scene that is this file, or "".
+std::string idOfScene(const std::vector<ListedScene>& scenes, const std::string& file);
+
+}  // namespace bonemill

@@ -1,0 +1,56 @@
+// What a study keeps of a person: a pseudonym, a group, that there is consent, and sessions with their
+// answers. No name, no time of day. Who is who stands outside of the study's folder. Pure; any thread may
+// call the functions.
+#pragma once
+
+#include "haptic_server/teaching/study/form.h"
+#include "haptic_server/teaching/study/form_scoring.h"
+#include "haptic_server/teaching/study/order.h"
+
+namespace bonemill::study {
+
+// Period 0 is the visit itself, to which the forms before and after everything belong; then one per planned
+// session.
+struct Session {
+    std::string uuid;
+    size_t period = 0;
+    std::string condition, task;
+    size_t attempt = 0;
+};
+
+struct Participant {
+    std::string pseudonym, group;
+    size_t place = 0;  // in the group, from 0: the order follows from it
+    bool has_consent = false;
+    bool has_withdrawn = false;
+    std::string withdrawal_reason;
+    std::vector<Session> sessions;
+
+    const Session* find(const std::string& uuid) const;
+};
+
+std::string toJson(const Participant& participant);
+// Throws UserError.
+Participant parseParticipant(const Json& json, const std::string& file);
+
+bool isUuid(std::string_view text);
+// A random one (RFC 9562, version 4) from the kernel.
+std::string newUuid();
+
+// The answers of one person in one session to one form. It is the file that a page saves, too.
+struct Answers {
+    std::string study, pseudonym, session, form, form_digest;
+    Values values;
+    std::vector<std::string> left_out;  // asked, and no answer wished
+
+    bool isAnswered(const std::string& item) const;
+    bool isFinished(const Form& to) const;
+};
+
+std::string toJson(const Answers& answers);
+// Every answer is checked against the form. Throws UserError.
+Answers parseAnswers(const Json& json, const std::string& file, const Form& form);
+// Which form these answers say that they are to.
+std::string formOfAnswers(const Json& json, const std::string& file);
+
+}  // namespace bonemill::study

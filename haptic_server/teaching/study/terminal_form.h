@@ -1,0 +1,17 @@
+// Asks a questionnaire line by line, in a terminal or through a pipe. It is for one thread.
+#pragma once
+
+#include <functional>
+#include <iosfwd>
+
+#include "haptic_server/teaching/study/participant.h"
+
+namespace bonemill::study {
+
+// Goes on at the first question without an answer. `save` is called after each answer, so that nothing given
+// is lost whatever ends the program. Returns whether all questions are done; it ends early when the input
+// does, or at a line with a dot.
+bool fillInTerminal(const Form& form, Answers& answers, std::istream& in, std::ostream& out,
+                    const std::function<void(const Answers&)>& save);
+
+}  // namespace bonemill::study

@@ -1,0 +1,160 @@
+#include "render_client/apps/render_client/hand_feed.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "render_client/hand/controls/help_rows.h"
+#include "render_client/hand/controls/key_table.h"
+
+namespace bonemill {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kHintTime = 12s;      // then the hint fades
+constexpr auto kHoldHintTime = 60s;  // that on the tool in the mouse, unless it mills before
+constexpr auto kFadeTime = 2s;
+constexpr auto kSettleTime = 700ms;  // so long the bone may take to be put back
+constexpr double kUsualBurr = 1e-3;  // m, while the scene does not say
+constexpr double kBurrItself = 1.5;  // burr radii around its centre, where the burr is seen and no bone
+
+float hintOpacity(HandFeed::Clock::duration until_end) {
+    const std::chrono::duration<float> left = until_end + kFadeTime, fade = kFadeTime;
+    return std::clamp(left / fade, 0.0f, 1.0f);
+}
+
+}  // namespace
+
+void HandFeed::lookAt(int width, int height) {
+    const bool has_places = scene_.settings().stereo == StereoMode::kOff && !scene_.followsTool();
+    view_ = {scene_.viewCamera(), width, height, has_places};
+    controls_.toolHold().lookAt(view_);
+}
+
+std::optional<HudNotice> HandFeed::update(const SessionView& session, bool begin_now, Clock::time_point now) {
+    rest(session, now);
+    const bool has_seen_bone = std::exchange(shows_model_, session.is_complete);
+    const bool is_offered = isOffered(session, has_seen_bone) && !controls_.toolHold().isHolding();
+    const bool goes_on = goesOn(has_seen_bone, now);
+    const std::string why_not = is_offered || goes_on ? whyNotHold(session) : "";
+    std::optional<HudNotice> notice;
+    if (!why_not.empty()) notice = {why_not, HudTone::kWarning};
+    if (begin_now) notice = {"The mouse holds the tool", HudTone::kPlain};
+    if (begin_now || ((is_offered || goes_on) && why_not.empty())) begin(begin_now || goes_on_at_, now);
+    if (goes_on) goes_on_at_.reset();
+    if (!notice) notice = watch(session, now);
+    tellDevice();
+    showHand(session, now);
+    return notice;
+}
+
+// The wish is of the old scene, or of the bone before: nobody must be drawn there.
+void HandFeed::rest(const SessionView& session, Clock::time_point now) {
+    const bool is_attempt = session.lesson && session.lesson->is_running();
+    const int64_t attempt_ns = is_attempt ? session.lesson->start_stamp_ns() : seen_attempt_ns_;
+    const bool is_other_attempt = std::exchange(seen_attempt_ns_, attempt_ns) != attempt_ns;
+    const bool is_other_run = std::exchange(seen_epoch_, subscriber_.epoch()) != subscriber_.epoch();
+    if (!controls_.toolHold().isHolding() || !(is_other_attempt || is_other_run)) return;
+    controls_.toolHold().letGo();
+    goes_on_at_ = now + kSettleTime;
+}
+
+bool HandFeed::goesOn(bool has_seen_bone, Clock::time_point now) const {
+    return goes_on_at_ && now >= *goes_on_at_ && has_seen_bone && !controls_.toolHold().isHolding();
+}
+
+std::optional<HudNotice> HandFeed::watch(const SessionView& session, Clock::time_point now) {
+    const ToolHold& hold = controls_.toolHold();
+    const auto X_WT = scene_.toolPose();
+    if (!hold.isHolding() || !session.has_server || !X_WT) return std::nullopt;
+    const HoldWatch::Advice advice =
+        watch_.look({.now = std::chrono::duration<double>(now.time_since_epoch()).count(),
+                     .burr_radius = scene_.burrRadius(),
+                     .from_wish = (X_WT->position - hold.wish().position).norm(),
+                     .presses = hold.buttons() != 0,
+                     .touches = scene_.contacts() > 0,
+                     .can_mill = !(session.status && session.status->is_milling_paused())});
+    switch (advice) {
+        case HoldWatch::Advice::kNone:
+            return std::nullopt;
+        case HoldWatch::Advice::kFree:
+            begin(true, now);
+            return HudNotice{"The bone had caught the tool: it is in front of it again", HudTone::kPlain};
+        case HoldWatch::Advice::kHelp:
+            return HudNotice{
+                "The tool is caught: turn the view, then press " + keyLabelOf(Action::kHoldTool) + " twice",
+                HudTone::kWarning};
+        case HoldWatch::Advice::kTouch:
+            return HudNotice{"Not touching the bone: the wheel, or " + keyLabelOf(Action::kToolDeeper) +
+                                 ", brings the tool nearer",
+                             HudTone::kWarning};
+    }
+    return std::nullopt;
+}
+
+// Once in each run of the server: a user who has let the tool go, or whom somebody else was faster than, is
+// not asked again.
+bool HandFeed::isOffered(const SessionView& session, bool has_seen_bone) {
+    const bool is_wanted = begins_by_itself_ || isHeldByMouse(session);
+    const bool may_hold =
+        session.role == topics::Viewer::OPERATOR || session.role == topics::Viewer::INSTRUCTOR;
+    if (!has_seen_bone || !is_wanted || !may_hold) return false;
+    return std::exchange(offered_epoch_, subscriber_.epoch()) != subscriber_.epoch();
+}
+
+void HandFeed::begin(bool is_at_cursor, Clock::time_point now) {
+    const double burr_radius = scene_.burrRadius() > 0 ? scene_.burrRadius() : kUsualBurr;
+    const Eigen::Vector3d surface_W = surfaceInView(is_at_cursor);
+    const std::optional<Pose> X_WT = scene_.devicePose();
+    const bool is_burr_under_cursor =
+        is_at_cursor && X_WT && (X_WT->position - surface_W).norm() < kBurrItself * burr_radius;
+    // By a way there it might be caught behind bone.
+    if (!is_burr_under_cursor) ++placements_;
+    controls_.toolHold().begin(
+        is_burr_under_cursor ? *X_WT : beginInFrontOf(surface_W, view_.camera, burr_radius, X_WT),
+        burr_radius);
+    begun_ = now;
+    goes_on_at_.reset();
+}
+
+// The bone under the cursor, or else the bone on the line of sight through its middle.
+Eigen::Vector3d HandFeed::surfaceInView(bool is_at_cursor) const {
+    const auto pick = [&](const PixelPoint& at) { return scene_.pick(int(at.x), int(at.y)); };
+    const auto& cursor = controls_.toolHold().cursor();
+    if (is_at_cursor && cursor)
+        if (const auto p_W = pick(*cursor)) return *p_W;
+    const Eigen::AlignedBox3d bone_W = scene_.bone_W();
+    if (bone_W.isEmpty()) return view_.camera.target_W();
+    if (const auto p_W = pick(view_.pixelOf(bone_W.center()))) return *p_W;
+    const Eigen::Vector3d towards_eye = (view_.camera.eye_W - bone_W.center()).normalized();
+    return bone_W.center() + bone_W.diagonal().norm() / 2 * towards_eye;
+}
+
+void HandFeed::tellDevice() {
+    const ToolHold& hold = controls_.toolHold();
+    const bool was_holding = std::exchange(was_holding_, hold.isHolding());
+    if (hold.isHolding()) {
+        subscriber_.wantTool(hold.wish(), hold.buttons(), placements_);
+    } else if (was_holding) {
+        subscriber_.letToolGo();
+    }
+}
+
+void HandFeed::showHand(const SessionView& session, Clock::time_point now) {
+    const ToolHold& hold = controls_.toolHold();
+    scene_.setPull(hold.isHolding() ? std::optional(hold.wish().position) : std::nullopt);
+    if (!started_) started_ = now;
+    if (!milled_ && hold.buttons() != 0) milled_ = now;
+    Clock::time_point hint_end = *started_ + kHintTime;
+    if (hold.isHolding()) hint_end = std::min(begun_ + kHoldHintTime, milled_.value_or(now + kHintTime));
+    const float opacity = hintOpacity(hint_end - now);
+    scene_.setHint(opacity > 0 ? std::optional(HudHint{hold.isHolding() ? hintRows() : startRows(), opacity})
+                               : std::nullopt);
+    scene_.setHelp(helpGroups(hold.isHolding()         ? HelpFor::kHolding
+                              : isReplay(session)      ? HelpFor::kReplay
+                              : isHeldByMouse(session) ? HelpFor::kMayHold
+                                                       : HelpFor::kLooking,
+                              session.lesson != nullptr));
+}
+
+}  // namespace bonemill

@@ -1,0 +1,104 @@
+#include "render_client/apps/render_client/scene_feed.h"
+
+#include <spdlog/spdlog.h>
+
+#include <stdexcept>
+
+#include "render_client/apps/render_client/stop_signal.h"
+#include "render_client/viewer_options/options.h"
+
+namespace bonemill {
+void SceneFeed::update() {
+    const SceneModel::Changes changes = subscriber_.poll();
+    if (changes.is_cleared) nodes_.clear();
+    for (const SceneModel::Change& change : changes.nodes)
+        if (nodes_.set(change.mesh) && cuts_) cuts_->willShow(change.cut_stamp_ns, CutToScreen::nowNs());
+    showSceneInfo();
+    subscriber_.followDensities(scene_.densities());
+    showStructures();
+    showRemarks();
+    if (subscriber_.toolState()) scene_.setToolState(*subscriber_.toolState());
+    if (subscriber_.status()) scene_.setStatus(*subscriber_.status());
+    advanceEffects();
+    updateConnection();
+    if (takes_part_) announce();
+}
+
+void SceneFeed::showSceneInfo() {
+    const auto& info = subscriber_.sceneInfo();
+    if (!info || std::pair(info->epoch(), info->revision()) == shown_info_) return;
+    shown_info_ = {info->epoch(), info->revision()};
+    try {
+        scene_.setSceneInfo(*info);
+    } catch (const std::invalid_argument& error) {
+        spdlog::warn("the server sent a scene that cannot be shown: {}", error.what());
+    }
+}
+
+void SceneFeed::showStructures() {
+    const uint64_t changes = subscriber_.structureChanges();
+    const uint64_t shown = std::exchange(shown_structures_, changes);
+    if (shown == changes) return;
+    if (std::exchange(structures_epoch_, subscriber_.epoch()) != subscriber_.epoch())
+        scene_.clearStructures();
+    for (const auto& [id, structure] : subscriber_.structures())
+        if (structure.change > shown) scene_.setStructure(structure.mesh, structure.warning_distance);
+}
+
+void SceneFeed::showRemarks() {
+    const uint64_t changes = subscriber_.remarkChanges();
+    if (std::exchange(shown_remarks_, changes) != changes) scene_.setRemarks(subscriber_.remarks());
+}
+
+void SceneFeed::advanceEffects() {
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> passed = now - std::exchange(advanced_, now);
+    scene_.advance(passed.count());
+    if (!sound_) return;
+    // A server that is gone leaves the last state behind.
+    const auto& state = subscriber_.toolState();
+    sound_->update(subscriber_.sceneInfo(), subscriber_.hasServer() ? state : std::nullopt,
+                   scene_.settings().shows(ViewerEffect::kMillingSound), passed.count());
+}
+
+void SceneFeed::announce() {
+    scene_.setWatchers(subscriber_.viewers());
+    if (announce_clock_.isDue(std::chrono::steady_clock::now(), false)) subscriber_.announce(0, std::nullopt);
+}
+
+// Tool states are not kept for late clients: a loop that has ticked will send one soon.
+bool SceneFeed::isComplete() const {
+    const bool has_ticked = subscriber_.status() && subscriber_.status()->ticks() > 0;
+    return subscriber_.hasServer() && hasWholeModel() && scene_.hasSceneInfo() &&
+           (!has_ticked || subscriber_.toolState());
+}
+
+// While the bone is being milled the model is always a node or two behind its newest status: what was
+// complete once is called live from then on.
+void SceneFeed::updateConnection() {
+    const bool has_server = subscriber_.hasServer();
+    scene_.setOtherServer(subscriber_.otherServer());
+    if (has_server && hasWholeModel()) complete_epoch_ = subscriber_.epoch();
+    had_server_ = had_server_ || has_server;
+    scene_.setConnection(!has_server && subscriber_.hasEnded() ? Connection::kServerEnded
+                         : !has_server && had_server_          ? Connection::kServerLost
+                         : !has_server                         ? Connection::kNoServer
+                         : complete_epoch_ != 0 && complete_epoch_ == subscriber_.epoch()
+                             ? Connection::kLive
+                             : Connection::kReceiving);
+}
+
+void waitUntilComplete(SceneFeed& feed, const SubscriberOptions& options, std::chrono::seconds timeout) {
+    const auto end = std::chrono::steady_clock::now() + timeout;
+    feed.updateUntil(end, [&] { return feed.isComplete() || stopRequested(); });
+    if (feed.isComplete() || stopRequested()) return;
+    throw std::runtime_error("the model was not complete after " + std::to_string(timeout.count()) +
+                             " s: " + serverQuestion(options));
+}
+
+void waitForScan(SceneFeed& feed, RenderScene& scene, std::chrono::seconds timeout) {
+    feed.updateUntil(std::chrono::steady_clock::now() + timeout,
+                     [&] { return scene.densities().hasAllWanted() || stopRequested(); });
+}
+
+}  // namespace bonemill

@@ -1,0 +1,11 @@
+// render_client --serve: a gateway instead of a viewer.
+#pragma once
+
+#include "render_client/viewer_options/options.h"
+
+namespace bonemill {
+
+// Says where it can be reached, and serves until a stop signal. Returns the exit code. Throws UserError.
+int runGateway(const ClientOptions& options);
+
+}  // namespace bonemill

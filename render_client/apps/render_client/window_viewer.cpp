@@ -1,0 +1,358 @@
+#include "render_client/apps/render_client/window_viewer.h"
+
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "common/base/user_error.h"
+#include "common/files/whole_file.h"
+#include "common/lesson_csv/attempts_csv.h"
+#include "render_client/apps/render_client/hand_feed.h"
+#include "render_client/apps/render_client/remark_feed.h"
+#include "render_client/apps/render_client/scene_feed.h"
+#include "render_client/apps/render_client/stop_signal.h"
+#include "render_client/hand/controls/announce_clock.h"
+#include "render_client/hand/controls/done_text.h"
+#include "render_client/hand/controls/eye_watch.h"
+#include "render_client/hand/controls/frame_rate.h"
+#include "render_client/hand/controls/help_rows.h"
+#include "render_client/hand/controls/viewer_controls.h"
+#include "render_client/hand/window/glfw_window.h"
+#include "render_client/link/subscribe/command_text.h"
+#include "render_client/link/subscribe/session_list.h"
+#include "render_client/look/hud/session_text.h"
+#include "render_client/look/hud/text_scale.h"
+#include "render_client/look/offscreen/read_picture.h"
+#include "render_client/panel/panel/panel_painter.h"
+
+namespace bonemill {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kMinimisedPause{50};
+constexpr uint32_t kNoSession = UINT32_MAX;  // no server is asked for it
+constexpr std::chrono::seconds kNoticeTime{6};
+
+const topics::Lesson* lessonOf(const SceneSubscriber& subscriber) {
+    return subscriber.lesson() ? &*subscriber.lesson() : nullptr;
+}
+
+// Shows over the picture, for a while, what the user should notice.
+class Notices {
+  public:
+    explicit Notices(RenderScene& scene) : scene_(scene) {}
+
+    void show(HudNotice notice) {
+        spdlog::log(notice.tone == HudTone::kGood ? spdlog::level::info : spdlog::level::warn, "{}",
+                    notice.text);
+        scene_.setNotice(std::move(notice));
+        end_ = Clock::now() + kNoticeTime;
+    }
+    void showOutcomes(SceneSubscriber& subscriber) {
+        for (const CommandOutcome& outcome : subscriber.takeOutcomes())
+            outcome.isDone() ? show({doneText(outcome.command, lessonOf(subscriber)), HudTone::kGood})
+                             : show({outcomeText(outcome), HudTone::kWarning});
+    }
+    void removeOld() {
+        if (Clock::now() >= end_) scene_.setNotice(std::nullopt);
+    }
+
+  private:
+    RenderScene& scene_;
+    Clock::time_point end_;
+};
+
+// Logs who comes and goes.
+class Attendance {
+  public:
+    void update(const std::vector<topics::Viewer>& others) {
+        std::map<uint64_t, std::string> here;
+        for (const topics::Viewer& other : others) {
+            here[other.sender()] = other.name();
+            if (!here_.contains(other.sender()))
+                spdlog::info("{} ({}) is watching", other.name(), roleName(other.role()));
+        }
+        for (const auto& [sender, name] : here_)
+            if (!here.contains(sender)) spdlog::info("{} is no longer watching", name);
+        here_ = std::move(here);
+    }
+
+  private:
+    std::map<uint64_t, std::string> here_;  // names by sender
+};
+
+// Returns the first free name in the current folder. `format` has one %d.
+std::filesystem::path nextName(const char* format) {
+    for (int number = 1;; ++number) {
+        char name[64];
+        std::snprintf(name, sizeof name, format, number);
+        if (!std::filesystem::exists(name)) return name;
+    }
+}
+
+// A release ends what began before the mouse came to the panel.
+bool isRelease(const WindowEvent& event) {
+    if (const auto* key = std::get_if<KeyEvent>(&event)) return !key->is_down;
+    const auto* button = std::get_if<MouseButtonEvent>(&event);
+    return button && !button->is_down;
+}
+
+class WindowViewer {
+  public:
+    explicit WindowViewer(const ClientOptions& options)
+        : options_(options),
+          window_(options.width, options.height, "bonemill", kWithoutDisplay),
+          scene_(window_.gl(), options.has_effects),
+          sound_({.is_played = true, .wav = options.sound_wav}),
+          feed_(options.subscriber, scene_),
+          controls_(scene_.settings(), scene_.camera()),
+          hand_(controls_, scene_, feed_.subscriber(), options.holds_tool),
+          remarks_(controls_, scene_),
+          painter_(window_.gl()),
+          notices_(scene_) {
+        spdlog::info("window, {}", window_.gl().describe());
+        scene_.setViewWish(options.view);
+        scene_.settings() = options.settings;
+        scene_.setSought(soughtOf(options));
+        if (options.has_effects) feed_.sound(&sound_);
+        if (options.chooses_session) sessions_.emplace(options.subscriber.domain);
+        if (options.chooses_quality && window_.gl().isSoftware()) scene_.settings().quality = Quality::kQuick;
+    }
+
+    // Returns the session to go on with in another window; none at the end.
+    std::optional<uint32_t> run() {
+        while (!window_.shouldClose() && !stopRequested() && !has_quit_ && !chosen_) step();
+        sound_.finish();
+        return chosen_;
+    }
+
+  private:
+    void step() {
+        lookForSessions();
+        feed_.update();
+        const int width = window_.pixelWidth(), height = window_.pixelHeight();
+        const bool is_minimised = width == 0 || height == 0;
+        const SessionView session = lookAtSession();
+        Wishes wishes;
+        if (!is_minimised) prepare(width, height);
+        takeInput(height, session, wishes);
+        if (const auto notice = remarks_.update(session, wishes)) notices_.show(*notice);
+        if (!is_minimised) panel_.layOut(controls_, session, wishes);
+        carryOut(wishes);
+        if (const auto notice = hand_.update(session, wishes.hold_tool, Clock::now())) notices_.show(*notice);
+        window_.showCrosshair(controls_.toolHold().isHolding());
+        announce();
+        attendance_.update(session.others);
+        notices_.showOutcomes(feed_.subscriber());
+        notices_.removeOld();
+        if (is_minimised) return pause();
+        scene_.setWatchers(watchers(session));
+        scene_.setMouse(mouseOverScene(width, height));
+        scene_.setFrameRate(frame_rate_.perSecond());
+        scene_.setModes(modeTexts(scene_.settings(), controls_.isDrawing()));
+        scene_.setTitle(session.lesson ? sceneTitle(*session.lesson, session.lesson->scene_id()) : "");
+        scene_.draw(width, height, scaleOfText(width, height));
+        painter_.paint(panel_, width, height);
+        if (wishes.save_picture) savePicture(width, height);
+        if (wishes.save_attempts && session.lesson) saveAttempts(*session.lesson);
+        window_.show();
+        frame_rate_.countPicture(Clock::now());
+    }
+
+    // The only session is joined once it has been the only one for a while; of several the user chooses.
+    void lookForSessions() {
+        constexpr std::chrono::seconds kAlone{1};
+        if (!sessions_) return;
+        sessions_->poll();
+        const std::vector<ListedSession> heard = sessions_->sessions();
+        const Clock::time_point now = Clock::now();
+        if (heard.size() != 1) alone_since_ = now;
+        if (heard.size() == 1 && now - alone_since_ >= kAlone) chosen_ = heard[0].session;
+        offered_.clear();
+        if (heard.size() < 2) return;
+        for (const ListedSession& session : heard)
+            offered_.push_back({session.session, sessionText(session)});
+    }
+
+    void pause() { feed_.updateUntil(Clock::now() + kMinimisedPause, stopRequested); }
+
+    SessionView lookAtSession() {
+        SceneSubscriber& subscriber = feed_.subscriber();
+        SessionView session;
+        session.name = options_.subscriber.name;
+        session.role = options_.subscriber.role;
+        session.has_server = subscriber.hasServer();
+        session.is_complete = subscriber.isComplete();
+        session.frame_rate_hz = frame_rate_.perSecond();
+        if (subscriber.sceneInfo()) session.info = &*subscriber.sceneInfo();
+        if (subscriber.status()) session.status = &*subscriber.status();
+        session.lesson = lessonOf(subscriber);
+        session.others = subscriber.viewers();
+        session.faults = scene_.faults();
+        session.remarks = &subscriber.remarks();
+        session.offered = offered_;
+        session.time_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+        session.realtime_ns =
+            std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+        return session;
+    }
+
+    float scaleOfText(int width, int height) {
+        return textScale(width, height, scene_.settings().text_scale, window_.contentScale());
+    }
+
+    void prepare(int width, int height) {
+        const Clock::time_point now = Clock::now();
+        const std::chrono::duration<double> seconds = now - std::exchange(last_picture_, now);
+        const int view_width = scene_.viewWidth(width, height);
+        panel_.setPicture(width, height, view_width, scaleOfText(width, height), seconds.count());
+        hand_.lookAt(view_width, height);
+        controls_.paneMouse().lookAt(scene_.seenPanes());
+    }
+
+    void takeInput(int height, const SessionView& session, Wishes& wishes) {
+        for (const WindowEvent& event : window_.takeEvents()) {
+            const bool is_panels = panel_.handle(event, controls_, session, wishes);
+            const auto* move = std::get_if<MouseMoveEvent>(&event);
+            if (move) is_over_panel_ = is_panels;
+            if (is_panels && move) {
+                controls_.passOver(*move);
+            } else if (!is_panels || isRelease(event)) {
+                controls_.handle(event, height, session, wishes);
+            }
+        }
+    }
+
+    void carryOut(const Wishes& wishes) {
+        for (const topics::Command& command : wishes.commands) feed_.subscriber().sendCommand(command);
+        if (wishes.reset_view) scene_.resetView();
+        if (wishes.centre_at)
+            if (const auto p_W = pick(*wishes.centre_at)) scene_.camera().target_W = *p_W;
+        if (wishes.removal_at) askForRemoval(*wishes.removal_at);
+        if (wishes.notice) notices_.show(*wishes.notice);
+        if (!wishes.asked.empty()) spdlog::info("asked: {}", wishes.asked);
+        has_quit_ = has_quit_ || wishes.quit;
+        if (wishes.session) chosen_ = wishes.session;
+    }
+
+    void askForRemoval(const PixelPoint& at) {
+        const auto p_W = pick(at);
+        if (!p_W) return notices_.show({"There is no bone under the mouse", HudTone::kWarning});
+        topics::Command command;
+        command.mutable_replay()->mutable_removal_at()->mutable_p_m()->Assign(p_W->begin(), p_W->end());
+        feed_.subscriber().sendCommand(command);
+    }
+
+    std::optional<Eigen::Vector3d> pick(const PixelPoint& at) { return scene_.pick(int(at.x), int(at.y)); }
+
+    // The panel hides what lies under it, and a mouse that does something else asks for no name.
+    std::optional<std::pair<int, int>> mouseOverScene(int width, int height) {
+        const auto at = controls_.hovering();
+        if (!at || is_over_panel_ || at->x < 0 || at->y < 0 || at->x >= width || at->y >= height)
+            return std::nullopt;
+        return std::pair(int(at->x), int(at->y));
+    }
+
+    void announce() {
+        const auto at = controls_.pointing();
+        const bool is_holding = controls_.toolHold().isHolding();
+        const bool is_news = std::exchange(was_holding_, is_holding) != is_holding;
+        const Clock::time_point now = Clock::now();
+        const std::optional<Camera> seen = seenForRecording();
+        const bool has_moved = seen && eye_watch_.isDue(now, *seen);
+        if (!announce_clock_.isDue(now, at.has_value()) && !is_news && !has_moved) return;
+        pointer_W_ = at ? pick(*at) : std::nullopt;
+        if (seen) eye_watch_.told(now, *seen);
+        feed_.subscriber().announce(frame_rate_.perSecond(), pointer_W_, is_holding,
+                                    seen ? std::optional(eyeOf(*seen)) : std::nullopt);
+    }
+
+    // Who operates, or was named as the trainee, is recorded with what it sees.
+    std::optional<Camera> seenForRecording() const {
+        const SubscriberOptions& self = options_.subscriber;
+        if (!self.is_trainee && self.role != topics::Viewer::OPERATOR) return std::nullopt;
+        if (!scene_.hasSceneInfo()) return std::nullopt;
+        return scene_.viewCamera();
+    }
+
+    // Returns the others, and the user while it points: the laser is seen where it is held, too.
+    std::vector<topics::Viewer> watchers(const SessionView& session) const {
+        std::vector<topics::Viewer> watchers = session.others;
+        if (!pointer_W_) return watchers;
+        topics::Viewer& self = watchers.emplace_back();
+        self.set_name(session.name);
+        self.set_role(session.role);
+        self.set_frame_rate_hz(session.frame_rate_hz);
+        self.set_is_complete(session.is_complete);
+        self.mutable_pointer_m()->Assign(pointer_W_->begin(), pointer_W_->end());
+        return watchers;
+    }
+
+    void savePicture(int width, int height) {
+        try {
+            const std::filesystem::path name = nextName("bonemill_%04d.png");
+            writePng(readPicture(window_.gl(), width, height), name);
+            notices_.show({"Picture saved: " + name.string(), HudTone::kGood});
+        } catch (const UserError& error) {
+            notices_.show({error.what(), HudTone::kWarning});
+        }
+    }
+
+    void saveAttempts(const topics::Lesson& lesson) {
+        try {
+            WholeFile file(nextName("bonemill_attempts_%04d.csv"));
+            std::ofstream stream(file.part(), std::ios::binary);
+            stream << attemptsCsv(lesson);
+            stream.close();
+            if (!stream) throw UserError("cannot write " + file.path().string() + "; is the disk full?");
+            file.finish();
+            notices_.show(
+                {"Attempts saved: " + std::filesystem::absolute(file.path()).string(), HudTone::kGood});
+        } catch (const std::exception& error) {
+            notices_.show({error.what(), HudTone::kWarning});
+        }
+    }
+
+    const ClientOptions& options_;
+    GlfwWindow window_;
+    RenderScene scene_;
+    SoundFeed sound_;
+    SceneFeed feed_;
+    ViewerControls controls_;
+    HandFeed hand_;
+    RemarkFeed remarks_;
+    Panel panel_;
+    PanelPainter painter_;
+    Notices notices_;
+    Attendance attendance_;
+    FrameRate frame_rate_;
+    AnnounceClock announce_clock_;
+    EyeWatch eye_watch_;
+    std::optional<Eigen::Vector3d> pointer_W_;  // where the user points, as announced last
+    Clock::time_point last_picture_ = Clock::now();
+    bool was_holding_ = false;  // as announced last
+    bool has_quit_ = false;
+    bool is_over_panel_ = false;           // the mouse
+    std::optional<SessionList> sessions_;  // where none was asked for
+    std::vector<OfferedSession> offered_;
+    Clock::time_point alone_since_ = Clock::now();
+    std::optional<uint32_t> chosen_;  // to be joined
+};
+
+}  // namespace
+
+void runWindow(const ClientOptions& options) {
+    ClientOptions chosen = options;
+    if (options.chooses_session) chosen.subscriber.session = kNoSession;
+    while (const std::optional<uint32_t> session = WindowViewer(chosen).run()) {
+        spdlog::info("session {}", *session);
+        chosen.subscriber.session = *session;
+        chosen.chooses_session = false;
+    }
+}
+
+}  // namespace bonemill

@@ -1,0 +1,318 @@
+// The left of the screen: the five steps from a scan to a case.
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "common/base/units.h"
+#include "common/text/printed_text.h"
+#include "render_client/case_window/case_screen/case_screen.h"
+#include "render_client/case_window/case_screen/histogram_plot.h"
+
+namespace bonemill {
+namespace {
+
+constexpr size_t kLongestText = 4096;
+constexpr float kPlotHeight = 84;  // pixels at scale 1
+
+bool isStepOpen(const char* title) {
+    ImGui::Dummy(ImVec2(0, ImGui::GetStyle().ItemSpacing.y / 2));
+    return ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen);
+}
+
+const char* doubtText(IsoDoubt doubt) {
+    switch (doubt) {
+        case IsoDoubt::kLittle:
+            return "quite sure";
+        case IsoDoubt::kSome:
+            return "some doubt: look at the line";
+        case IsoDoubt::kLarge:
+            break;
+    }
+    return "large doubt: look at the line and move it";
+}
+
+// Whole values stay whole.
+double roundedIso(double value, const RawVolume& scan, const Histogram& histogram) {
+    const double step = scan.values.range().are_integers ? 1 : histogram.width / 8;
+    return std::round(value / step) * step;
+}
+
+}  // namespace
+
+bool CaseScreen::button(const char* label, bool is_enabled) {
+    ImGui::BeginDisabled(!is_enabled);
+    const bool is_pressed = ImGui::Button(label);
+    ImGui::EndDisabled();
+    notePlace(places_, label);
+    return is_pressed && is_enabled;
+}
+
+bool CaseScreen::choice(const char* label, bool is_chosen) {
+    const bool is_pressed = ImGui::RadioButton(label, is_chosen);
+    notePlace(places_, label);
+    return is_pressed && !is_chosen;
+}
+
+// Returns true when it was entered; so much of the line stays free at the right.
+bool CaseScreen::isTyped(const char* label, const char* hint, std::string& text, float free_width) {
+    char typed[kLongestText] = {};
+    std::strncpy(typed, text.c_str(), sizeof typed - 1);
+    ImGui::SetNextItemWidth(free_width > 0 ? -free_width : -1);
+    const bool is_entered =
+        ImGui::InputTextWithHint(label, hint, typed, sizeof typed, ImGuiInputTextFlags_EnterReturnsTrue);
+    notePlace(places_, label);
+    text = typed;
+    return is_entered;
+}
+
+void CaseScreen::say(const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::PopStyleColor();
+}
+
+void CaseScreen::buildSteps() {
+    if (isStepOpen("1  Scan")) buildScan();
+    if (desk_.scan()) {
+        if (isStepOpen("2  Bone")) buildBone();
+        if (isStepOpen("3  Place")) buildPlace();
+        if (isStepOpen("4  Structures")) buildStructures();
+    }
+    if (isStepOpen(desk_.scan() ? "5  Case" : "Case")) buildCase();
+}
+
+void CaseScreen::buildScan() {
+    const float buttons = 124 * stage_.scale();
+    const bool is_entered = isTyped("##scan", "folder or file of a scan", typed_path_, buttons);
+    ImGui::SameLine();
+    if ((button("Open", !typed_path_.empty()) || is_entered) && !typed_path_.empty()) desk_.open(typed_path_);
+    ImGui::SameLine();
+    if (button("Browse")) {
+        browses_for_labels_ = false;
+        browse_.open("Where is the scan?", typed_path_, true);
+    }
+    if (desk_.series().size() > 1) buildSeries();
+    if (const RawVolume* const scan = desk_.scan()) {
+        const VolumeGeometry& grid = scan->geometry;
+        const Eigen::Vector3d mm = grid.spacing * kPerMillimetre;
+        say(printed("%d x %d x %d voxels of %.3g x %.3g x %.3g mm", grid.dims.x(), grid.dims.y(),
+                    grid.dims.z(), mm.x(), mm.y(), mm.z()));
+    }
+}
+
+void CaseScreen::buildSeries() {
+    constexpr int kColumns = 4;
+    const float height =
+        std::min(float(desk_.series().size()) + 1.6f, 7.f) * ImGui::GetTextLineHeightWithSpacing();
+    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_ScrollX |
+                                       ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit;
+    if (!ImGui::BeginTable("series", kColumns, kFlags, ImVec2(0, height))) return;
+    ImGui::TableSetupScrollFreeze(0, 1);
+    for (const char* const head : {"series", "kernel", "slices", "voxel mm"}) ImGui::TableSetupColumn(head);
+    ImGui::TableHeadersRow();
+    for (size_t n = 0; n < desk_.series().size(); ++n) {
+        const SeriesRow& row = desk_.series()[n];
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        const std::string name = row.modality + " " + (row.description == "-" ? row.uid : row.description) +
+                                 (row.acquisition == "-" ? "" : " " + row.acquisition) +
+                                 (row.is_recommended ? "  (best for bone)" : "");
+        const std::string label = "series " + std::to_string(n + 1);
+        ImGui::PushID(int(n));
+        if (ImGui::Selectable(name.c_str(), desk_.chosenSeries() == n, ImGuiSelectableFlags_SpanAllColumns))
+            desk_.chooseSeries(n);
+        ImGui::PopID();
+        notePlace(places_, label);
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("%s\n%s, contrast %s\n%s", row.uid.c_str(), row.size.c_str(),
+                              row.contrast.c_str(), row.remark.c_str());
+        for (const std::string& cell : {row.kernel, row.slices, row.voxel_mm}) {
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(cell.c_str());
+        }
+    }
+    ImGui::EndTable();
+}
+
+void CaseScreen::buildBone() {
+    buildIso();
+    buildWindow();
+    buildPieces();
+}
+
+void CaseScreen::buildIso() {
+    const Histogram& histogram = desk_.histogram();
+    const std::optional<double> iso = desk_.iso();
+    const auto& proposed = desk_.proposed();
+    const auto runner_up = proposed ? proposed->runner_up : std::nullopt;
+    const auto moved =
+        plotHistogram(histogram, iso, runner_up, desk_.window, kPlotHeight * stage_.scale(), places_);
+    const bool is_line_held = ImGui::IsItemActive();
+    const ValueRange& range = desk_.scan()->values.range();
+    const double high =
+        std::min(range.high, histogram.low + histogram.width * double(histogram.count.size()));
+    const auto take = [&](double value) {
+        const double least = std::max(range.low, histogram.low);
+        desk_.setIso(roundedIso(std::clamp(value, least, high), *desk_.scan(), histogram));
+    };
+    if (moved) take(*moved);
+    auto value = float(iso.value_or((range.low + high) / 2));
+    ImGui::SetNextItemWidth(-110 * stage_.scale());
+    if (ImGui::SliderFloat("iso-value", &value, float(std::max(range.low, histogram.low)), float(high),
+                           range.are_integers ? "%.0f" : "%.4g"))
+        take(double(value));
+    notePlace(places_, "iso-value");
+    desk_.hold(is_line_held || ImGui::IsItemActive());
+    if (!proposed) return;
+    say(printed("Proposed: %.4g, %s (%s).", proposed->value, doubtText(proposed->doubt),
+                proposed->why.c_str()) +
+        (runner_up ? printed(" It could be %.4g, too.", *runner_up) : ""));
+    if (desk_.request().iso && button("Take the proposal")) desk_.setIso(std::nullopt);
+    if (runner_up && desk_.request().iso != runner_up) {
+        if (desk_.request().iso) ImGui::SameLine();
+        if (button("Take the other")) desk_.setIso(*runner_up);
+    }
+}
+
+void CaseScreen::buildWindow() {
+    const Histogram& histogram = desk_.histogram();
+    const double low = histogram.low,
+                 high = low + std::max(histogram.width * double(histogram.count.size()), 1e-6);
+    auto level = float(desk_.window.level), width = float(desk_.window.width);
+    ImGui::SetNextItemWidth(-110 * stage_.scale());
+    if (ImGui::SliderFloat("grey level", &level, float(low), float(high), "%.4g"))
+        desk_.window.level = double(level);
+    notePlace(places_, "grey level");
+    ImGui::SetNextItemWidth(-110 * stage_.scale());
+    if (ImGui::SliderFloat("grey width", &width, float((high - low) / 256), float(2 * (high - low)), "%.4g",
+                           ImGuiSliderFlags_Logarithmic))
+        desk_.window.width = double(width);
+    notePlace(places_, "grey width");
+}
+
+void CaseScreen::buildPieces() {
+    const CaseBone* const bone = desk_.bone();
+    if (!bone) return;
+    const float rows = std::min(float(bone->pieces.size()), 5.5f);
+    ImGui::TextUnformatted("Pieces of bone (ticked: kept)");
+    if (ImGui::BeginChild("pieces", ImVec2(0, rows * ImGui::GetFrameHeightWithSpacing()))) {
+        ImGui::BeginDisabled(!desk_.isBoneOfNow());
+        const std::vector<uint32_t> dropped = desk_.request().drop_pieces;
+        for (size_t n = 0; n < bone->pieces.size(); ++n) {
+            const CasePiece& piece = bone->pieces[n];
+            bool is_kept = std::ranges::find(dropped, n + 1) == dropped.end();
+            const std::string label = "piece " + std::to_string(n + 1);
+            if (ImGui::Checkbox(
+                    printed("%zu   %.3g cm\xc2\xb3", n + 1, piece.volume * kPerCubicCentimetre).c_str(),
+                    &is_kept))
+                desk_.keepPiece(n, is_kept);
+            notePlace(places_, label);
+            ImGui::SameLine();
+            ImGui::PushID(int(n));
+            if (ImGui::SmallButton("show")) desk_.moveCross(piece.middle);
+            ImGui::PopID();
+        }
+        ImGui::EndDisabled();
+    }
+    ImGui::EndChild();
+    if (bone->noise_pieces > 0) say(printed("%zu smaller ones are taken for noise.", bone->noise_pieces));
+}
+
+void CaseScreen::buildPlace() {
+    if (choice("All of the bone is milled", !desk_.isOfPart())) desk_.millPart(false);
+    if (choice("A part of it, with fine voxels", desk_.isOfPart())) desk_.millPart(true);
+    if (desk_.isOfPart()) {
+        auto size = float(desk_.sizeMm());
+        ImGui::SetNextItemWidth(-110 * stage_.scale());
+        if (ImGui::SliderFloat("edge mm", &size, 2, 200, "%.0f", ImGuiSliderFlags_Logarithmic))
+            desk_.setSizeMm(std::clamp(std::round(double(size)), 2.0, 500.0));
+        notePlace(places_, "edge mm");
+        if (button("Place it at the cross")) desk_.placeAt(desk_.marks().cross_W);
+        say("The green box is what is milled: drag its middle in the slices.");
+    }
+    say("The hand comes along the red arrow: drag its round end in the slices.");
+    if (desk_.isHandChosen() && button("Let it come from outside")) desk_.bringHandFromOutside();
+    if (desk_.planProblem().empty()) return;
+    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.00f, 0.80f, 0.35f, 1));
+    ImGui::TextWrapped("%s", desk_.planProblem().c_str());
+    ImGui::PopStyleColor();
+}
+
+void CaseScreen::buildStructures() {
+    const float buttons = 148 * stage_.scale();
+    const bool is_entered = isTyped("##labels", "label map, if there is one", typed_labels_, buttons);
+    ImGui::SameLine();
+    if ((button("Open map", !typed_labels_.empty()) || is_entered) && !typed_labels_.empty())
+        desk_.openLabels(typed_labels_);
+    ImGui::SameLine();
+    if (button("Browse##labels")) {
+        browses_for_labels_ = true;
+        browse_.open("Where is the label map?", typed_labels_.empty() ? typed_path_ : typed_labels_, false);
+    }
+    if (desk_.structures().empty()) return;
+    const float rows = std::min(float(desk_.structures().size()), 6.5f);
+    if (ImGui::BeginChild("structures", ImVec2(0, rows * ImGui::GetFrameHeightWithSpacing())))
+        for (size_t row = 0; row < desk_.structures().size(); ++row) buildStructure(row);
+    ImGui::EndChild();
+}
+
+void CaseScreen::buildStructure(size_t row) {
+    constexpr const char* kUses[] = {"ignored", "shown", "protected", "target"};
+    StructureRow& structure = desk_.structures()[row];
+    ImGui::PushID(int(row));
+    const auto tint = structureTint(row);
+    ImGui::ColorButton("##tint", ImVec4(tint[0] / 255.f, tint[1] / 255.f, tint[2] / 255.f, 1),
+                       ImGuiColorEditFlags_NoTooltip);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(96 * stage_.scale());
+    int use = int(structure.use);
+    if (ImGui::Combo("##use", &use, kUses, int(std::size(kUses)))) structure.use = StructureUse(use);
+    notePlace(places_, "use of " + structure.name);
+    ImGui::SameLine();
+    if (structure.number) {
+        ImGui::Text("%u", *structure.number);
+        ImGui::SameLine();
+        isTyped("##name", "name", structure.name, 0);
+    } else {
+        ImGui::TextUnformatted(structure.name.c_str());
+    }
+    ImGui::PopID();
+}
+
+void CaseScreen::buildTools() {
+    const std::filesystem::path chosen = desk_.tools();
+    const std::string shown = chosen.empty() ? "the default burr" : chosen.stem().string();
+    ImGui::SetNextItemWidth(-110 * stage_.scale());
+    const bool is_open = ImGui::BeginCombo("burrs", shown.c_str());
+    notePlace(places_, "burrs");
+    if (!is_open) return;
+    if (ImGui::Selectable("the default burr", chosen.empty())) desk_.tools().clear();
+    for (const std::filesystem::path& set : tool_sets_) {
+        if (ImGui::Selectable(set.stem().c_str(), chosen == set)) desk_.tools() = set.string();
+        notePlace(places_, set.stem().string());
+    }
+    ImGui::EndCombo();
+}
+
+void CaseScreen::buildCase() {
+    const float labels = 110 * stage_.scale();
+    buildTools();
+    isTyped("title", "what people read in lists", desk_.title(), labels);
+    isTyped("new folder", "for the case", desk_.out(), labels);
+    const std::string why_not = desk_.whyNotYet();
+    ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0.13f, 0.48f, 0.26f, 1));
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImVec4(0.18f, 0.60f, 0.33f, 1));
+    if (button("Make the case", why_not.empty())) desk_.make();
+    ImGui::PopStyleColor(2);
+    if (!why_not.empty()) say(why_not);
+    if (!desk_.madeScene().empty()) {
+        ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.45f, 0.9f, 0.55f, 1));
+        ImGui::TextWrapped("Made: %s", desk_.madeScene().c_str());
+        ImGui::PopStyleColor();
+        say("Mill it: bonemill start " + desk_.madeScene());
+    }
+}
+
+}  // namespace bonemill

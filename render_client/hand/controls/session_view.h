@@ -1,0 +1,60 @@
+// A viewer knows this about its session, for those who show it, and who may ask the server for what.
+//
+// They are plain values, for any thread. The pointers are the owner's; they are null while nothing
+// has come yet.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "proto/topics.pb.h"
+#include "render_client/hand/controls/key_table.h"
+#include "render_client/look/hud/fault_book.h"
+
+namespace bonemill {
+
+// A session that can be joined, where none was asked for.
+struct OfferedSession {
+    uint32_t number = 0;
+    std::string text;  // for people
+};
+
+struct SessionView {
+    std::string name;  // of this viewer
+    topics::Viewer::Role role = topics::Viewer::OPERATOR;
+    bool has_server = false;
+    bool is_complete = false;  // this viewer shows the server's whole model
+    double frame_rate_hz = 0;  // of this viewer
+    double time_s = 0;         // any clock that goes on
+    int64_t realtime_ns = 0;   // CLOCK_REALTIME of this PC
+    const topics::SceneInfo* info = nullptr;
+    const topics::Status* status = nullptr;
+    const topics::Lesson* lesson = nullptr;
+    std::vector<topics::Viewer> others = {};
+    std::vector<OfferedSession> offered = {};                     // to choose from; empty: nothing to choose
+    const std::map<uint32_t, topics::Remark>* remarks = nullptr;  // by place
+    std::vector<FaultEntry> faults = {};                          // of the session, the first one first
+};
+
+// Returns why this viewer may not do it, a sentence for the user; empty when it may.
+std::string whyNotCommand(const SessionView& session);
+std::string whyNotHold(const SessionView& session);
+std::string whyNotPoint(const SessionView& session);
+std::string whyNotEndSession(const SessionView& session);
+
+// The session is a replay of a recorded one.
+bool isReplay(const SessionView& session);
+
+// The session's tool is held by a mouse (device_daemon --device pointer).
+bool isHeldByMouse(const SessionView& session);
+
+// It says what an action asks of the server, or why it cannot be asked. Both are empty for actions that are
+// none of the server's business.
+struct CommandOrReason {
+    std::optional<topics::Command> command;
+    std::string why_not;
+};
+CommandOrReason commandOf(Action action, const SessionView& session);
+
+}  // namespace bonemill

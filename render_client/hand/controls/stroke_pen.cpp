@@ -1,0 +1,76 @@
+#include "render_client/hand/controls/stroke_pen.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "common/dds/remark_bounds.h"
+
+namespace bonemill {
+
+void StrokePen::begin(const PixelPoint& at) {
+    *this = {};
+    is_down_ = true;
+    way_.push_back(last_ = at);
+}
+
+void StrokePen::move(const PixelPoint& to) {
+    if (!is_down_) return;
+    const double right = to.x - last_.x, down = to.y - last_.y;
+    const int steps = int(std::min(std::hypot(right, down) / kPixelsApart, double(kMostPixels)));
+    for (int n = 1; n <= steps && pixels_ < kMostPixels; ++n, ++pixels_)
+        way_.push_back({last_.x + right * n / steps, last_.y + down * n / steps});
+    if (steps > 0) last_ = to;
+}
+
+void StrokePen::add(const Eigen::Vector3d& p_W) {
+    const bool is_apart =
+        is_lifted_ || strokes_.empty() || (strokes_.back().back() - p_W).norm() > kMostApart;
+    if (is_apart && strokes_.size() == kMostStrokes) return;
+    is_lifted_ = false;
+    if (is_apart)
+        strokes_.push_back({p_W});
+    else if ((strokes_.back().back() - p_W).norm() >= kApart)
+        strokes_.back().push_back(p_W);
+}
+
+const std::vector<Eigen::Vector3d>& StrokePen::points() const {
+    static const std::vector<Eigen::Vector3d> kNone;
+    return strokes_.empty() ? kNone : strokes_.back();
+}
+
+std::vector<topics::Command> StrokePen::takeOrders(const std::string& author) {
+    std::vector<topics::Command> orders;
+    if (!has_ended_ || !way_.empty()) return orders;
+    has_ended_ = false;
+    for (const std::vector<Eigen::Vector3d>& stroke : std::exchange(strokes_, {})) {
+        if (stroke.size() < 2) continue;
+        topics::Remark& remark = *orders.emplace_back().mutable_add_remark();
+        for (const Eigen::Vector3d& p_W : thinned(stroke))
+            for (const double value : p_W) remark.add_points_m(float(value));
+        remark.set_color(colourOfAuthor(author));
+    }
+    return orders;
+}
+
+uint32_t colourOfAuthor(const std::string& author) {
+    constexpr std::array<uint32_t, 8> kColours{0xffd23f, 0x3fa7ff, 0x52d273, 0xff7a3f,
+                                               0xc77dff, 0x2ee6d6, 0xff5f8f, 0xb7e34a};
+    uint32_t hash = 2166136261u;  // FNV-1a
+    for (const char letter : author) hash = (hash ^ uint8_t(letter)) * 16777619u;
+    return kColours[hash % kColours.size()];
+}
+
+std::vector<Eigen::Vector3d> thinned(std::vector<Eigen::Vector3d> points) {
+    while (points.size() > size_t(kMostRemarkPoints)) {
+        const Eigen::Vector3d last = points.back();
+        size_t kept = 0;
+        for (size_t n = 0; n < points.size(); n += 2) points[kept++] = points[n];
+        points.resize(kept);
+        if (points.back() != last) points.push_back(last);
+    }
+    return points;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,54 @@
+// Makes a stroke on the bone of the way that the mouse takes over a picture: the owner says what lies under
+// the pixels on that way. Places are in W, m; pixels count from the picture's upper left. It belongs to the
+// render thread.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "proto/topics.pb.h"
+#include "render_client/hand/controls/window_event.h"
+
+namespace bonemill {
+
+class StrokePen {
+  public:
+    static constexpr double kPixelsApart = 3;     // of the places that the owner is asked for
+    static constexpr double kApart = 0.5e-3;      // m: what is nearer to the last point is left out
+    static constexpr double kMostApart = 6e-3;    // m: farther away, another stroke begins
+    static constexpr size_t kMostStrokes = 8;     // of one drag
+    static constexpr size_t kMostPixels = 20000;  // of one drag
+
+    void begin(const PixelPoint& at);
+    void move(const PixelPoint& to);
+    void end() { has_ended_ = has_ended_ || is_down_, is_down_ = false; }
+    bool isDown() const { return is_down_; }
+
+    // Returns the pixels on the way since the last call.
+    std::vector<PixelPoint> takeWay() { return std::exchange(way_, {}); }
+    void add(const Eigen::Vector3d& p_W);
+    // Nothing lies under a pixel: there the stroke is parted.
+    void lift() { is_lifted_ = true; }
+    // Returns the points of the stroke that is being drawn; none when nothing is.
+    const std::vector<Eigen::Vector3d>& points() const;
+    // Returns the orders that show it to everyone, after the drag has ended and its way was taken; mostly
+    // none.
+    std::vector<topics::Command> takeOrders(const std::string& author);
+
+  private:
+    std::vector<std::vector<Eigen::Vector3d>> strokes_;
+    std::vector<PixelPoint> way_;
+    PixelPoint last_;
+    size_t pixels_ = 0;
+    bool is_down_ = false, has_ended_ = false, is_lifted_ = true;
+};
+
+// Returns the colour (0xRRGGBB) in which this author draws: the same for everyone and always.
+uint32_t colourOfAuthor(const std::string& author);
+
+// Returns every second point, and again, until there are no more than kMostRemarkPoints; the ends stay.
+std::vector<Eigen::Vector3d> thinned(std::vector<Eigen::Vector3d> points);
+
+}  // namespace bonemill

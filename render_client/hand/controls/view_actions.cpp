@@ -1,0 +1,186 @@
+// What keys and panel do to the view.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "render_client/hand/controls/viewer_controls.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kZoomPerKey = 0.9;      // distance factor of + and -
+constexpr double kOrbitPerKey = 0.0873;  // rad, 5 degrees
+constexpr double kCutStep = 0.02;        // of the bone's box
+constexpr double kTextStep = 1.25;       // factor
+
+StereoMode nextStereo(StereoMode mode) {
+    switch (mode) {
+        case StereoMode::kOff:
+            return StereoMode::kSideBySide;
+        case StereoMode::kSideBySide:
+            return StereoMode::kAnaglyph;
+        case StereoMode::kAnaglyph:
+            return StereoMode::kOff;
+    }
+    return StereoMode::kOff;
+}
+
+CtShown nextCt(CtShown shown) {
+    return CtShown((int(shown) + 1) % (int(CtShown::kMaterialsOnCuts) + 1));
+}
+
+StructureMode nextMode(StructureMode mode) {
+    return StructureMode((int(mode) + 1) % (int(StructureMode::kOff) + 1));
+}
+
+// W is LPS: x to the patient's left, y to the back, z to the head.
+Eigen::Vector3d directionOf(Side side) {
+    switch (side) {
+        case Side::kFront:
+            return -Eigen::Vector3d::UnitY();
+        case Side::kBack:
+            return Eigen::Vector3d::UnitY();
+        case Side::kLeft:
+            return Eigen::Vector3d::UnitX();
+        case Side::kRight:
+            return -Eigen::Vector3d::UnitX();
+        case Side::kTop:
+            return Eigen::Vector3d::UnitZ();
+        case Side::kBottom:
+            return -Eigen::Vector3d::UnitZ();
+    }
+    return -Eigen::Vector3d::UnitY();
+}
+
+// The camera's own axes for its `up` are read off the camera.
+Eigen::Vector3d towardsEyeAt(OrbitCamera camera, double azimuth) {
+    camera.azimuth = azimuth;
+    camera.elevation = 0;
+    return camera.towardsEye_W();
+}
+
+}  // namespace
+
+void ViewerControls::changeView(Action action) {
+    const auto toggle = [](bool& value) { value = !value; };
+    switch (action) {
+        case Action::kForceArrow:
+            return toggle(settings_.show_force);
+        case Action::kCutX:
+        case Action::kCutY:
+        case Action::kCutZ:
+            return switchCut(size_t(action) - size_t(Action::kCutX));
+        case Action::kFlipX:
+        case Action::kFlipY:
+        case Action::kFlipZ:
+            return flipCut(size_t(action) - size_t(Action::kFlipX));
+        case Action::kCutLower:
+            return moveCut(-kCutStep);
+        case Action::kCutHigher:
+            return moveCut(kCutStep);
+        case Action::kScanOnBone:
+            settings_.slices.ct = nextCt(settings_.slices.ct);
+            return;
+        case Action::kSlices:
+            return toggle(settings_.slices.are_shown);
+        case Action::kTransparency:
+            return toggle(settings_.is_transparent);
+        case Action::kStructures:
+            return settings_.structures.fill(nextMode(settings_.structures[0]));
+        case Action::kThickness:
+            return toggle(settings_.show_thickness);
+        case Action::kStereo:
+            return setStereo(nextStereo(settings_.stereo));
+        case Action::kQuickDrawing:
+            settings_.quality = settings_.quality == Quality::kFull ? Quality::kQuick : Quality::kFull;
+            return;
+        case Action::kEndoscope:
+            return switchCamera(CameraMode::kEndoscope);
+        case Action::kMicroscope:
+            return switchCamera(CameraMode::kMicroscope);
+        case Action::kWatchers:
+            settings_.show_details = false;
+            return toggle(settings_.show_watchers);
+        case Action::kRemarks:
+            return toggle(settings_.show_remarks);
+        case Action::kPanel:
+            return toggle(is_panel_open_);
+        case Action::kHud:
+            return toggle(settings_.show_hud);
+        case Action::kDetails:
+            return switchDetails();
+        case Action::kHelp:
+            return toggle(settings_.show_help);
+        case Action::kLargerText:
+            return scaleText(kTextStep);
+        case Action::kSmallerText:
+            return scaleText(1 / kTextStep);
+        case Action::kOrbitLeft:
+            return camera_.orbit(kOrbitPerKey, 0);
+        case Action::kOrbitRight:
+            return camera_.orbit(-kOrbitPerKey, 0);
+        case Action::kOrbitUp:
+            return camera_.orbit(0, -kOrbitPerKey);
+        case Action::kOrbitDown:
+            return camera_.orbit(0, kOrbitPerKey);
+        case Action::kZoomIn:
+            return camera_.zoom(kZoomPerKey);
+        case Action::kZoomOut:
+            return camera_.zoom(1 / kZoomPerKey);
+        default:
+            return;
+    }
+}
+
+// Who asks for all figures wants to see them. Of two lists one is open, so that the bone stays in view.
+void ViewerControls::switchDetails() {
+    settings_.show_watchers = false;
+    settings_.show_details = !(settings_.show_hud && settings_.show_details);
+    settings_.show_hud = true;
+}
+
+void ViewerControls::scaleText(double factor) {
+    settings_.text_scale =
+        std::clamp(settings_.text_scale * factor, ViewSettings::kLeastText, ViewSettings::kMostText);
+}
+
+void ViewerControls::switchCamera(CameraMode mode) {
+    settings_.camera = settings_.camera == mode ? CameraMode::kOrbit : mode;
+}
+
+void ViewerControls::switchCut(size_t axis) {
+    settings_.cuts[axis].is_on = !settings_.cuts[axis].is_on;
+    last_cut_ = axis;
+}
+
+void ViewerControls::flipCut(size_t axis) {
+    settings_.cuts[axis].is_flipped = !settings_.cuts[axis].is_flipped;
+    last_cut_ = axis;
+}
+
+void ViewerControls::moveCut(double by) {
+    CutPlane& cut = settings_.cuts[last_cut_];
+    cut.position = std::clamp(cut.position + by, 0.0, 1.0);
+}
+
+void ViewerControls::moveCutTo(size_t axis, double position) {
+    settings_.cuts[axis].is_on = true;
+    settings_.cuts[axis].position = std::clamp(position, 0.0, 1.0);
+    last_cut_ = axis;
+}
+
+void ViewerControls::setOpacity(double opacity) {
+    settings_.is_transparent = true;
+    settings_.opacity = std::clamp(opacity, 0.0, 1.0);
+}
+
+void ViewerControls::lookFrom(Side side) {
+    const Eigen::Vector3d direction = directionOf(side);
+    const Eigen::Vector3d front = towardsEyeAt(camera_, 0), left = towardsEyeAt(camera_, M_PI / 2);
+    camera_.elevation = std::asin(std::clamp(direction.dot(camera_.up_W()), -1.0, 1.0));
+    const Eigen::Vector2d level(direction.dot(front), direction.dot(left));
+    camera_.azimuth = level.norm() > 1e-6 ? std::atan2(level.y(), level.x()) : 0;
+    camera_.orbit(0, 0);  // into range
+}
+
+}  // namespace bonemill

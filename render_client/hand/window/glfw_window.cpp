@@ -1,0 +1,181 @@
+#include "render_client/hand/window/glfw_window.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include "common/base/user_error.h"
+
+namespace bonemill {
+namespace {
+
+constexpr struct {
+    int glfw;
+    Key key;
+} kSpecialKeys[] = {
+    {GLFW_KEY_ENTER, Key::kEnter},   {GLFW_KEY_KP_ENTER, Key::kEnter},
+    {GLFW_KEY_TAB, Key::kTab},       {GLFW_KEY_BACKSPACE, Key::kBackspace},
+    {GLFW_KEY_DELETE, Key::kDelete}, {GLFW_KEY_ESCAPE, Key::kEscape},
+    {GLFW_KEY_LEFT, Key::kLeft},     {GLFW_KEY_RIGHT, Key::kRight},
+    {GLFW_KEY_UP, Key::kUp},         {GLFW_KEY_DOWN, Key::kDown},
+    {GLFW_KEY_HOME, Key::kHome},     {GLFW_KEY_END, Key::kEnd},
+    {GLFW_KEY_F12, Key::kF12},       {GLFW_KEY_SPACE, Key::kSpace},
+};
+
+// GLFW names letters by their place on a US keyboard; the user reads what is printed on them.
+Key letterOf(int key, int scancode) {
+    const char* name = glfwGetKeyName(key, scancode);
+    if (name && name[1] == '\0' && std::isalpha(static_cast<unsigned char>(name[0])))
+        return keyOf(char(std::toupper(static_cast<unsigned char>(name[0]))));
+    const bool is_latin = name && static_cast<unsigned char>(name[0]) < 0x80;
+    return !is_latin && key >= GLFW_KEY_A && key <= GLFW_KEY_Z ? Key(key) : Key::kNone;
+}
+
+Key keyOfGlfw(int key, int scancode) {
+    if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) return Key(key);
+    if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) return Key(key - GLFW_KEY_KP_0 + '0');
+    for (const auto& special : kSpecialKeys)
+        if (special.glfw == key) return special.key;
+    return letterOf(key, scancode);
+}
+
+Modifiers modifiersOf(int bits) {
+    return {(bits & GLFW_MOD_SHIFT) != 0, (bits & GLFW_MOD_CONTROL) != 0};
+}
+
+[[noreturn]] void failWith(const std::string& what, const std::string& advice) {
+    const char* reason = nullptr;
+    glfwGetError(&reason);
+    throw UserError(what + (reason ? std::string(": ") + reason : "") + ". " + advice);
+}
+
+}  // namespace
+
+GlfwWindow::Library::Library(const std::string& advice) {
+    if (!glfwInit()) failWith("cannot open a window", advice);
+}
+
+GlfwWindow::Library::~Library() {
+    glfwTerminate();
+}
+
+GlfwWindow::GlfwWindow(int width, int height, const std::string& title, const std::string& advice)
+    : library_(advice) {
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+    if (!window_) failWith("cannot open a window with OpenGL 3.3", advice);
+    glfwMakeContextCurrent(window_);
+    glfwSwapInterval(1);
+    gl_ = GlApi::load([](const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); });
+    glfwSetWindowUserPointer(window_, this);
+    crosshair_ = glfwCreateStandardCursor(GLFW_CROSSHAIR_CURSOR);
+    double x = 0, y = 0;
+    glfwGetCursorPos(window_, &x, &y);
+    mouse_ = toPixels(x, y);
+    listen();
+}
+
+void GlfwWindow::listen() {
+    glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int scancode, int action, int modifiers) {
+        of(w).events_.push_back(KeyEvent{keyOfGlfw(key, scancode), action != GLFW_RELEASE,
+                                         action == GLFW_REPEAT, modifiersOf(modifiers)});
+    });
+    glfwSetCharCallback(window_,
+                        [](GLFWwindow* w, unsigned sign) { of(w).events_.push_back(TextEvent{sign}); });
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int modifiers) {
+        of(w).onButton(button, action, modifiers);
+    });
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
+        of(w).mouse_ = of(w).toPixels(x, y);
+        of(w).events_.push_back(MouseMoveEvent{of(w).mouse_});
+    });
+    glfwSetScrollCallback(window_,
+                          [](GLFWwindow* w, double, double y) { of(w).events_.push_back(ScrollEvent{y}); });
+    glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
+        of(w).dropped_.insert(of(w).dropped_.end(), paths, paths + count);
+    });
+}
+
+GlfwWindow::~GlfwWindow() {
+    glfwDestroyWindow(window_);
+}
+
+GlfwWindow& GlfwWindow::of(GLFWwindow* window) {
+    return *static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window));
+}
+
+std::vector<WindowEvent> GlfwWindow::takeEvents() {
+    glfwPollEvents();
+    return std::exchange(events_, {});
+}
+
+std::vector<std::string> GlfwWindow::takeDropped() {
+    return std::exchange(dropped_, {});
+}
+
+std::string GlfwWindow::clipboard() const {
+    const char* const text = glfwGetClipboardString(window_);
+    return text ? text : "";
+}
+
+void GlfwWindow::setClipboard(const std::string& text) {
+    glfwSetClipboardString(window_, text.c_str());
+}
+
+bool GlfwWindow::shouldClose() const {
+    return glfwWindowShouldClose(window_);
+}
+
+int GlfwWindow::pixelWidth() const {
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    return width;
+}
+
+int GlfwWindow::pixelHeight() const {
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    return height;
+}
+
+float GlfwWindow::contentScale() const {
+    float x = 1, y = 1;
+    glfwGetWindowContentScale(window_, &x, &y);
+    return y;
+}
+
+void GlfwWindow::showCrosshair(bool is_wanted) {
+    if (std::exchange(shows_crosshair_, is_wanted) != is_wanted)
+        glfwSetCursor(window_, is_wanted ? crosshair_ : nullptr);
+}
+
+void GlfwWindow::show() {
+    glfwSwapBuffers(window_);
+}
+
+PixelPoint GlfwWindow::toPixels(double x, double y) const {
+    int width = 0, height = 0;
+    glfwGetWindowSize(window_, &width, &height);
+    return {x * pixelWidth() / std::max(width, 1), y * pixelHeight() / std::max(height, 1)};
+}
+
+void GlfwWindow::onButton(int button, int action, int modifiers) {
+    MouseButtonEvent event{MouseButton::kLeft, action == GLFW_PRESS, mouse_, modifiersOf(modifiers),
+                           glfwGetTime()};
+    if (button == GLFW_MOUSE_BUTTON_RIGHT) {
+        event.button = MouseButton::kRight;
+    } else if (button == GLFW_MOUSE_BUTTON_MIDDLE) {
+        event.button = MouseButton::kMiddle;
+    } else if (button != GLFW_MOUSE_BUTTON_LEFT) {
+        return;
+    }
+    events_.push_back(event);
+}
+
+}  // namespace bonemill

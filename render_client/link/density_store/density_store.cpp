@@ -1,0 +1,92 @@
+#include "render_client/link/density_store/density_store.h"
+
+#include <algorithm>
+
+#include "common/base/assert.h"
+
+namespace bonemill {
+
+void DensityStore::setGrid(const DensityGrid& grid) {
+    if (grid_ == grid) return;
+    clear();
+    grid_ = grid;
+}
+
+void DensityStore::clear() {
+    if (grid_ || !bricks_.empty()) ++changes_;
+    grid_.reset();
+    wanted_.clear();
+    bricks_.clear();
+    recent_.clear();
+    bytes_ = 0;
+}
+
+void DensityStore::want(std::vector<uint32_t> bricks) {
+    const uint32_t count = grid_ ? uint32_t(brickCount(*grid_)) : 0;
+    std::erase_if(bricks, [&](uint32_t brick) { return brick >= count; });
+    if (bricks == wanted_) return;
+    wanted_ = std::move(bricks);
+    for (auto brick = wanted_.rbegin(); brick != wanted_.rend(); ++brick) {
+        const auto held = bricks_.find(*brick);
+        if (held != bricks_.end()) recent_.splice(recent_.begin(), recent_, held->second.place);
+    }
+}
+
+void DensityStore::put(uint32_t brick, DensityBrick contents) {
+    BONEMILL_ASSERT(grid_ && brick < uint32_t(brickCount(*grid_)));
+    BONEMILL_ASSERT(contents.scanned.size() == brickVoxels(*grid_));
+    BONEMILL_ASSERT(contents.present.empty() || contents.present.size() == contents.scanned.size());
+    BONEMILL_ASSERT(contents.materials.empty() || contents.materials.size() == contents.scanned.size());
+    ++changes_;
+    bytes_ += bytesOf(contents);
+    if (const auto held = bricks_.find(brick); held != bricks_.end()) {
+        bytes_ -= bytesOf(held->second.contents);
+        held->second.contents = std::move(contents);
+    } else {
+        const bool is_wanted = std::find(wanted_.begin(), wanted_.end(), brick) != wanted_.end();
+        const auto place = recent_.insert(is_wanted ? recent_.begin() : recent_.end(), brick);
+        bricks_.emplace(brick, Held{std::move(contents), place});
+    }
+    while (bytes_ > most_bytes_) dropOldest();
+}
+
+void DensityStore::dropOldest() {
+    const auto held = bricks_.find(recent_.back());
+    bytes_ -= bytesOf(held->second.contents);
+    bricks_.erase(held);
+    recent_.pop_back();
+    ++changes_;
+}
+
+const DensityBrick* DensityStore::find(uint32_t brick) const {
+    const auto held = bricks_.find(brick);
+    return held == bricks_.end() ? nullptr : &held->second.contents;
+}
+
+std::optional<DensityStore::Place> DensityStore::placeOf(const Eigen::Vector3i& voxel) const {
+    if (!grid_ || (voxel.array() < 0).any() || (voxel.array() >= grid_->voxels.array()).any()) return {};
+    const DensityBrick* const brick = find(brickOf(*grid_, voxel));
+    if (!brick) return {};
+    const int edge = grid_->brick_edge;
+    const Eigen::Vector3i at = voxel.unaryExpr([edge](int v) { return v % edge; });
+    return Place{brick, size_t(at.x() + edge * (at.y() + edge * at.z()))};
+}
+
+bool DensityStore::hasAllWanted() const {
+    return std::ranges::all_of(wanted_, [this](uint32_t brick) { return find(brick) != nullptr; });
+}
+
+std::optional<uint16_t> DensityStore::scannedAt(const Eigen::Vector3i& voxel) const {
+    const auto place = placeOf(voxel);
+    if (!place) return {};
+    return place->brick->scanned[place->index];
+}
+
+std::optional<uint16_t> DensityStore::presentAt(const Eigen::Vector3i& voxel) const {
+    const auto place = placeOf(voxel);
+    if (!place) return {};
+    const auto& present = place->brick->present;
+    return present.empty() ? place->brick->scanned[place->index] : present[place->index];
+}
+
+}  // namespace bonemill

@@ -1,0 +1,115 @@
+#include "render_client/look/hud/device_lines.h"
+
+#include "common/device_messages/device_messages.h"
+#include "render_client/look/hud/figure_text.h"
+
+namespace bonemill {
+namespace {
+
+constexpr size_t kLongestDeviceName = 20;
+
+// A state of a later version is an alarm, for nobody here knows what it means.
+HudTone toneOf(SafetyState state) {
+    switch (state) {
+        case SafetyState::kEngaged:
+            return HudTone::kPlain;
+        case SafetyState::kConnected:
+        case SafetyState::kHoming:
+        case SafetyState::kReady:
+        case SafetyState::kPaused:
+            return HudTone::kWarning;
+        case SafetyState::kDisconnected:
+        case SafetyState::kProtectiveStop:
+        case SafetyState::kEmergencyStop:
+        case SafetyState::kFault:
+            break;
+    }
+    return HudTone::kAlarm;
+}
+
+std::string causeOf(StopCause cause, uint32_t fault_code) {
+    const std::string text = nameOf(cause);
+    return cause == StopCause::kDeviceFault ? text + " " + std::to_string(fault_code) : text;
+}
+
+SafetyState stateOf(const topics::Device& device, const topics::ToolState* tool) {
+    return SafetyState(tool ? tool->device_state() : device.state());
+}
+
+std::string shownName(const topics::Device& device) {
+    const std::string name = shortenedText(device.name(), kLongestDeviceName);
+    return name.empty() ? "Device" : name;
+}
+
+// After a pause a switch that is still held counts as pressed no more.
+std::string theDevice(const topics::Device& device) {
+    return "The " + (device.name().empty() ? std::string("device") : device.name());
+}
+
+const char* stopVerb(SafetyState state) {
+    switch (state) {
+        case SafetyState::kDisconnected:
+            return " is not connected";
+        case SafetyState::kEmergencyStop:
+            return " is in emergency stop";
+        case SafetyState::kFault:
+            return " is out of order";
+        default:
+            return " has stopped";
+    }
+}
+
+// A mouse has neither cable nor motors.
+std::string adviceFor(const topics::Device& device, StopCause cause) {
+    if (cause == StopCause::kNone) return "";
+    if (device.kind() == uint32_t(DeviceKind::kPointer)) return " Reset it, let it go and take it again.";
+    return std::string(" ") + whatToDo(cause);
+}
+
+const char* whatItWaitsFor(SafetyState state, const topics::Device& device) {
+    const bool has_switch = device.abilities() & kAbilityEnablingSwitch;
+    if (has_switch && !device.is_enabled()) return "hold the enabling switch";
+    if (device.force_waits()) return "move the tool away from the bone";
+    return has_switch && state == SafetyState::kPaused ? "let the switch go and press it again" : nullptr;
+}
+
+// A device that could not hold the scene's coupling quietly gets a softer one (docs/research/stability.md).
+std::string stiffnessText(const topics::Device& device) {
+    constexpr double kAllButAll = 0.995;
+    const auto percent = [](double share) {
+        return share >= kAllButAll ? std::string("100 %")
+                                   : figureText(share * 100, share < 0.1 ? 1 : 0, " %");
+    };
+    if (!(device.coupling_share() > 0) && !(device.rotation_share() > 0)) return kNoNumber;
+    return percent(device.coupling_share()) + ", turning " + percent(device.rotation_share());
+}
+
+}  // namespace
+
+std::vector<HudRow> deviceRows(const topics::Device& device, const topics::ToolState* tool) {
+    const SafetyState state = stateOf(device, tool);
+    return {{shownName(device), std::string(nameOf(state)) + (device.is_simulated() ? ", simulated" : ""),
+             toneOf(state)},
+            {"Stiffness", stiffnessText(device)}};
+}
+
+std::optional<HudNotice> deviceStop(const topics::Device& device, const topics::ToolState* tool) {
+    const SafetyState state = stateOf(device, tool);
+    if (toneOf(state) != HudTone::kAlarm) return std::nullopt;
+    const auto cause = StopCause(tool ? tool->stop_cause() : device.stop_cause());
+    const std::string why = causeOf(cause, device.fault_code());
+    const bool is_mouse = device.kind() == uint32_t(DeviceKind::kPointer);
+    std::string text = theDevice(device) + stopVerb(state);
+    if (cause != StopCause::kNone && why != nameOf(state) && !is_mouse) text += ": " + why;
+    return HudNotice{text + "." + adviceFor(device, cause), HudTone::kAlarm};
+}
+
+std::optional<HudNotice> deviceWait(const topics::Device& device, const topics::ToolState* tool) {
+    const SafetyState state = stateOf(device, tool);
+    if (state != SafetyState::kReady && state != SafetyState::kPaused) return std::nullopt;
+    const char* const what = whatItWaitsFor(state, device);
+    if (!what) return std::nullopt;
+    return HudNotice{theDevice(device) + " is " + nameOf(state) + ": " + what + ".", HudTone::kWarning};
+}
+
+}  // namespace bonemill

@@ -1,0 +1,186 @@
+#include "render_client/look/hud/hud_lines.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render_client/look/hud/burr_work.h"
+#include "render_client/look/hud/conditions.h"
+#include "render_client/look/hud/detail_lines.h"
+#include "render_client/look/hud/effect_lines.h"
+#include "render_client/look/hud/figure_text.h"
+#include "render_client/look/hud/session_text.h"
+#include "render_client/look/hud/task_lines.h"
+
+namespace bonemill {
+namespace {
+
+constexpr size_t kLongestName = 24;
+constexpr int kMostWatchers = 6;  // rows of the list
+
+void addToolNameRow(const topics::SceneInfo& info, std::vector<HudRow>& rows) {
+    if (info.tool_names_size() < 2 || info.tool_index() >= uint32_t(info.tool_names_size())) return;
+    rows.push_back({"Tool", shortenedText(info.tool_names(int(info.tool_index())), kLongestName)});
+}
+
+HudRow watcherRow(const topics::Viewer& watcher) {
+    const std::string name = shortenedText(watcherName(watcher.name()), kLongestName);
+    return {name, watcherText(watcher), watcher.is_complete() ? HudTone::kPlain : HudTone::kWarning};
+}
+
+std::vector<HudRow> watcherRows(const std::vector<topics::Viewer>& watchers) {
+    const auto count = int(watchers.size());
+    const int shown = count <= kMostWatchers ? count : kMostWatchers - 1;
+    std::vector<HudRow> rows;
+    for (int i = 0; i < shown; ++i) rows.push_back(watcherRow(watchers[size_t(i)]));
+    if (shown < count) rows.push_back({"and " + std::to_string(count - shown) + " more", ""});
+    return rows;
+}
+
+// The worst that keeps the burr from milling comes first.
+HudRow burrRow(const topics::ToolState& tool, bool is_paused, uint32_t events) {
+    if (events & topics::EffectState::SPINDLE_STALLED) return {"Burr", "stalled", HudTone::kAlarm};
+    if (is_paused) return {"Burr", "paused", HudTone::kWarning};
+    if (tool.waits_for_release() && tool.buttons() != 0)
+        return {"Burr", "release the pedal", HudTone::kWarning};
+    switch (burrWorkOf(tool)) {
+        case BurrWork::kRemoving:
+            return {"Burr", "removing", HudTone::kWarning};
+        case BurrWork::kAdding:
+            return {"Burr", "adding", HudTone::kWarning};
+        case BurrWork::kIdle:
+            break;
+    }
+    return {"Burr", "idle"};
+}
+
+HudRow volumeRow(double removed_mm3) {
+    return {removed_mm3 < 0 ? "Added" : "Removed", readableText(std::abs(removed_mm3), " mm\u00b3")};
+}
+
+std::vector<HudRow> taskRows(const HudInput& input) {
+    std::vector<HudRow> rows;
+    const topics::SceneInfo* const info = input.info ? &*input.info : nullptr;
+    if (info) addToolNameRow(*info, rows);
+    if (input.tool) {
+        const auto& force = input.tool->force_n();
+        rows.push_back({"Force", lengthText({force.data(), size_t(force.size())}, 1, " N")});
+        rows.push_back(burrRow(*input.tool, input.status && input.status->is_milling_paused(), input.events));
+    }
+    const topics::TaskState* const task =
+        input.status && input.status->has_task() ? &input.status->task() : nullptr;
+    // With all figures there is room for one line of it, instead of what is removed in all.
+    const bool is_summary = task && input.show_details;
+    if (is_summary)
+        rows.push_back(taskSummaryRow(*task));
+    else if (input.status)
+        rows.push_back(volumeRow(input.status->removed_mm3()));
+    if (input.status && !input.status->replay().event().empty())
+        rows.push_back({"Moment", input.status->replay().event(), HudTone::kGood});
+    if (input.tool && input.tool->has_effects()) {
+        const auto more = effectTaskRows(input.tool->effects(), info, input.events);
+        rows.insert(rows.end(), more.begin(), more.end());
+    }
+    if (task && !is_summary) {
+        const auto more = taskStateRows(*task);
+        rows.insert(rows.end(), more.begin(), more.end());
+    }
+    return rows;
+}
+
+std::string replayText(const topics::Status& status) {
+    const topics::Replay& replay = status.replay();
+    const std::string text = "replay, " + clockText(status.session_s());
+    if (replay.is_seeking()) return text + ", seeks";
+    if (!replay.is_playing()) return text + ", paused";
+    return replay.speed() == 1 ? text : text + ", " + readableText(replay.speed(), " \u00d7");
+}
+
+std::string liveText(const HudInput& input) {
+    if (!input.status) return "live";
+    if (input.status->has_replay()) return replayText(*input.status);
+    return input.status->ticks() > 0 ? "live, " + clockText(input.status->session_s()) : "waits for a device";
+}
+
+std::string stateText(const HudInput& input) {
+    switch (input.connection) {
+        case Connection::kNoServer:
+            return "waiting for a server";
+        case Connection::kReceiving: {
+            if (!input.status || input.status->node_count() == 0) return "loading";
+            const uint64_t percent = 100 * uint64_t(input.node_count) / input.status->node_count();
+            return "loading " + std::to_string(std::min<uint64_t>(percent, 100)) + " %";
+        }
+        case Connection::kLive:
+            return liveText(input);
+        case Connection::kServerLost:
+            return "server lost";
+        case Connection::kServerEnded:
+            return "ended";
+    }
+    return "";
+}
+
+// Live is only as good as what stands in its way now.
+HudTone liveTone(const HudInput& input) {
+    HudTone tone = input.status && input.status->ticks() == 0 ? HudTone::kWarning : HudTone::kGood;
+    for (const Condition& condition : conditionsOf(input))
+        if (condition.lasts) tone = std::max(tone, condition.tone);
+    return tone;
+}
+
+HudTone stateTone(const HudInput& input) {
+    switch (input.connection) {
+        case Connection::kLive:
+            return liveTone(input);
+        case Connection::kReceiving:
+        case Connection::kNoServer:
+            return HudTone::kWarning;
+        case Connection::kServerLost:
+            return HudTone::kAlarm;
+        case Connection::kServerEnded:
+            break;
+    }
+    return HudTone::kPlain;
+}
+
+void removeFigures(Hud& hud) {
+    hud.title.clear();
+    hud.rows.clear();
+    hud.details.clear();
+    hud.watchers.clear();
+    hud.modes.clear();
+}
+
+}  // namespace
+
+std::optional<HudNotice> alertOf(const HudInput& input) {
+    return effectAlert(input.events, input.structure, input.info ? &*input.info : nullptr);
+}
+
+Hud makeHud(const HudInput& input) {
+    Hud hud;
+    hud.title = !input.title.empty()                        ? input.title
+                : input.info && !input.info->name().empty() ? input.info->name()
+                : input.status                              ? input.status->scene()
+                                                            : "bonemill";
+    hud.state = stateText(input);
+    hud.state_tone = stateTone(input);
+    if (input.sought) hud.lock = input.sought->lock;
+    hud.notice = input.notice;
+    hud.messages = input.messages;
+    hud.alert = alertOf(input);
+    hud.legend = input.legend;
+    hud.modes = input.modes;
+    hud.rows = taskRows(input);
+    if (input.show_details) hud.details = detailRows(input);
+    if (input.show_watchers && !input.show_details) hud.watchers = watcherRows(input.watchers);
+    if (input.show_help) hud.help = input.help;
+    // Who has found the keys needs no hint.
+    if (!input.show_help && !input.show_watchers && !input.show_details) hud.hint = input.hint;
+    if (input.connection == Connection::kNoServer && input.sought) hud.page = waitingPage(*input.sought);
+    if (input.is_in_eyes) hud.hint.reset();
+    if (input.is_in_eyes || hud.page) removeFigures(hud);
+    return hud;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,91 @@
+// The bone is on the graphics card as one vertex and one index buffer per octree leaf, drawn in ascending
+// order of the leaf.
+//
+// It belongs to the thread of the context. The same nodes give the same picture in whatever
+// order they arrived.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "common/geometry/node_mesh.h"
+#include "render_client/look/gl/gl_object.h"
+#include "render_client/look/gl/program.h"
+#include "render_client/look/model/node_parts.h"
+
+namespace bonemill {
+
+// This went to the graphics card since the start.
+struct UploadCount {
+    uint64_t nodes = 0;
+    uint64_t bytes = 0;
+};
+
+class NodeStore {
+  public:
+    explicit NodeStore(const GlApi& gl) : gl_(gl) {}
+
+    // Replaces the leaf's mesh; an empty one removes it. Throws std::invalid_argument when an index has no
+    // vertex or the materials are not as many as the vertices.
+    void set(const NodeMesh& mesh);
+    void clear();
+
+    size_t nodeCount() const { return nodes_.size(); }
+    size_t triangleCount() const;
+    const UploadCount& uploads() const { return uploads_; }
+
+    // From now on, or no longer, the store knows where it changes; that takes memory and time.
+    void trackChanges(bool wants_changes) { tracks_changes_ = wants_changes; }
+    // Returns the box (V, m) around the triangles that came or went since the last call.
+    Eigen::AlignedBox3f takeChanged() { return std::exchange(changed_, {}); }
+
+    // What the scan measured at a vertex, and whether milling opened it there: 0, or 65535 for yes.
+    struct VertexScan {
+        uint16_t density;
+        uint16_t is_milled;
+    };
+    // Calls visit(mesh, box, stamp) for each node whose surface is not the scan's any more; the stamp is that
+    // of setScan(), 0 since the mesh came.
+    template <class Visit>
+    void visitMilled(Visit&& visit) const {
+        for (const auto& [leaf, node] : nodes_)
+            if (node.mesh && node.mesh->revision != 0) visit(*node.mesh, node.box, node.scan_stamp);
+    }
+    // Gives each vertex of that node what the scan measured, until another mesh comes.
+    void setScan(uint32_t leaf, const std::vector<VertexScan>& scan, uint64_t stamp);
+
+    // Draws what may be inside the view volume of clip_from_V with the program in use (uniforms origin and
+    // step). Returns the number of triangles drawn.
+    size_t draw(const Program& program, const Eigen::Matrix4f& clip_from_V) const;
+
+  private:
+    struct Node {
+        GlVertexArray layout;
+        GlBuffer vertices;
+        GlBuffer indices;
+        std::optional<GlBuffer> materials;
+        std::optional<GlBuffer> scan;
+        uint64_t scan_stamp = 0;
+        Eigen::AlignedBox3f box;  // V, m
+        Eigen::Vector3f origin;   // V, m
+        Eigen::Vector3f step;     // V, m
+        GLsizei index_count;
+        std::vector<NodePart> parts;
+        std::optional<NodeMesh>
+            mesh;  // what the buffers hold, while changes are tracked or once it was milled
+    };
+    void remove(uint32_t leaf);
+    size_t drawParts(const Node& node, const Eigen::Matrix4f& clip_from_V) const;
+    size_t drawRun(size_t first_index, size_t count) const;
+    void uploadMaterials(const std::vector<uint8_t>& materials, Node& node);
+    Eigen::AlignedBox3f changeTo(const NodeMesh& mesh, const Eigen::AlignedBox3f& box) const;
+
+    const GlApi& gl_;
+    std::map<uint32_t, Node> nodes_;
+    UploadCount uploads_;
+    bool tracks_changes_ = false;
+    Eigen::AlignedBox3f changed_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,208 @@
+#include "render_client/look/paint/bone_painter.h"
+
+#include <algorithm>
+#include <string>
+
+#include "render_client/look/paint/clip_planes.h"
+#include "render_client/look/shaders/shaders.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kGrain = 0.045;  // size of the mottling over the bone's radius
+constexpr GLuint kAllBits = 0xff;
+constexpr GLint kOpened = 0x80;  // stencil: the nearest surface is seen from within
+constexpr float kFarWallOpacity = 0.28f;
+constexpr GLuint kLayers = 0x7f;           // stencil: how many front faces there are
+constexpr float kLastWallOpacity = 0.12f;  // of a wall seen from within, when nothing is behind it
+constexpr float kWallOpacity = 0.45f;      // of the nearest wall seen from within
+constexpr float kBoxMargin = 0.01f;        // of the bone's radius: the box is that of points on the surface
+constexpr float kCapOpacity = 0.15f;       // above the surface's
+constexpr float kOutline = 0.80f;          // what is left of it is added at the outline
+
+const Eigen::Vector3f kInsideSolid(0.42f, 0.16f, 0.12f);
+const Eigen::Vector3f kInsideGlass(0.85f, 0.22f, 0.10f);
+
+}  // namespace
+
+BonePainter::BonePainter(const GlApi& gl)
+    : gl_(gl),
+      surface_(gl, "bone", shaders::kMeshVertex, shaders::kBoneFragment),
+      depth_(gl, "bone depth", shaders::kMeshVertex, shaders::kDepthFragment),
+      cap_(gl, "cap", shaders::kFullScreenVertex, shaders::kCapFragment),
+      no_attributes_(gl) {}
+
+void BonePainter::setPalette(const std::vector<Eigen::Vector4f>& colours) {
+    coloured_.reset();
+    if (colours.empty()) return;
+    const std::string define = MaterialPalette::kDefine;
+    coloured_.reset(new Coloured{
+        {gl_, colours},
+        {gl_, "bone of materials", define + shaders::kMeshVertex, define + shaders::kBoneFragment}});
+}
+
+void BonePainter::drawOpaque(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture) {
+    const Look look{{1, 0}, kInsideSolid};
+    if (!frame.cuts_V.any()) return drawSurface(frame, nodes, shadow_texture, look);
+    beginMarking();
+    drawSurface(frame, nodes, shadow_texture, look);
+    gl_.DepthFunc(GL_ALWAYS);  // at its rim the cap is as deep as the surface
+    drawCap(frame, shadow_texture, 1);
+    gl_.DepthFunc(GL_LESS);
+    gl_.Disable(GL_STENCIL_TEST);
+}
+
+void BonePainter::drawTransparent(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
+                                  double opacity, const std::function<void()>& draw_tool) {
+    drawFarWall(frame, nodes, shadow_texture);
+    if (frame.cuts_V.any()) markOpened(frame, nodes);
+    draw_tool();
+    gl_.Enable(GL_BLEND);
+    gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    drawInnerWall(frame, nodes, shadow_texture);
+    findNearestLayer(frame, nodes, GL_BACK);
+    drawFoundLayer(frame, nodes, shadow_texture, {{float(opacity), kOutline}, kInsideGlass});
+    if (frame.cuts_V.any()) {
+        gl_.Enable(GL_STENCIL_TEST);
+        gl_.DepthFunc(GL_LEQUAL);
+        drawCap(frame, shadow_texture, std::min(float(opacity) + kCapOpacity, 1.0f));
+        gl_.DepthFunc(GL_LESS);
+        gl_.Disable(GL_STENCIL_TEST);
+    }
+    gl_.Disable(GL_BLEND);
+}
+
+void BonePainter::drawSurface(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
+                              const Look& look) {
+    const ClipPlanes clip(gl_, frame.cuts_V);
+    const Program& surface = thickness_  ? thickness_->surface()
+                             : film_     ? film_->surface()
+                             : coloured_ ? coloured_->surface
+                                         : surface_;
+    surface.use();
+    frame.setLight(gl_, surface, shadow_texture);
+    setCutPlanes(surface, frame.cuts_V);
+    surface.set("camera_from_model", frame.X_CV);
+    surface.set("grain_size", float(kGrain) * frame.bone_radius);
+    surface.set("opacity", look.opacity);
+    surface.set("inside_colour", look.inside);
+    surface.set("shows_scan", milled_grey_ ? 1 : 0);
+    surface.set("grey_of_density", milled_grey_.value_or(Eigen::Vector2f::UnitX()));
+    if (thickness_) {
+        thickness_->setUniforms();
+    } else {
+        if (coloured_) coloured_->palette.setUniforms(surface);
+        if (film_) film_->setUniforms();
+    }
+    triangles_drawn_ = nodes.draw(surface, frame.cull_from_V);
+}
+
+void BonePainter::drawDepth(const Frame& frame, const NodeStore& nodes) const {
+    const ClipPlanes clip(gl_, frame.cuts_V);
+    depth_.use();
+    setCutPlanes(depth_, frame.cuts_V);
+    depth_.set("camera_from_model", frame.X_CV);
+    depth_.set("clip_from_camera", frame.clip_from_camera);
+    gl_.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    nodes.draw(depth_, frame.cull_from_V);
+    gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+// Draws the farthest front face where there is another one before it: the far wall of a cavity, or of the
+// skull. Leaves the depth clear, and in the stencil how many layers there are.
+void BonePainter::drawFarWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture) {
+    gl_.ClearDepth(0);
+    gl_.Clear(GL_DEPTH_BUFFER_BIT);
+    gl_.ClearDepth(1);
+    gl_.Enable(GL_CULL_FACE);
+    gl_.CullFace(GL_BACK);
+    gl_.Enable(GL_STENCIL_TEST);
+    gl_.StencilMask(kLayers);
+    gl_.StencilFunc(GL_ALWAYS, 0, kAllBits);
+    gl_.StencilOp(GL_KEEP, GL_INCR, GL_INCR);
+    gl_.DepthFunc(GL_GREATER);
+    drawDepth(frame, nodes);
+
+    gl_.StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+    gl_.StencilMask(kAllBits);
+    gl_.StencilFunc(GL_LEQUAL, 2, kLayers);
+    gl_.Enable(GL_BLEND);
+    gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    drawFoundLayer(frame, nodes, shadow_texture, {{kFarWallOpacity, 0}, kInsideGlass});
+    gl_.Disable(GL_BLEND);
+    gl_.Disable(GL_STENCIL_TEST);
+    gl_.Clear(GL_DEPTH_BUFFER_BIT);
+}
+
+// The wall is strong where it belongs to a cavity or something else is behind it: that is
+// what one wants to see.
+void BonePainter::drawInnerWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture) {
+    findNearestLayer(frame, nodes, GL_FRONT);
+    gl_.Enable(GL_STENCIL_TEST);
+    gl_.StencilFunc(GL_LEQUAL, 2, kLayers);
+    drawFoundLayer(frame, nodes, shadow_texture, {{kWallOpacity, kOutline}, kInsideGlass});
+    gl_.Enable(GL_CULL_FACE);
+    gl_.CullFace(GL_FRONT);
+    gl_.StencilFunc(GL_GREATER, 2, kLayers);
+    drawFoundLayer(frame, nodes, shadow_texture, {{kLastWallOpacity, 0}, kInsideGlass});
+    gl_.Disable(GL_STENCIL_TEST);
+}
+
+void BonePainter::findNearestLayer(const Frame& frame, const NodeStore& nodes, GLenum culled) const {
+    gl_.Enable(GL_CULL_FACE);
+    gl_.CullFace(culled);
+    drawDepth(frame, nodes);
+}
+
+// Culls as the layer was found, and switches culling off afterwards.
+void BonePainter::drawFoundLayer(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
+                                 const Look& look) {
+    gl_.DepthFunc(GL_EQUAL);
+    drawSurface(frame, nodes, shadow_texture, look);
+    gl_.DepthFunc(GL_LESS);
+    gl_.CullFace(GL_BACK);
+    gl_.Disable(GL_CULL_FACE);
+}
+
+// From here on the stencil says which side of the nearest surface is seen.
+void BonePainter::beginMarking() const {
+    gl_.Enable(GL_STENCIL_TEST);
+    gl_.StencilMask(kOpened);
+    gl_.StencilFunc(GL_ALWAYS, kOpened, kAllBits);
+    gl_.StencilOpSeparate(GL_FRONT, GL_KEEP, GL_KEEP, GL_ZERO);
+    gl_.StencilOpSeparate(GL_BACK, GL_KEEP, GL_KEEP, GL_REPLACE);
+}
+
+void BonePainter::markOpened(const Frame& frame, const NodeStore& nodes) const {
+    beginMarking();
+    drawDepth(frame, nodes);
+    gl_.StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+    gl_.StencilMask(kAllBits);
+    gl_.Disable(GL_STENCIL_TEST);
+    gl_.Clear(GL_DEPTH_BUFFER_BIT);
+}
+
+void BonePainter::drawCap(const Frame& frame, GLuint shadow_texture, float opacity) const {
+    gl_.StencilFunc(GL_EQUAL, kOpened, kOpened);
+    gl_.StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+    gl_.StencilMask(kAllBits);
+    const Program& cap = faces_ ? faces_->cap() : cap_;
+    cap.use();
+    frame.setLight(gl_, cap, shadow_texture);
+    setCutPlanes(cap, frame.cuts_C);
+    cap.set("near_far", frame.near_far);
+    cap.set("tangents", frame.tangents);
+    cap.set("shift", frame.shift);
+    cap.set("model_from_camera", Eigen::Matrix4f(frame.X_CV.inverse()));
+    const Eigen::Vector3f margin = Eigen::Vector3f::Constant(kBoxMargin * frame.bone_radius);
+    cap.set("bone_low", Eigen::Vector3f(frame.bone_V.min() - margin));
+    cap.set("bone_high", Eigen::Vector3f(frame.bone_V.max() + margin));
+    cap.set("grain_size", float(kGrain) * frame.bone_radius);
+    cap.set("opacity", opacity);
+    if (faces_) faces_->setUniforms();
+    gl_.BindVertexArray(no_attributes_.name());
+    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+    gl_.BindVertexArray(0);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,88 @@
+// Draws the bone, whole or cut, opaque or transparent.
+//
+// Where a cut opens solid bone its cap is drawn: a ray that reaches a back face first was inside the bone
+// already when it came through the plane. This holds for a closed surface; where the scan's border leaves it
+// open, and where the eye itself is inside, the back face is shown in dark red.
+//
+// Of transparent bone one sees the nearest layers from outside and from inside, and the farthest wall that
+// can be looked at. Each is found by depth and blended once, which gives the same picture in whatever order
+// the triangles come. The tool is drawn between them.
+//
+// It belongs to the thread of the context.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "render_client/look/model/material_palette.h"
+#include "render_client/look/model/node_store.h"
+#include "render_client/look/paint/ct_faces.h"
+#include "render_client/look/paint/film_painter.h"
+#include "render_client/look/paint/frame.h"
+#include "render_client/look/paint/thickness_painter.h"
+
+namespace bonemill {
+
+class BonePainter {
+  public:
+    // Throws GlError with the compiler's log when the driver refuses a shader.
+    explicit BonePainter(const GlApi& gl);
+
+    // Both draw into the bound framebuffer, whose depth and stencil are clear, and leave depth test and depth
+    // writes on. draw_tool draws opaque things.
+    void drawOpaque(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture);
+    void drawTransparent(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, double opacity,
+                         const std::function<void()>& draw_tool);
+
+    // From now on bone has its materials' colours (paletteOf()), or its own when there
+    // are none. Throws GlError.
+    void setPalette(const std::vector<Eigen::Vector4f>& colours);
+    // From now on bone is drawn with this film, or as it is when null. The film must outlive its use.
+    void setFilm(const FilmPainter* film) { film_ = film; }
+    // From now on the faces of cuts show the scan, or are plain when null. They must outlive their use.
+    void setFaces(const CtFaces* faces) { faces_ = faces; }
+    // From now on milled bone has the grey of what the scan measured there (greyOfDensity()), or its own
+    // colour.
+    void setMilledGrey(const std::optional<Eigen::Vector2f>& grey_of_density) {
+        milled_grey_ = grey_of_density;
+    }
+
+    // From now on bone shows how far it is to the next structure, or no longer when null. It must outlive its
+    // use.
+    void setThickness(const ThicknessPainter* thickness) { thickness_ = thickness; }
+
+    // Returns how many bone triangles were inside the view volume of the last picture.
+    size_t trianglesDrawn() const { return triangles_drawn_; }
+
+  private:
+    struct Look {
+        Eigen::Vector2f opacity;  // facing the eye, and what the outline adds
+        Eigen::Vector3f inside;   // linear colour of the surface seen from within
+    };
+    void drawSurface(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, const Look& look);
+    void drawDepth(const Frame& frame, const NodeStore& nodes) const;
+    void drawFarWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture);
+    void drawInnerWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture);
+    void findNearestLayer(const Frame& frame, const NodeStore& nodes, GLenum culled) const;
+    void drawFoundLayer(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, const Look& look);
+    void markOpened(const Frame& frame, const NodeStore& nodes) const;
+    void beginMarking() const;
+    void drawCap(const Frame& frame, GLuint shadow_texture, float opacity) const;
+
+    const GlApi& gl_;
+    Program surface_, depth_, cap_;
+    GlVertexArray no_attributes_;
+    struct Coloured {
+        MaterialPalette palette;
+        Program surface;
+    };
+    std::unique_ptr<Coloured> coloured_;  // null: bone's own colour
+    const FilmPainter* film_ = nullptr;
+    const CtFaces* faces_ = nullptr;
+    std::optional<Eigen::Vector2f> milled_grey_;
+    const ThicknessPainter* thickness_ = nullptr;
+    size_t triangles_drawn_ = 0;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,110 @@
+#include "render_client/look/paint/frame_passes.h"
+
+#include <cmath>
+#include <string>
+
+#include "render_client/look/shaders/shaders.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kOcclusionRadius = 0.10;   // of the bone's radius
+constexpr float kOcclusionPicture = 0.06f;  // the radius is at most this part of the picture's height
+constexpr float kMostBlur = 0.015f;         // of the picture's height
+constexpr int kFilterReach = 8;             // pixels that the composite's filter looks beyond
+
+static_assert(kMostBlur < kOcclusionPicture, "or the blur would reach further than reach() says");
+
+}  // namespace
+
+FramePasses::FramePasses(const GlApi& gl)
+    : gl_(gl),
+      background_(gl, "background", shaders::kFullScreenVertex, shaders::kBackgroundFragment),
+      occlusion_(gl, "occlusion", shaders::kFullScreenVertex, shaders::kOcclusionFragment),
+      composite_(gl, "composite", shaders::kFullScreenVertex, shaders::kCompositeFragment),
+      instrument_(gl, "composite of an instrument", shaders::kFullScreenVertex,
+                  std::string("#define INSTRUMENT\n") + shaders::kCompositeFragment),
+      tool_shadow_(gl, "shadow of the tool", shaders::kFullScreenVertex, shaders::kToolShadowFragment),
+      no_attributes_(gl) {}
+
+int FramePasses::reach(int height) {
+    return int(std::ceil(kOcclusionPicture * float(height))) + kFilterReach;
+}
+
+void FramePasses::drawBackground() const {
+    gl_.Disable(GL_DEPTH_TEST);
+    background_.use();
+    drawFullScreen();
+    gl_.Enable(GL_DEPTH_TEST);
+}
+
+void FramePasses::drawOcclusion(const Frame& frame, const RenderTargets& targets) const {
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, targets.occlusion());
+    gl_.Viewport(0, 0, targets.occlusionWidth(), targets.occlusionHeight());
+    gl_.Disable(GL_DEPTH_TEST);
+    gl_.ActiveTexture(GL_TEXTURE0);
+    gl_.BindTexture(GL_TEXTURE_2D, targets.depthTexture());
+    occlusion_.use();
+    occlusion_.set("depth_map", 0);
+    occlusion_.set("near_far", frame.near_far);
+    occlusion_.set("tangents", frame.tangents);
+    occlusion_.set("shift", frame.shift);
+    occlusion_.set("radius", float(kOcclusionRadius) * frame.bone_radius);
+    occlusion_.set("max_radius", kOcclusionPicture);
+    drawFullScreen();
+}
+
+void FramePasses::compose(const Frame& frame, const RenderTargets& targets, int x, GLuint target) const {
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
+    gl_.Viewport(x, 0, targets.width(), targets.height());
+    const GLuint textures[] = {targets.colourTexture(), targets.depthTexture(), targets.occlusionTexture()};
+    for (GLenum unit = 0; unit < 3; ++unit) {
+        gl_.ActiveTexture(GL_TEXTURE0 + unit);
+        gl_.BindTexture(GL_TEXTURE_2D, textures[unit]);
+    }
+    const bool is_plain = frame.field_radius <= 0 && frame.blur_per_m <= 0;
+    const Program& composite = is_plain ? composite_ : instrument_;
+    composite.use();
+    composite.set("colour_map", 0);
+    composite.set("depth_map", 1);
+    composite.set("occlusion_map", 2);
+    composite.set("near_far", frame.near_far);
+    composite.set("depth_tolerance", 0.5f * float(kOcclusionRadius) * frame.bone_radius);
+    if (!is_plain) {
+        composite.set("field_radius", frame.field_radius);
+        composite.set("focus", frame.focus);
+        composite.set("blur_per_m", frame.blur_per_m);
+        composite.set("most_blur", kMostBlur);
+    }
+    drawFullScreen();
+    gl_.ActiveTexture(GL_TEXTURE0);
+}
+
+void FramePasses::drawToolShadow(const Frame& frame, const RenderTargets& targets, GLuint target) const {
+    const ToolShadow& shadow = *frame.tool_shadow;
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
+    gl_.ActiveTexture(GL_TEXTURE0);
+    gl_.BindTexture(GL_TEXTURE_2D, targets.depthTexture());
+    tool_shadow_.use();
+    tool_shadow_.set("depth_map", 0);
+    tool_shadow_.set("near_far", frame.near_far);
+    tool_shadow_.set("tangents", frame.tangents);
+    tool_shadow_.set("shift", frame.shift);
+    tool_shadow_.set("key_direction", frame.key.direction);
+    tool_shadow_.set("burr", shadow.burr);
+    tool_shadow_.set("shaft", shadow.shaft);
+    tool_shadow_.set("radii", Eigen::Vector2f(shadow.burr_radius, shadow.shaft_radius));
+    tool_shadow_.set("reach", shadow.reach);
+    gl_.Enable(GL_BLEND);
+    gl_.BlendFunc(GL_DST_COLOR, GL_ZERO);
+    drawFullScreen();
+    gl_.Disable(GL_BLEND);
+}
+
+void FramePasses::drawFullScreen() const {
+    gl_.BindVertexArray(no_attributes_.name());
+    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+    gl_.BindVertexArray(0);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,132 @@
+// Draws bone, tool, signs and the ghost of the device pose with light, shadow and ambient occlusion.
+//
+// It belongs to the thread of the context. The frames are W (world), V (volume), T (tool) and C (camera, see
+// camera.h); the units are m and rad.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "render_client/look/gl/program.h"
+#include "render_client/look/model/node_store.h"
+#include "render_client/look/model/tool_mesh.h"
+#include "render_client/look/paint/bone_painter.h"
+#include "render_client/look/paint/frame.h"
+#include "render_client/look/paint/frame_passes.h"
+#include "render_client/look/paint/marker_painter.h"
+#include "render_client/look/paint/particle_painter.h"
+#include "render_client/look/paint/picture_changes.h"
+#include "render_client/look/paint/render_targets.h"
+#include "render_client/look/paint/stroke_painter.h"
+#include "render_client/look/paint/structure_painter.h"
+#include "render_client/look/paint/tool_painter.h"
+
+namespace bonemill {
+
+// It is a part of a framebuffer, in pixels: x counts from its left edge, the part takes its whole height.
+struct PictureArea {
+    int x = 0;
+    int width = 0;
+    int height = 0;
+    double aspect() const { return double(width) / height; }
+};
+
+struct EffectNeeds {
+    bool film = false, particles = false, spin = false;
+};
+
+class SceneRenderer {
+  public:
+    // Throws GlError with the compiler's log when the driver refuses a shader.
+    explicit SceneRenderer(const GlApi& gl);
+
+    // Leaves the picture (without figures) in that part of `target`, a framebuffer. Takes the nodes' changes.
+    void draw(const FrameView& view, NodeStore& nodes, const ToolMesh& tool, const PictureArea& area,
+              GLuint target);
+    // Passes the colours on to the bone, as BonePainter::setPalette().
+    void setPalette(const std::vector<Eigen::Vector4f>& colours);
+    // Replaces the surface of the protected structure that the mesh's leaf names. Throws GlError.
+    void setStructure(const NodeMesh& mesh) { structures_.set(mesh); }
+    void clearStructures() { structures_.clear(); }
+    // Replaces what is drawn on the bone. Throws GlError.
+    void setStrokes(const std::vector<Stroke>& strokes) {
+        strokes_.set(strokes);
+        changes_.forget();
+    }
+    // Views that show thickness take it from here. Throws GlError.
+    void setThickness(const ThicknessField& field);
+    // Makes what a scene's effects need to be drawn, and nothing else. Throws GlError.
+    void prepare(const EffectNeeds& needs);
+    // As BonePainter::setFaces().
+    void setFaces(const CtFaces* faces) { bone_.setFaces(faces); }
+    // As BonePainter::setMilledGrey().
+    void setMilledGrey(const std::optional<Eigen::Vector2f>& grey_of_density) {
+        if (std::exchange(milled_grey_, grey_of_density) != grey_of_density) changes_.forget();
+        bone_.setMilledGrey(grey_of_density);
+    }
+    // Bone looks different in that box (V) from the next picture on.
+    void hasChanged(const Eigen::AlignedBox3f& box_V) { look_changed_.extend(box_V); }
+    // The next picture is drawn whole, also in quick quality.
+    void drawWholeNext() { changes_.forget(); }
+
+    // Returns the nearest surface of bone or tool (W, m) under a pixel of the last picture, counted from its
+    // upper left corner; nothing over the background.
+    std::optional<Eigen::Vector3d> pick(int x, int y) const;
+
+    // Returns the width and height of the last picture, pixels; 0 before the first.
+    Eigen::Vector2i pictureSize() const {
+        return targets_ ? Eigen::Vector2i(targets_->width(), targets_->height()) : Eigen::Vector2i::Zero();
+    }
+
+    // Returns how many bone triangles were inside the view volume of the last picture.
+    size_t trianglesDrawn() const { return bone_.trianglesDrawn(); }
+
+  private:
+    void drawFull(const Frame& frame, const FrameView& view, const NodeStore& nodes, const ToolMesh& tool,
+                  const PictureArea& area, GLuint target);
+    void drawQuick(const Frame& frame, const FrameView& view, NodeStore& nodes, const ToolMesh& tool,
+                   const PictureArea& area, GLuint target);
+    void drawAllSolids(const Frame& frame, const FrameView& view, const NodeStore& nodes,
+                       const ToolMesh& tool);
+    void drawKeptBone(Frame frame, const FrameView& view, const NodeStore& nodes, const PixelBox& part);
+    void drawToolOverKeptBone(const Frame& frame, const FrameView& view, const ToolMesh& tool,
+                              const PixelBox& part);
+    void finishQuick(const Frame& frame, const FrameView& view, const ToolMesh& tool, const PixelBox& part);
+    void showFinished(const PictureArea& area, GLuint target) const;
+    PixelBox shadowPixels(const Frame& frame) const;
+    PixelBox movingPixels(const Frame& frame, const FrameView& view, const ToolMesh& tool);
+    void drawStrokes(const Frame& frame, const FrameView& view) const;
+    static std::vector<float> stillLike(const Frame& frame, const FrameView& view, const ToolMesh& tool);
+    void scissor(const PixelBox& part) const;
+    void drawShadowMap(const Frame& frame, const FrameView& view, const NodeStore& nodes,
+                       const ToolMesh& tool) const;
+    void chooseSurface(const FrameView& view);
+    void drawSolids(const Frame& frame, const FrameView& view, const NodeStore& nodes, const ToolMesh& tool);
+    void drawOver(const Frame& frame, const FrameView& view, const ToolMesh& tool);
+    void drawParticles(const Frame& frame, const FrameView& view);
+
+    const GlApi& gl_;
+    BonePainter bone_;
+    ToolPainter tool_;
+    MarkerPainter markers_;
+    FramePasses passes_;
+    Program shadow_;
+    StructurePainter structures_;
+    StrokePainter strokes_;
+    StrokePainter drawn_;        // FrameView::drawn
+    bool shows_strokes_ = true;  // in the last picture
+    std::unique_ptr<ThicknessPainter> thickness_;
+    bool shows_thickness_ = false;  // in the last picture
+    bool has_materials_ = false;
+    std::unique_ptr<FilmPainter> film_;
+    std::unique_ptr<ParticlePainter> particles_;
+    std::unique_ptr<RenderTargets> targets_;
+    PictureChanges changes_;            // quick quality
+    Eigen::AlignedBox3f look_changed_;  // since the last quick picture, and no triangle with it
+    std::optional<Eigen::Vector2f> milled_grey_;
+    Camera last_camera_;  // of the last picture, for pick()
+    Eigen::Vector2f last_near_far_ = Eigen::Vector2f::Zero();
+};
+
+}  // namespace bonemill

@@ -1,0 +1,68 @@
+#include "render_client/look/structures/structure_colours.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <iterator>
+#include <string>
+
+namespace bonemill {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kGamma = 2.2f;  // as toneMap() of the shaders
+
+const Vector3f kNerve(0.95f, 0.85f, 0.20f), kVein(0.10f, 0.45f, 0.85f), kArtery(0.84f, 0.17f, 0.12f),
+    kDura(0.82f, 0.64f, 0.96f);
+const struct {
+    const char* word;
+    const Vector3f& colour;
+} kCustom[] = {{"nerve", kNerve},   {"chorda", kNerve}, {"sinus", kVein},     {"vein", kVein},
+               {"jugular", kVein},  {"arter", kArtery}, {"carotid", kArtery}, {"aorta", kArtery},
+               {"vessel", kArtery}, {"pulp", kArtery},  {"dura", kDura},      {"sac", kDura}};
+const Vector3f kOthers[] = {{0.90f, 0.62f, 0.00f}, {0.34f, 0.71f, 0.91f}, {0.00f, 0.62f, 0.45f},
+                            {0.80f, 0.47f, 0.65f}, {0.84f, 0.37f, 0.00f}, {0.00f, 0.45f, 0.70f}};
+
+std::string lowered(std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char sign) { return char(std::tolower(sign)); });
+    return text;
+}
+
+}  // namespace
+
+Vector3f structureColour(const topics::SceneInfo& info, uint32_t structure) {
+    if (structure > 0 && structure <= uint32_t(info.materials_size())) {
+        const scene::Material& material = info.materials(int(structure) - 1);
+        const scene::Color& color = material.color();
+        if (material.has_color())
+            return Eigen::Vector3d(color.red(), color.green(), color.blue()).cast<float>();
+        const std::string name = lowered(material.name());
+        for (const auto& custom : kCustom)
+            if (name.find(custom.word) != std::string::npos) return custom.colour;
+    }
+    return kOthers[structure % std::size(kOthers)];
+}
+
+Vector3f linearColour(const Vector3f& srgb) {
+    return srgb.array().max(0.0f).min(1.0f).pow(kGamma);
+}
+
+Vector3f srgbColour(const Vector3f& linear) {
+    return linear.array().max(0.0f).min(1.0f).pow(1 / kGamma);
+}
+
+const std::array<Vector3f, kThicknessColours>& thicknessColours() {
+    static const std::array<Vector3f, kThicknessColours> kColours = {
+        Vector3f(0.50f, 0.01f, 0.03f), Vector3f(0.85f, 0.20f, 0.02f), Vector3f(0.95f, 0.72f, 0.05f),
+        Vector3f(0.42f, 0.80f, 0.62f), Vector3f(0.10f, 0.38f, 0.78f)};
+    return kColours;
+}
+
+Vector3f distanceColour(double distance, double warning_distance) {
+    const auto share = float(std::clamp(distance / warning_distance, 0.0, 1.0));
+    const Vector3f red(0.95f, 0.10f, 0.08f), yellow(1.0f, 0.85f, 0.10f), green(0.20f, 0.80f, 0.35f);
+    return share < 0.5f ? red + 2 * share * (yellow - red) : yellow + (2 * share - 1) * (green - yellow);
+}
+
+}  // namespace bonemill

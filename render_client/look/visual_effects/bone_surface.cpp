@@ -1,0 +1,131 @@
+#include "render_client/look/visual_effects/bone_surface.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace bonemill {
+namespace {
+
+constexpr int kBuckets = 8;                  // per axis of a leaf
+constexpr float kFocusStep = 0.002f;         // m that the focus moves before leaves are looked for again
+constexpr uint64_t kPlace = 0xffffffffffff;  // of a packed vertex: without its normal
+
+uint64_t placeOf(const PackedVertex& vertex) {
+    return std::bit_cast<uint64_t>(vertex) & kPlace;
+}
+
+std::vector<uint64_t> sortedPlaces(const std::vector<PackedVertex>& vertices) {
+    std::vector<uint64_t> places(vertices.size());
+    std::ranges::transform(vertices, places.begin(), placeOf);
+    std::ranges::sort(places);
+    return places;
+}
+
+}  // namespace
+
+static_assert(std::endian::native == std::endian::little, "placeOf() reads x, y, z as the low bytes");
+
+SurfacePoint BoneSurface::Leaf::point(size_t vertex) const {
+    const PackedVertex& v = vertices[vertex];
+    return {origin + step.cwiseProduct(Eigen::Vector3f(v.x, v.y, v.z)),
+            decodeNormal(v.octahedral_u, v.octahedral_v), materials.empty() ? uint8_t(0) : materials[vertex]};
+}
+
+Eigen::Array3i BoneSurface::Leaf::bucketOf(const Eigen::Vector3f& p) const {
+    const Eigen::Array3f size = box.sizes().array().max(1e-9f);
+    const Eigen::Array3f place = ((p - box.min()).array() / size * float(kBuckets)).max(0).min(kBuckets - 1);
+    return place.cast<int>();
+}
+
+void BoneSurface::Leaf::sortIntoBuckets() const {
+    const auto number = [](const Eigen::Array3i& b) {
+        return size_t((b.z() * kBuckets + b.y()) * kBuckets + b.x());
+    };
+    starts.assign(kBuckets * kBuckets * kBuckets + 1, 0);
+    order.resize(vertices.size());
+    std::vector<size_t> buckets(vertices.size());
+    for (size_t i = 0; i < vertices.size(); ++i) ++starts[(buckets[i] = number(bucketOf(point(i).p_V))) + 1];
+    for (size_t b = 1; b < starts.size(); ++b) starts[b] += starts[b - 1];
+    std::vector<uint32_t> next(starts.begin(), starts.end() - 1);
+    for (size_t i = 0; i < vertices.size(); ++i) order[next[buckets[i]]++] = uint32_t(i);
+}
+
+void BoneSurface::Leaf::findNearer(const Eigen::Vector3f& p_V, float& reach,
+                                   const PackedVertex*& found) const {
+    if (box.exteriorDistance(p_V) >= reach) return;
+    if (starts.empty()) sortIntoBuckets();
+    const Eigen::Vector3f margin = Eigen::Vector3f::Constant(reach);
+    const Eigen::Array3i low = bucketOf(p_V - margin), high = bucketOf(p_V + margin);
+    for (int z = low.z(); z <= high.z(); ++z)
+        for (int y = low.y(); y <= high.y(); ++y) {
+            const size_t row = size_t((z * kBuckets + y) * kBuckets);
+            for (uint32_t i = starts[row + size_t(low.x())]; i < starts[row + size_t(high.x()) + 1]; ++i) {
+                const PackedVertex& v = vertices[order[i]];
+                const float distance =
+                    (origin + step.cwiseProduct(Eigen::Vector3f(v.x, v.y, v.z)) - p_V).norm();
+                if (distance >= reach) continue;
+                reach = distance;
+                found = &v;
+            }
+        }
+}
+
+void BoneSurface::set(const NodeMesh& mesh) {
+    if (mesh.isEmpty()) return remove(mesh.leaf);
+    Leaf leaf{mesh.origin, mesh.step, mesh.vertices, {}, {}, {}, {}};
+    if (mesh.materials.size() == mesh.vertices.size()) leaf.materials = mesh.materials;
+    for (size_t i = 0; i < leaf.vertices.size(); ++i) leaf.box.extend(leaf.point(i).p_V);
+    const auto known = leaves_.find(mesh.leaf);
+    if (tracks_fresh_) noteFresh(known == leaves_.end() ? nullptr : &known->second, leaf);
+    leaves_.insert_or_assign(mesh.leaf, std::move(leaf));
+    is_stale_ = true;
+}
+
+void BoneSurface::noteFresh(const Leaf* before, const Leaf& after) {
+    std::vector<uint64_t> old_places;
+    if (before && before->origin == after.origin && before->step == after.step)
+        old_places = sortedPlaces(before->vertices);
+    for (size_t i = 0; i < after.vertices.size() && fresh_.size() < kMostFresh; ++i)
+        if (!std::ranges::binary_search(old_places, placeOf(after.vertices[i])))
+            fresh_.push_back(after.point(i));
+}
+
+void BoneSurface::remove(uint32_t leaf) {
+    leaves_.erase(leaf);
+    is_stale_ = true;
+}
+
+void BoneSurface::clear() {
+    leaves_.clear();
+    fresh_.clear();
+    is_stale_ = true;
+}
+
+void BoneSurface::focusOn(const Eigen::Vector3f& p_V) {
+    focus_ = p_V;
+    if (is_stale_ || (p_V - sought_around_).norm() > kFocusStep) findLeaves();
+}
+
+void BoneSurface::findLeaves() {
+    sought_around_ = focus_;
+    is_stale_ = false;
+    near_.clear();
+    for (const auto& [number, leaf] : leaves_)
+        if (leaf.box.exteriorDistance(focus_) < kFocusRadius + kFocusStep) near_.push_back(&leaf);
+}
+
+std::optional<SurfacePoint> BoneSurface::nearest(const Eigen::Vector3f& p_V, float reach) const {
+    if (is_stale_ || !isInFocus(p_V)) return std::nullopt;
+    const PackedVertex* found = nullptr;
+    const Leaf* found_in = nullptr;
+    for (const Leaf* leaf : near_) {
+        const PackedVertex* before = found;
+        leaf->findNearer(p_V, reach, found);
+        if (found != before) found_in = leaf;
+    }
+    if (!found) return std::nullopt;
+    return found_in->point(size_t(found - found_in->vertices.data()));
+}
+
+}  // namespace bonemill

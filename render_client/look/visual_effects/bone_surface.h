@@ -1,0 +1,61 @@
+// What flies and flows meets the bone as this: the vertices of the node meshes, found by place.
+//
+// The surface only exists while an effect needs it. The frame is V, the unit m. It is for one
+// thread and allocates.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "common/geometry/node_mesh.h"
+#include "render_client/look/visual_effects/surface_point.h"
+
+namespace bonemill {
+
+class BoneSurface {
+  public:
+    static constexpr float kFocusRadius = 0.02f;  // m around the focus in which points are found
+
+    void set(const NodeMesh& mesh);  // an empty one removes it
+    void clear();
+
+    // Points are found around this place from now on. The call is cheap while the place hardly moves.
+    void focusOn(const Eigen::Vector3f& p_V);
+    bool isInFocus(const Eigen::Vector3f& p_V) const { return (p_V - focus_).norm() < kFocusRadius; }
+    // Returns the nearest vertex within `reach` (m); nothing out of focus.
+    std::optional<SurfacePoint> nearest(const Eigen::Vector3f& p_V, float reach) const;
+
+    // From now on the surface knows which vertices are new; that takes time.
+    void trackFresh() { tracks_fresh_ = true; }
+    // Returns the vertices since the last call that no earlier mesh of their leaf had, at most kMostFresh.
+    std::vector<SurfacePoint> takeFresh() { return std::exchange(fresh_, {}); }
+    static constexpr size_t kMostFresh = 20000;
+
+  private:
+    struct Leaf {
+        Eigen::Vector3f origin, step;
+        std::vector<PackedVertex> vertices;
+        std::vector<uint8_t> materials;  // per vertex, or none
+        Eigen::AlignedBox3f box;
+        mutable std::vector<uint32_t> starts, order;  // vertices by bucket; empty: not sorted yet
+        SurfacePoint point(size_t vertex) const;
+        void sortIntoBuckets() const;
+        Eigen::Array3i bucketOf(const Eigen::Vector3f& p) const;
+        void findNearer(const Eigen::Vector3f& p_V, float& reach, const PackedVertex*& found) const;
+    };
+    void remove(uint32_t leaf);
+    void noteFresh(const Leaf* before, const Leaf& after);
+    void findLeaves();
+
+    std::map<uint32_t, Leaf> leaves_;
+    std::vector<const Leaf*> near_;  // touch the focus
+    Eigen::Vector3f focus_ = Eigen::Vector3f::Zero(), sought_around_ = focus_;
+    bool is_stale_ = true;  // near_
+    bool tracks_fresh_ = false;
+    std::vector<SurfacePoint> fresh_;
+};
+
+}  // namespace bonemill

@@ -1,5 +1,0 @@
-// Shaders of render_client/shaders: their text.
-declare module '*.glsl' {
-  const text: string;
-  export default text;
-}

@@ -1,0 +1,143 @@
+#include "render_client/panel/panel/panel_content.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace bonemill {
+namespace {
+
+bool isOpen(const char* title) {
+    return ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen);
+}
+
+ImVec4 imColour(const HudColour& colour) {
+    return {colour[0], colour[1], colour[2], colour[3]};
+}
+
+}  // namespace
+
+void PanelContent::build() {
+    const ImVec2 picture = ImGui::GetIO().DisplaySize;
+    const float width = std::min(kWidth * scale_, view_width_), margin = kMargin * scale_;
+    ImGui::SetNextWindowPos(ImVec2(view_width_ - margin, margin), ImGuiCond_Always, ImVec2(1, 0));
+    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, picture.y - 2 * margin));
+    ImGui::Begin((title() + "###panel").c_str(), nullptr,
+                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    if (std::exchange(draft_.scrolls_to_top, false)) ImGui::SetScrollY(0);
+    if (controls_.toolHold().isHolding() || isHeldByMouse(session_)) {
+        if (isOpen("Tool in the mouse")) buildHold();
+        gap();
+    }
+    if (isReplay(session_)) {
+        if (isOpen("Replay")) buildReplay();
+        gap();
+    }
+    if (session_.lesson && session_.lesson->scenes_size() > 0) {
+        if (isOpen("Lesson")) buildLesson();
+        gap();
+    }
+    if (isOpen("View")) buildView();
+    gap();
+    if (hasStructures()) {
+        if (isOpen("Structures")) buildStructures();
+        gap();
+    }
+    if (hasEffects()) {
+        if (isOpen("Effects")) buildEffects();
+        gap();
+    }
+    if (isOpen("Session")) isReplay(session_) ? buildEnd() : buildSession();
+    if (session_.status && session_.status->has_training()) {
+        gap();
+        if (isOpen("Training")) buildTraining();
+    }
+    if (!session_.faults.empty()) {
+        gap();
+        if (isOpen("Faults")) buildFaults();
+    }
+    gap();
+    if (isOpen("Notes and strokes")) buildRemarks();
+    gap();
+    if (isOpen("Who is watching")) buildWatchers();
+    ImGui::End();
+}
+
+// The button that opens the panel is called so, too.
+std::string PanelContent::title() const {
+    return panelTitle(session_);
+}
+
+void PanelContent::gap() {
+    ImGui::Dummy(ImVec2(0, ImGui::GetStyle().ItemSpacing.y));
+}
+
+void PanelContent::sayQuietly(const std::string& text) {
+    ImGui::TextColored(imColour(kHudLabelColour), "%s", text.c_str());
+}
+
+void PanelContent::say(const std::string& text, HudTone tone) {
+    ImGui::TextColored(imColour(colourOf(tone)), "%s", text.c_str());
+}
+
+void PanelContent::note(const std::string& label, const char* what) {
+    // A box's label belongs to it, but its left end is always the control.
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const ImVec2 place(low.x + (high.y - low.y) / 2, (low.y + high.y) / 2);
+    if (ImGui::IsRectVisible(place, ImVec2(place.x + 1, place.y + 1))) places_[label] = {place.x, place.y};
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) explain(what);
+}
+
+// It stands beside the panel, where it covers none of the neighbours.
+void PanelContent::explain(const std::string& text) {
+    constexpr float kWidest = 22;  // letters' heights
+    const ImVec2 panel = ImGui::GetWindowPos();
+    const float widest = std::min(kWidest * ImGui::GetFontSize(), panel.x - 4 * scale_);
+    if (widest > 6 * ImGui::GetFontSize())
+        ImGui::SetNextWindowPos(ImVec2(panel.x - 4 * scale_, ImGui::GetItemRectMin().y), ImGuiCond_Always,
+                                ImVec2(1, 0));
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(std::max(widest, 12 * ImGui::GetFontSize()));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+bool PanelContent::button(const std::string& label, const char* what) {
+    const bool is_pressed = ImGui::Button(label.c_str());
+    note(label, what);
+    return is_pressed;
+}
+
+bool PanelContent::box(const std::string& label, bool is_on, const char* what) {
+    const bool is_changed = ImGui::Checkbox(label.c_str(), &is_on);
+    note(label, what);
+    return is_changed;
+}
+
+bool PanelContent::choice(const std::string& label, bool is_chosen, const char* what) {
+    const bool is_pressed = ImGui::RadioButton(label.c_str(), is_chosen);
+    note(label, what);
+    return is_pressed && !is_chosen;
+}
+
+std::optional<double> PanelContent::slider(const char* label, double fraction, double least,
+                                           const char* what) {
+    auto percent = float(fraction * 100);
+    const bool is_moved =
+        ImGui::SliderFloat(label, &percent, float(least * 100), 100, "%.0f %%", ImGuiSliderFlags_AlwaysClamp);
+    note(label, what);
+    return is_moved ? std::optional(double(percent) / 100) : std::nullopt;
+}
+
+void PanelContent::button(const char* text, Action action, const char* what) {
+    if (button(withKey(text, action), what)) act(action);
+}
+
+void PanelContent::box(const char* text, Action action, bool is_on, const char* what) {
+    if (box(withKey(text, action), is_on, what)) act(action);
+}
+
+}  // namespace bonemill

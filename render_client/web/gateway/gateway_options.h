@@ -1,0 +1,33 @@
+// What the gateway is to do (render_client --serve).
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "render_client/link/subscribe/deaf_watch.h"
+#include "render_client/web/relay/relay_options.h"
+
+namespace bonemill::gateway {
+
+inline constexpr uint32_t kMostGuestsOfGateway = 1000;
+
+struct GatewayOptions {
+    uint32_t domain = 0;   // DDS
+    uint32_t session = 1;  // of the server
+    std::string address = "127.0.0.1";
+    uint16_t port = 0;                  // 0: any that is free
+    std::filesystem::path certificate;  // PEM; empty: one of its own making
+    std::filesystem::path key;          // PEM
+    std::filesystem::path guests;       // empty: in the user's configuration
+    std::filesystem::path page;         // folder of the page
+    double guest_mbit_per_s = 20;       // at most, to each guest
+    uint32_t most_guests = 64;          // kMostGuestsOfGateway at most
+    std::optional<RelayPlace> via;      // guests come through this relay, too
+    // After so much silence in DDS it joins anew (DeafWatch).
+    std::chrono::milliseconds rejoin_after = DeafWatch::kFirstSilence;
+};
+
+}  // namespace bonemill::gateway

@@ -1,0 +1,34 @@
+// The gateway's port: TLS, the page's files, and a WebSocket per guest, on libwebsockets.
+//
+// One thread constructs and serves. Connections, their times and their headers are bounded; the log holds no
+// tokens.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "render_client/web/gateway/certificate.h"
+#include "render_client/web/gateway/gateway_options.h"
+
+namespace bonemill::gateway {
+
+class GatewayServer {
+  public:
+    // Listens from now on. Throws UserError.
+    explicit GatewayServer(const GatewayOptions& options);
+    ~GatewayServer();
+
+    // Serves until `stop`, which is asked often.
+    void serveUntil(const std::function<bool()>& stop);
+
+    uint16_t port() const;
+    const Certificate& certificate() const;
+    bool hasPage() const;
+
+  private:
+    struct Port;
+    std::unique_ptr<Port> port_;
+};
+
+}  // namespace bonemill::gateway

@@ -1,0 +1,83 @@
+#include "render_client/web/gateway/guest_frames.h"
+
+#include <google/protobuf/stubs/logging.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace bonemill::gateway {
+namespace {
+
+constexpr double kLargestNumber = 1e6;
+constexpr double kUnitTolerance = 1e-3;
+constexpr int kMostWished = 16384;
+
+template <class Field>
+bool areSane(const Field& field, int count) {
+    return field.size() == count &&
+           std::ranges::all_of(field, [](auto value) { return std::abs(value) <= kLargestNumber; });
+}
+
+bool isSane(const topics::Camera& camera) {
+    return (!camera.has_target() || areSane(camera.target_m(), 3)) &&
+           (camera.up().empty() || areSane(camera.up(), 3)) && camera.distance_m() >= 0 &&
+           camera.distance_m() <= kLargestNumber && std::abs(camera.azimuth_rad()) <= kLargestNumber &&
+           std::abs(camera.elevation_rad()) <= kLargestNumber;
+}
+
+bool isSane(const topics::Viewer& announce) {
+    return announce.frame_rate_hz() >= 0 && announce.frame_rate_hz() <= kLargestNumber &&
+           (announce.pointer_m().empty() || areSane(announce.pointer_m(), 3)) && isSane(announce.camera());
+}
+
+bool isSane(const topics::HandPointer& hand) {
+    if (!hand.is_holding()) return true;
+    if (!areSane(hand.p_wt_m(), 3) || !areSane(hand.q_wt(), 4)) return false;
+    double square = 0;
+    for (const double part : hand.q_wt()) square += part * part;
+    return std::abs(std::sqrt(square) - 1) < kUnitTolerance;
+}
+
+bool isSane(const topics::DensityWish& wish) {
+    return wish.lacking_size() <= kMostWished && wish.held_size() % 2 == 0 &&
+           wish.held_size() <= kMostWished && wish.revisions_size() % 2 == 0 &&
+           wish.revisions_size() <= 2 * kMostWished;
+}
+
+bool isSane(const Hello& hello) {
+    return hello.token().size() <= kMostTokenBytes && hello.leaves_size() == hello.revisions_size();
+}
+
+bool isSane(const FromGuest& message) {
+    switch (message.kind_case()) {
+        case FromGuest::kHello:
+            return isSane(message.hello());
+        case FromGuest::kCommand:
+            return message.command().action_case() != topics::Command::ACTION_NOT_SET;
+        case FromGuest::kAnnounce:
+            return isSane(message.announce());
+        case FromGuest::kHand:
+            return isSane(message.hand());
+        case FromGuest::kReceived:
+            return true;
+        case FromGuest::kWish:
+            return isSane(message.wish());
+        case FromGuest::KIND_NOT_SET:
+            break;
+    }
+    return false;
+}
+
+}  // namespace
+
+std::optional<FromGuest> parseFromGuest(std::string_view frame) {
+    const google::protobuf::LogSilencer silencer;
+    FromGuest message;
+    if (frame.size() > kMostHelloBytes || !message.ParseFromArray(frame.data(), int(frame.size())) ||
+        (frame.size() > kMostFrameBytes && !message.has_hello()) || !isSane(message))
+        return std::nullopt;
+    message.DiscardUnknownFields();
+    return message;
+}
+
+}  // namespace bonemill::gateway

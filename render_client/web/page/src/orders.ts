@@ -1,0 +1,123 @@
+// Which orders a role may give, what is lost by them, and how a key makes one; as render_client/hand/controls/session_view.cpp.
+import { readableText } from './shared/format';
+import { Role, type CommandOrder } from './shared/messages';
+import type { Session } from './session';
+
+// An examiner leaves bone, tool and device to others.
+const kNotOfExaminers: CommandOrder['action'][] = ['resetVolume', 'restoreCheckpoint', 'setAccuracy', 'selectTool', 'resetDevice'];
+
+// Empty if it may. The server and the gateway ask for themselves.
+export function whyNot(action: CommandOrder['action'], session: Session): string {
+  if (session.role === Role.Viewer) return 'An observer only looks';
+  if (action === 'shutDown' && session.role !== Role.Instructor) return 'Only an instructor ends the session';
+  if (session.role === Role.Examiner && kNotOfExaminers.includes(action)) return 'An examiner leaves bone and tool to others';
+  if (!session.isLive) return 'There is no server';
+  return '';
+}
+
+export function whyNotPoint(session: Session): string {
+  return session.role === Role.Instructor ? '' : 'Only an instructor points';
+}
+
+export function whyNotHold(session: Session, now: number): string {
+  const why = whyNot('selectTool', session);
+  if (why) return why;
+  const other = session.others(now).find((viewer) => viewer.isHolding);
+  if (other) return `${other.name || 'Another viewer'} holds the tool`;
+  const device = session.status?.device;
+  if (device && device.kind !== kPointerDevice) return `${device.name || 'A device'} holds the tool`;
+  return '';
+}
+export const kPointerDevice = 6;  // DeviceKind::kPointer of common/device_messages
+
+// A checkpoint has the bone as it is when just as much was removed until then.
+export function unsavedWork(session: Session): string {
+  const status = session.status;
+  if (!status || status.removedMm3 === 0) return '';
+  if (status.checkpoints.some((checkpoint) => checkpoint.removedMm3 === status.removedMm3)) return '';
+  return `${readableText(status.removedMm3, ' mm³')} are milled and in no checkpoint`;
+}
+
+// What is asked before something is lost; empty if nothing is.
+export function questionBefore(order: CommandOrder, session: Session): string {
+  if (order.action === 'shutDown') return 'End the session for everyone? Checkpoints go with it: once more does it';
+  if (order.action === 'eraseRemark') return order.value === 0 ? 'Erase all notes and strokes? Once more does it' : '';
+  const removed = session.status?.removedMm3 ?? 0;
+  if (order.action === 'chooseScene')
+    return removed > 0 ? `Change the scene? ${readableText(removed, ' mm³')} are milled and go with this one: once more does it` : '';
+  if (!['startAttempt', 'resetVolume', 'restoreCheckpoint'].includes(order.action)) return '';
+  const lost = unsavedWork(session);
+  if (!lost) return '';
+  const what = order.action === 'startAttempt' ? 'Start on whole bone?'
+    : order.action === 'restoreCheckpoint' ? `Back to checkpoint ${order.value}?` : 'Put the bone back?';
+  return `${what} ${lost}: once more does it, K saves them first`;
+}
+
+const kAskedMs = 6000;
+
+// An order that loses something is given when it is asked for twice.
+export class OrderDesk {
+  private asked = '';
+  private askedUntil = 0;
+
+  constructor(
+    private readonly session: Session,
+    private readonly send: (order: CommandOrder) => void,
+    private readonly say: (text: string, tone?: 'warning' | 'alarm') => void,
+  ) {}
+
+  give(order: CommandOrder): void {
+    const why_not = whyNot(order.action, this.session);
+    if (why_not) return this.say(why_not, 'warning');
+    const question = questionBefore(order, this.session), key = JSON.stringify(order);
+    const is_asked = key === this.asked && Date.now() < this.askedUntil;
+    this.asked = '';
+    if (!question || is_asked) return this.send(order);
+    this.asked = key;
+    this.askedUntil = Date.now() + kAskedMs;
+    this.say(question, 'warning');
+  }
+
+  pauseOrGoOn(): void {
+    this.give({ action: 'pauseMilling', value: !this.session.status?.isMillingPaused });
+  }
+
+  backToLastCheckpoint(): void {
+    const last = this.session.status?.checkpoints.at(-1);
+    if (last) this.give({ action: 'restoreCheckpoint', value: last.id });
+    else this.say('there is no checkpoint yet: K saves one');
+  }
+
+  nextTool(): void {
+    const count = this.session.scene?.toolNames.length ?? 0;
+    if (count < 2) return this.say('the scene has one tool only');
+    this.give({ action: 'selectTool', value: ((this.session.scene?.toolIndex ?? 0) + 1) % count });
+  }
+
+  // The one after the scene in force, of those that can be chosen.
+  nextScene(): void {
+    const { scenes = [], sceneId = '' } = this.session.lesson ?? {};
+    const now = scenes.findIndex((scene) => scene.id === sceneId);
+    const turned = [...scenes.slice(now + 1), ...scenes.slice(0, Math.max(now, 0))];
+    const next = turned.find((scene) => !scene.problem);
+    if (next) this.give({ action: 'chooseScene', value: next.id });
+    else this.say('there is no other scene to choose');
+  }
+
+  stopAttempt(): void {
+    if (this.session.lesson?.isRunning) this.give({ action: 'stopAttempt' });
+    else this.say('no attempt is under way');
+  }
+}
+
+export function orderText(order: CommandOrder): string {
+  const words: Record<CommandOrder['action'], string> = {
+    resetVolume: 'put the bone back', shutDown: 'end the session', saveCheckpoint: 'checkpoint',
+    resetDevice: 'reset the device', stopAttempt: 'end the attempt', pauseMilling: 'pause', setAccuracy: 'accuracy',
+    chooseScene: 'scene', startAttempt: 'attempt', selectTool: 'tool', restoreCheckpoint: 'back to checkpoint',
+    eraseRemark: 'erase', addRemark: 'note',
+  };
+  if (order.action === 'pauseMilling') return order.value ? 'pause' : 'go on';
+  const value = 'value' in order && typeof order.value === 'string' ? ` ${order.value}` : '';
+  return words[order.action] + value;
+}

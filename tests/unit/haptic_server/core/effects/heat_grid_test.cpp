@@ -1,0 +1,275 @@
+#include "haptic_server/core/effects/heat_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/test_bodies.h"
+#include "tests/support/typical_effects.h"
+
+namespace bonemill {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kSpacing = 0.5e-3;
+constexpr double kDt = 1e-3;
+constexpr double kBody = 37;
+
+// Neither surface nor blood takes heat.
+HeatConfig insulated() {
+    HeatConfig config = test::kHeat;
+    config.wet_transfer = config.dry_transfer = 0;
+    return config;
+}
+double diffusivity(const HeatConfig& config) {
+    return config.conductivity / config.heat_capacity;
+}
+
+VoxelVolume boneOf(const Eigen::Vector3i& dims) {
+    VolumeGeometry geometry;
+    geometry.dims = dims;
+    geometry.spacing.setConstant(kSpacing);
+    VoxelVolume bone(geometry, test::kTestIso);
+    bone.fill([&](int i, int j, int k) {
+        const bool is_inside = i >= 0 && j >= 0 && k >= 0 && i < dims.x() && j < dims.y() && k < dims.z();
+        return is_inside ? kMaxDensity : Density(0);
+    });
+    return bone;
+}
+
+void run(HeatGrid& heat, double seconds, double dt = kDt) {
+    for (int n = int(std::lround(seconds / dt)); n > 0; --n) heat.step();
+}
+
+const Vector3d kUp = Vector3d::UnitZ();
+// Returns the middle of a cube's voxel.
+Vector3d cubeAt(int i, int j, int k) {
+    return kSpacing * Vector3d(i, j, k);
+}
+
+TEST(HeatGrid, NothingIsThereBeforeTheFirstHeat) {
+    const VoxelVolume bone = boneOf({40, 40, 40});
+    HeatGrid heat(test::kHeat, bone, kDt);
+    run(heat, 0.1);
+    EXPECT_EQ(heat.activeBricks(), 0u);
+    EXPECT_EQ(heat.hottest(), kBody);
+    EXPECT_EQ(heat.necroticVolume(), 0);
+}
+
+TEST(HeatGrid, HeatIsConserved) {
+    const VoxelVolume bone = boneOf({48, 48, 48});
+    HeatGrid heat(insulated(), bone, kDt);
+    double put_in = 0;
+    for (int n = 0; n < 3000; ++n) {  // a source that moves across bricks
+        heat.addHeat(cubeAt(12 + n / 150, 15 + n / 300, 24), -kUp, 2e-3);
+        put_in += 2e-3;
+        heat.step();
+    }
+    EXPECT_NEAR(heat.storedHeat() / put_in, 1, 1e-3);
+    run(heat, 5);
+    EXPECT_NEAR(heat.storedHeat() / put_in, 1, 1e-2);
+    EXPECT_GT(heat.activeBricks(), 8u);
+}
+
+// The temperature is Q / (ρc (4πατ)^(3/2)) exp(-r² / 4ατ) (Carslaw and Jaeger).
+TEST(HeatGrid, PointSourceSpreadsAsInTheInfiniteMedium) {
+    const VoxelVolume bone = boneOf({64, 64, 64});
+    const HeatConfig config = insulated();
+    HeatGrid heat(config, bone, kDt);
+    constexpr double kHeat = 1;  // J
+    heat.addHeat(cubeAt(32, 32, 32), Vector3d::Zero(), kHeat);
+    // A heap of heat in one cube is a point only when it has spread over many: the error falls as 1 / time.
+    for (const double seconds : {8.0, 16.0}) {
+        run(heat, seconds - heat.time());
+        const double spread = 4 * diffusivity(config) * seconds;
+        const double peak = kHeat / (config.heat_capacity * std::pow(M_PI * spread, 1.5));
+        for (const Eigen::Vector3i& away :
+             {Eigen::Vector3i(0, 0, 0), {2, 0, 0}, {0, -3, 0}, {0, 0, 4}, {-2, 2, 2}}) {
+            const double r = kSpacing * away.cast<double>().norm();
+            const double expected = peak * std::exp(-r * r / spread);
+            const double excess =
+                heat.temperatureAt(cubeAt(32 + away.x(), 32 + away.y(), 32 + away.z())) - kBody;
+            EXPECT_NEAR(excess, expected, 0.35 / seconds * peak)
+                << away.transpose() << " after " << seconds << " s";
+        }
+    }
+}
+
+// A surface heated by q W/m² is warmer by q √(4ατ/π) / k, which falls off with depth as ierfc (Carslaw
+// and Jaeger).
+TEST(HeatGrid, SurfaceHeatedEvenlyWarmsAsAHalfSpace) {
+    const VoxelVolume bone = boneOf({8, 8, 64});
+    const HeatConfig config = insulated();
+    HeatGrid heat(config, bone, kDt);
+    constexpr double kFlux = 1e4;  // W/m²
+    constexpr double kSeconds = 6;
+    for (int n = 0; n < int(kSeconds / kDt); ++n) {
+        for (int i = 0; i < 8; ++i)
+            for (int j = 0; j < 8; ++j)
+                heat.addHeat(cubeAt(i, j, 63), -kUp, kFlux * kSpacing * kSpacing * kDt);
+        heat.step();
+    }
+    const double length = std::sqrt(4 * diffusivity(config) * kSeconds);
+    const auto expected = [&](double depth) {
+        const double x = depth / length;
+        return kFlux * length / config.conductivity * (std::exp(-x * x) / std::sqrt(M_PI) - x * std::erfc(x));
+    };
+    for (const int deep : {0, 2, 4, 6}) {
+        const double excess = heat.temperatureAt(cubeAt(3, 4, 63 - deep)) - kBody;
+        EXPECT_NEAR(excess, expected((deep + 0.5) * kSpacing), 0.03 * expected(0)) << deep;
+    }
+}
+
+TEST(HeatGrid, TheResultDoesNotDependOnTheTickRate) {
+    const VoxelVolume bone = boneOf({40, 40, 40});
+    std::vector<double> excess;
+    for (const double dt : {4e-3, 1e-3, 0.25e-3}) {
+        HeatConfig config = test::kHeat;
+        HeatGrid heat(config, bone, dt);
+        heat.irrigate(cubeAt(20, 20, 39), 5e-3);
+        for (int n = 0; n < int(std::lround(2 / dt)); ++n) {
+            heat.addHeat(cubeAt(20, 20, 39), -kUp, 0.3 * dt);
+            heat.step();
+        }
+        excess.push_back(heat.hottest() - kBody);
+    }
+    EXPECT_GT(excess[1], 5);
+    EXPECT_NEAR(excess[0] / excess[1], 1, 0.02);
+    EXPECT_NEAR(excess[2] / excess[1], 1, 0.02);
+}
+
+TEST(HeatGrid, BloodTakesItsShare) {
+    const VoxelVolume bone = boneOf({32, 32, 32});
+    HeatConfig config = insulated();
+    config.perfusion = 0.2;
+    HeatGrid heat(config, bone, kDt);
+    heat.addHeat(cubeAt(16, 16, 16), -kUp, 1);
+    run(heat, 5);
+    EXPECT_NEAR(heat.storedHeat(), std::exp(-0.2 * 5), 0.01);
+}
+
+// A thin plate is as warm inside as outside: it cools as exp(-2 h τ / (ρc d)).
+TEST(HeatGrid, IrrigatedPlateCoolsTowardsTheWater) {
+    const VoxelVolume bone = boneOf({16, 16, 1});
+    HeatConfig config = insulated();
+    config.wet_transfer = 100;
+    config.irrigation_temperature = 30;
+    HeatGrid heat(config, bone, kDt);
+    for (int i = 0; i < 16; ++i)
+        for (int j = 0; j < 16; ++j)
+            heat.addHeat(cubeAt(i, j, 0), -kUp, 10 * config.heat_capacity * std::pow(kSpacing, 3));
+    heat.irrigate(cubeAt(8, 8, 0), 1);
+    constexpr double kSeconds = 3;
+    run(heat, kSeconds);
+    const double transfer = 1 / (1 / config.wet_transfer + kSpacing / 2 / config.conductivity);
+    const double rate = 2 * transfer / (config.heat_capacity * kSpacing);
+    // The middle of the plate is compared: its rim has more surface.
+    EXPECT_NEAR(heat.temperatureAt(cubeAt(8, 8, 0)), 30 + 17 * std::exp(-rate * kSeconds), 0.1);
+    heat.irrigate(cubeAt(8, 8, 0), 0);
+    const double before = heat.temperatureAt(cubeAt(8, 8, 0));
+    run(heat, 1);
+    EXPECT_NEAR(heat.temperatureAt(cubeAt(8, 8, 0)), before, 0.05);
+}
+
+TEST(HeatGrid, WhatIsCutAwayIsNeitherHotNorDeadBone) {
+    VoxelVolume bone = boneOf({32, 32, 32});
+    HeatConfig config = insulated();
+    HeatGrid heat(config, bone, kDt);
+    heat.addHeat(cubeAt(16, 16, 16), -kUp, 20e-3);
+    run(heat, 0.03);
+    EXPECT_GT(heat.hottest(), 60);
+    EXPECT_GT(heat.necroticVolume(), 0);
+    for (int k = 12; k <= 20; ++k)
+        for (int j = 12; j <= 20; ++j)
+            for (int i = 12; i <= 20; ++i) bone.set(i, j, k, 0);
+    heat.noteChange({{12, 12, 12}, {20, 20, 20}});
+    run(heat, 0.1);
+    EXPECT_LT(heat.hottest(), kBody + 0.1);
+    EXPECT_EQ(heat.necroticVolume(), 0);
+}
+
+// Its brick was closed long ago when the whole bone becomes another one.
+TEST(HeatGrid, DeadBoneThatIsGoneDoesNotCountThoughItIsCold) {
+    VoxelVolume bone = boneOf({32, 32, 32});
+    HeatGrid heat(test::kHeat, bone, kDt);
+    heat.addHeat(cubeAt(10, 10, 10), -kUp, test::kHeat.heat_capacity * std::pow(kSpacing, 3) * 10.5);
+    run(heat, 20);
+    EXPECT_EQ(heat.activeBricks(), 0u);
+    EXPECT_GT(heat.necroticVolume(), 0);
+    for (int k = 0; k < 32; ++k)
+        for (int j = 0; j < 32; ++j)
+            for (int i = 0; i < 16; ++i) bone.set(i, j, k, 0);
+    heat.noteChangeEverywhere();
+    run(heat, 0.1);
+    EXPECT_EQ(heat.necroticVolume(), 0);
+}
+
+// A burr that cuts among dead bone makes all of it stale in every tick. No bone changes here, so that the
+// notes may change nothing either, but for when a brick has its turn.
+TEST(HeatGrid, HeatSpreadsWhileDeadBoneIsLookedUpAgain) {
+    const VoxelVolume bone = boneOf({32, 32, 32});
+    HeatGrid undisturbed(insulated(), bone, kDt), noted(insulated(), bone, kDt);
+    for (HeatGrid* heat : {&undisturbed, &noted}) {
+        for (int n = 0; n < 8; ++n)  // one cube in each of the eight bricks that meet here
+            heat->addHeat(cubeAt(15 + (n & 1), 15 + (n >> 1 & 1), 15 + (n >> 2)), Vector3d::Zero(), 5e-3);
+        run(*heat, 0.1);
+        EXPECT_GT(heat->necroticVolume(), 0);
+        for (int n = 0; n < 500; ++n) {
+            heat->addHeat(cubeAt(16, 16, 16), Vector3d::Zero(), 5e-5);
+            if (heat == &noted) heat->noteChange({{15, 15, 15}, {16, 16, 16}});
+            heat->step();
+        }
+    }
+    EXPECT_NEAR((noted.hottest() - kBody) / (undisturbed.hottest() - kBody), 1, 0.02);
+    EXPECT_NEAR(noted.storedHeat() / undisturbed.storedHeat(), 1, 1e-3);
+}
+
+// Cubes count once however often they are heated, also after their brick was given up meanwhile.
+TEST(HeatGrid, NecrosisIsCountedOnce) {
+    const VoxelVolume bone = boneOf({32, 32, 32});
+    HeatGrid heat(test::kHeat, bone, kDt);
+    const double cube = std::pow(kSpacing, 3);
+    const double ten_kelvin = test::kHeat.heat_capacity * cube * 10.5;
+    for (int n = 0; n < 3; ++n) {
+        heat.addHeat(cubeAt(10, 10, 10), -kUp, ten_kelvin);
+        run(heat, 20);
+        EXPECT_EQ(heat.activeBricks(), 0u);
+        EXPECT_NEAR(heat.necroticVolume(), cube, 1e-6 * cube);
+    }
+}
+
+TEST(HeatGrid, NecrosisCanNeedItsTime) {
+    const VoxelVolume bone = boneOf({32, 32, 32});
+    HeatConfig config = insulated();
+    config.necrosis_time = 2;
+    HeatGrid heat(config, bone, kDt);
+    // All of the bone is 15 K warmer.
+    for (int k = 0; k < 32; ++k)
+        for (int j = 0; j < 32; ++j)
+            for (int i = 0; i < 32; ++i) {
+                heat.addHeat(cubeAt(i, j, k), Vector3d::Zero(),
+                             config.heat_capacity * std::pow(kSpacing, 3) * 15);
+                if (i % 8 == 0 && j % 8 == 0 && k % 8 == 0) heat.step();  // opens few bricks at a time
+            }
+    run(heat, 1.5);
+    EXPECT_EQ(heat.necroticVolume(), 0);
+    run(heat, 1);
+    EXPECT_NEAR(heat.necroticVolume() / std::pow(32 * kSpacing, 3), 1, 0.01);
+}
+
+// However much is hot, the number of bricks is bounded.
+TEST(HeatGrid, BricksAreBounded) {
+    const VoxelVolume bone = boneOf({128, 128, 64});
+    HeatGrid heat(insulated(), bone, kDt);
+    for (int n = 0; n < 2000; ++n) {
+        heat.addHeat(cubeAt(8 * (n % 16), 8 * (n / 16 % 16), 8 * (n / 256)), Vector3d::Zero(), 0.1);
+        heat.step();
+    }
+    EXPECT_GT(heat.activeBricks(), 500u);
+    EXPECT_LE(heat.activeBricks(), 1024u);  // of the 2000 that were heated
+    EXPECT_TRUE(std::isfinite(heat.hottest()));
+}
+
+}  // namespace
+}  // namespace bonemill

@@ -1,0 +1,141 @@
+#include "haptic_server/server/session/recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/temporary_folder.h"
+
+namespace bonemill {
+namespace {
+
+constexpr int64_t kPeriodNs = 1'000'000;
+
+class RecorderTest : public testing::Test {
+  protected:
+    void pushTicks(int count) {
+        for (int n = 0; n < count; ++n) {
+            TickRecord record{};
+            record.tick = tick_++;
+            ring_.tryPush(record);
+        }
+    }
+    int traceLines() const {
+        std::ifstream file(trace_);
+        int lines = 0;
+        for (std::string line; std::getline(file, line);) ++lines;
+        return lines;
+    }
+
+    test::TemporaryFolder folder_;
+    const std::string trace_ = folder_ / "trace.csv";
+    SpscRing<TickRecord> ring_{4};
+    uint64_t tick_ = 0;
+};
+
+TEST_F(RecorderTest, ATraceWithAllTicksIsWhole) {
+    Recorder recorder(ring_, kPeriodNs);
+    recorder.openTrace(trace_);
+    pushTicks(4);
+    recorder.drain();
+    pushTicks(4);
+    EXPECT_TRUE(recorder.finish());
+    EXPECT_EQ(traceLines(), 1 + 8);
+    EXPECT_EQ(recorder.statistics().lostRecords(), 0u);
+}
+
+TEST_F(RecorderTest, EachChangeOfTheDeviceIsGivenOnce) {
+    Recorder recorder(ring_, kPeriodNs);
+    const auto push = [&](SafetyState state) {
+        TickRecord record{};
+        record.tick = tick_++;
+        record.device.state = uint32_t(state);
+        ring_.tryPush(record);
+    };
+    push(SafetyState::kReady), push(SafetyState::kReady), push(SafetyState::kEngaged);
+    recorder.drain();
+    push(SafetyState::kPaused);
+    recorder.drain();
+    const auto changes = recorder.takeDeviceChanges();
+    ASSERT_EQ(changes.size(), 3u);
+    EXPECT_EQ(changes[2].now.state, uint32_t(SafetyState::kPaused));
+    EXPECT_TRUE(recorder.takeDeviceChanges().empty());
+}
+
+// Records of the attempt before are still on their way when the next one begins.
+TEST_F(RecorderTest, AnAttemptCountsFromWhereItsBoneIsPutBack) {
+    Recorder recorder(ring_, kPeriodNs, {.protection = true});
+    const auto push = [&](double force, float damaged, uint64_t bone_order) {
+        TickRecord record{};
+        record.tick = tick_++;
+        record.f_hand_W[0] = force;
+        record.effects.damaged_volume = damaged;
+        record.bone_order = bone_order;
+        ring_.tryPush(record);
+    };
+    push(9, 3, 0);
+    recorder.drain();
+    recorder.beginAttempt(2);
+    push(9, 3, 0), push(9, 0, 1);
+    recorder.drain();
+    EXPECT_EQ(recorder.attempt().max_force, 0);
+    EXPECT_EQ(recorder.attempt().effects.damaged(), 0);
+    push(2, 0, 2), push(1, 1, 2);
+    recorder.drain();
+    EXPECT_EQ(recorder.attempt().max_force, 2);
+    EXPECT_EQ(recorder.attempt().effects.damaged(), 1);
+}
+
+// What is measured of an attempt begins with its bone and ends when it is taken.
+TEST_F(RecorderTest, AnAttemptIsMeasuredFromWhereItsBoneIsPutBack) {
+    Recorder recorder(ring_, kPeriodNs);
+    recorder.measureTechnique([] { return std::make_unique<Technique>(TechniqueScene{}); });
+    const auto push = [&](uint64_t bone_order) {
+        TickRecord record{};
+        record.t_s = 1e-3 * double(tick_);
+        record.tick = tick_++;
+        record.bone_order = bone_order;
+        ring_.tryPush(record);
+        recorder.drain();
+    };
+    push(0), push(0);
+    EXPECT_EQ(recorder.takeTechnique(), nullptr) << "there is no attempt";
+    recorder.beginAttempt(2);
+    push(1), push(2), push(2), push(2);
+    const std::unique_ptr<Technique> technique = recorder.takeTechnique();
+    ASSERT_NE(technique, nullptr);
+    push(2);
+    technique->finish();
+    EXPECT_DOUBLE_EQ(technique->beginS(), 3e-3);
+    EXPECT_NEAR(findFigure(technique->figures(), "time.session")->value, 2e-3, 1e-12);
+    EXPECT_EQ(recorder.takeTechnique(), nullptr);
+}
+
+TEST_F(RecorderTest, ATraceThatLacksTicksIsNotWhole) {
+    Recorder recorder(ring_, kPeriodNs);
+    recorder.openTrace(trace_);
+    pushTicks(7);  // the ring has room for four
+    recorder.drain();
+    pushTicks(2);
+    EXPECT_FALSE(recorder.finish());
+    EXPECT_EQ(traceLines(), 1 + 6) << "what is there is in the file all the same";
+    EXPECT_EQ(recorder.statistics().lostRecords(), 3u);
+}
+
+TEST_F(RecorderTest, ATraceOnAFullDiskIsNotWhole) {
+    Recorder recorder(ring_, kPeriodNs);
+    recorder.openTrace("/dev/full");
+    pushTicks(1);
+    EXPECT_FALSE(recorder.finish());
+    EXPECT_EQ(recorder.statistics().lostRecords(), 0u);
+}
+
+TEST_F(RecorderTest, WithoutATraceNothingOfItIsLost) {
+    Recorder recorder(ring_, kPeriodNs);
+    pushTicks(7);
+    EXPECT_TRUE(recorder.finish());
+    EXPECT_EQ(recorder.statistics().lostRecords(), 3u);
+}
+
+}  // namespace
+}  // namespace bonemill
