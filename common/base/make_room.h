@@ -1,4 +1,4 @@
-// Bounded lists of who was heard, where anybody may invent names: who does drives out nobody else's.
+// Bounded lists of senders. A sender that invents names drives out only its own entries.
 #pragma once
 
 #include <algorithm>

@@ -14,7 +14,7 @@
 
 namespace bonemill::dds {
 
-// Of the peers that do not match, a process logs so many.
+// How many peers that do not match a process logs.
 inline constexpr uint64_t kMostNamedMismatches = 20;
 
 struct SampleInfo {
@@ -111,7 +111,7 @@ class Reader {
     //
     // Cyclone keeps every key that a writer ever used for as long as that writer lives. A reader that has
     // heard of too many (TopicDescription::most_keys) begins anew, its handle changes, and strangers who fill
-    // it keep out nobody.
+    // it keep out no other sender.
     template <class Handler>
     size_t take(size_t max_samples, Handler&& handle) {
         forgetTooMany();

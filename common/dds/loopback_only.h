@@ -1,5 +1,5 @@
 // Keeps Cyclone's sockets to this PC: it binds those that receive to all addresses, whatever interface it is
-// told to use, and would hear anybody on the LAN.
+// told to use, and would hear every host on the LAN.
 #pragma once
 
 #include <set>

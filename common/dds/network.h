@@ -33,7 +33,7 @@ std::optional<Identity> identityOf(const NetworkOptions& options);
 // all. Throws UserError.
 std::string networkConfiguration(const NetworkOptions& options);
 
-// The configuration is that of profile one-pc: nobody but this PC is heard.
+// The configuration is that of profile one-pc: no other PC is heard.
 bool isOnePc(const std::string& configuration);
 
 // From now on every participant of this process joins this network; without a call, that of NetworkOptions().

@@ -22,7 +22,7 @@ class Qos {
     Qos& keepLast(int depth);
     // A reader holds at most `max_samples`; beyond them the writer waits.
     Qos& keepAll(int max_samples);
-    // A reader knows at most so many keys whose writers live, and drops samples of others. For best effort
+    // A reader knows at most N keys whose writers live, and drops samples of others. For best effort
     // only: a reliable writer's sample would be tried again without end, and hold up all other readers.
     Qos& atMostKeys(int max_keys);
     // A writer that leaves disposes nothing: clients keep what they have.

@@ -27,15 +27,15 @@ struct TopicDescription {
     const char* name;  // of static storage
     const dds_topic_descriptor_t* type;
     Qos qos;
-    // A reader that has heard of so many keys forgets them all (Reader::take()); 0: it never does.
+    // A reader that has heard of N keys forgets them all (Reader::take()); 0: it never does.
     size_t most_keys = 0;
 };
 
-// So many senders of a stream a reader knows at once: far more than there are viewers, and a bound for the
+// How many senders of a stream a reader knows at once: far more than there are viewers, and a bound for the
 // memory that invented ones can take. It forgets them when half of that is used, so that there is room for
 // others.
 inline constexpr int kMostStreamKeys = 1024;
-// Likewise of commands: who is honest repeats a command that gets lost.
+// The same bound for senders of commands: an honest client repeats a command that gets lost.
 inline constexpr int kMostCommandKeys = 16384;
 
 template <class Sample>

@@ -64,7 +64,7 @@ struct HandleDynamics {
     double amplifier_time;   // s: time constant of the force after its command
     double delay;            // s: from the reading of the encoders until the wrench that answers it begins
     double encoder_step;     // m: readings are wrong by half of it
-    double encoder_angle;    // rad, likewise
+    double encoder_angle;    // rad: the same for the angles
 };
 
 // It says what kind of device there is, and is written by the daemon whenever another one is there. The
@@ -102,7 +102,7 @@ enum class DeviceKind : uint32_t {
     kForceDimension = 2,
     kTouch = 3,
     kHaply = 4,
-    kBridge = 5,   // somebody's own program
+    kBridge = 5,   // a user's own program
     kPointer = 6,  // the mouse in a viewer
     kSpaceMouse = 7,
     kGamepad = 8,

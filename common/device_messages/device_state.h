@@ -17,7 +17,7 @@ enum class SafetyState : uint32_t {
     kEngaged = 4,         // the hand feels what haptic_server computes
     kPaused = 5,          // haptic_server is silent: the force has ramped to zero
     kProtectiveStop = 6,  // a limit has tripped
-    kEmergencyStop = 7,   // somebody has opened the emergency stop chain
+    kEmergencyStop = 7,   // the emergency stop chain is open
     kFault = 8,           // the device or what it says is broken
 };
 inline constexpr uint32_t kSafetyStateCount = 9;

@@ -27,7 +27,8 @@ class Sha256 {
 std::string hexOf(std::string_view bytes);
 // As 64 hexadecimal digits.
 std::string sha256OfText(std::string_view text);
-// Likewise. Throws UserError if it is no file, or cannot be read; a pipe or a device would never end.
+// Of a file's bytes. Throws UserError if it is no file, or cannot be read; a pipe or a device would never
+// end.
 std::string sha256OfFile(const std::filesystem::path& path);
 
 }  // namespace bonemill

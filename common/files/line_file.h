@@ -24,7 +24,7 @@ class LineFile {
     // Makes it, for its user alone, if it is not there. Throws UserError, also when another program keeps it
     // locked for more than kLongestWait_s.
     explicit LineFile(std::filesystem::path path) : path_(std::move(path)) {
-        // Somebody may have put another file in its place while this one waited for the lock.
+        // Another process may have put another file in its place while this one waited for the lock.
         do {
             if (file_ >= 0) close(file_);
             openFile();

@@ -39,7 +39,7 @@ class WholeFile {
         if (!is_beside_) return;
         part_.replace_filename(".part_" + path.filename().string());
         unlink(part_.c_str());
-        // Nobody else's file or link of that name is written to.
+        // A file or link of that name that belongs to another user is not written to.
         const int file = open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
         if (file < 0)
             throw UserError(path.string() + ": cannot be written (" + part_.filename().string() + ": " +

@@ -7,11 +7,11 @@
 // 2 s at most. One thread uses a DeviceLink.
 //
 // It is System V memory, because the kernel fixes its size for its life, knows who made it, and keeps
-// semaphores that a dying process gives back. POSIX shared memory is a file that anybody with the right to
-// write can cut short, which ends its readers by SIGBUS; here only root could, through /proc/PID/map_files,
-// who can end them anyway. A sealed memfd withstands even that, but somebody must live who hands it out, and
-// answer while stopped or busy; here either side may be the first or the last. Both programs must run as the
-// same user and in the same IPC namespace.
+// semaphores that a dying process gives back. POSIX shared memory is a file that any process with the right
+// to write can cut short, which ends its readers by SIGBUS; here only root could, through
+// /proc/PID/map_files, who can end them anyway. A sealed memfd withstands even that, but a process must live
+// that hands it out, and answer while stopped or busy; here either side may be the first or the last. Both
+// programs must run as the same user and in the same IPC namespace.
 #pragma once
 
 #include <cstdint>

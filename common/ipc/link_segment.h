@@ -27,7 +27,7 @@ class LinkSegment {
     LinkSegment& operator=(LinkSegment&&) = delete;
     ~LinkSegment();
 
-    // Whoever is still attached keeps it; nobody finds it any more.
+    // Whoever is still attached keeps it; no new process finds it.
     void remove() const noexcept;
 
     explicit operator bool() const noexcept { return memory_; }

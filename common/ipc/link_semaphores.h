@@ -21,7 +21,7 @@ class LinkSemaphores {
     // Keeps others from starting and leaving. False when the deadline (CLOCK_MONOTONIC) has passed, or when
     // the last to leave has removed the set: open it again.
     bool beginSetup(int64_t deadline_ns) const noexcept;
-    // Removes the set if nobody is on the link any more.
+    // Removes the set if no process is on the link any more.
     void endSetup() const noexcept;
     // The process that is, or was last, in the set-up.
     int32_t pidInSetup() const noexcept;

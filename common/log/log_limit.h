@@ -1,4 +1,4 @@
-// Lets so many messages into the log and counts the rest: anyone who can send a program packets could else
+// Lets N messages into the log and counts the rest: anyone who can send a program packets could else
 // fill a disk. It is for one thread at a time.
 #pragma once
 
@@ -10,7 +10,7 @@ namespace bonemill {
 
 class LogLimit {
   public:
-    // So many at once, and over a long time one every `every_ns`.
+    // This many at once, and over a long time one every `every_ns`.
     LogLimit(int at_once, int64_t every_ns) noexcept : most_(at_once), every_ns_(every_ns), left_(at_once) {}
 
     // Returns how many messages were left out before this one, or -1: this one is left out as well.

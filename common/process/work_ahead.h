@@ -10,7 +10,7 @@
 
 namespace bonemill {
 
-// So many at a time: one more than there are processors, so that none waits for what is being taken.
+// How many at a time: one more than there are processors, so that none waits for what is being taken.
 inline size_t mostAtATime() {
     constexpr size_t kMost = 9;
     return std::clamp<size_t>(size_t(std::thread::hardware_concurrency()) + 1, 2, kMost);

@@ -12,7 +12,7 @@ namespace bonemill {
 
 inline constexpr int kAnyCore = -1;
 
-// The machine's last core for n = 0, the one before for n = 1, ...; kAnyCore where there are not so many.
+// The machine's last core for n = 0, the one before for n = 1, ...; kAnyCore where there are fewer.
 int coreFromLast(int n) noexcept;
 
 struct RealtimeRequest {

@@ -42,7 +42,7 @@ RealtimeThread::RealtimeThread(const RealtimeThreadConfig& config, std::function
     try {
         if (is_accepted) tell(report);
     } catch (...) {
-        permission.set_value(false);  // or nobody could stop the thread that is left
+        permission.set_value(false);  // or no caller could stop the thread that is left
         throw;
     }
     permission.set_value(is_accepted);

@@ -23,9 +23,9 @@ class RealtimeThread {
     RealtimeThread() = default;
 
     // Locks the memory of the process, starts the thread, makes it real-time, and lets `work` begin when
-    // all of that is granted or nobody insists on it. `tell` is called once with what the machine says, in
-    // the calling thread. Throws UserError, before `work` has begun, when something is missing and it is
-    // strict; then the error says what, and `tell` is not called.
+    // all of that is granted or the caller does not insist on it. `tell` is called once with what the machine
+    // says, in the calling thread. Throws UserError, before `work` has begun, when something is missing and
+    // it is strict; then the error says what, and `tell` is not called.
     RealtimeThread(const RealtimeThreadConfig& config, std::function<void()> work,
                    const std::function<void(const RealtimeReport&)>& tell);
 

@@ -1,5 +1,5 @@
-// A certificate as deploy/security/make-session issues it: who somebody is, as what, and for how long. It is
-// not for the tick.
+// A certificate as deploy/security/make-session issues it: whose it is, for which role, and for how long. It
+// is not for the tick.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ struct x509_st;  // OpenSSL's X509
 namespace bonemill {
 
 // A participant's GUID begins with this if DDS Security has checked who it is: it is made of the
-// certificate's subject, and nobody can take another one's.
+// certificate's subject, and no client can take another one's.
 using GuidPrefix = std::array<uint8_t, 6>;
 
 struct Identity {

@@ -1,4 +1,4 @@
-// What a certificate authority has signed: the rules of a session and what somebody may write and read
+// What a certificate authority has signed: the rules of a session and what a person may write and read
 // (.p7s). It is not for the tick.
 #pragma once
 

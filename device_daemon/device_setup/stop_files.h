@@ -11,7 +11,7 @@ namespace bonemill {
 // Returns $XDG_STATE_HOME/bonemill, or ~/.local/state/bonemill.
 std::filesystem::path defaultStopDir();
 
-// A device that stops again and again fills no disk: so many files stay in the folder, the newest.
+// A device that stops again and again fills no disk: the newest N files stay in the folder.
 inline constexpr size_t kMostStopFiles = 100;
 
 // Returns a new name in the folder, which is made if need be: stop_SESSION_TIME_CAUSE.csv. Makes room for it

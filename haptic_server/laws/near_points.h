@@ -19,7 +19,7 @@ namespace bonemill {
 
 class NearPoints {
   public:
-    // There is room for so many points.
+    // There is room for N points.
     explicit NearPoints(size_t most);
 
     // Collects the points of a shell level whose discs may be nearer than `margin` to the tool. False: there

@@ -24,7 +24,7 @@ class Daemon {
     enum class End { kLeft, kOtherScene };
     // Blocks until the device leaves, --seconds or a signal ends it, or haptic_server has another scene, and
     // the force has ramped to zero. Throws UserError when there is no real-time scheduling with --strict-rt,
-    // when nobody answered within --wait-seconds, or when the device is not the scene's.
+    // when no server answered within --wait-seconds, or when the device is not the scene's.
     End run();
 
   private:

@@ -12,7 +12,7 @@ namespace bonemill {
 
 struct DaemonMemory {
     LoopStatistics statistics;
-    SafetyLatch stop;                         // a stop holds until somebody resets the device
+    SafetyLatch stop;                         // a stop holds until a user resets the device
     std::optional<DeviceSample> last_sample;  // that went out; nothing before the first and after a goodbye
 };
 

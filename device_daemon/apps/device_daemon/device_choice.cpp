@@ -33,7 +33,7 @@ UdpDeviceConfig wireTo(const std::string& word, const std::string& endpoint) {
             .socket = wire::UdpSocket(wire::endpointOf(is_here ? kThisMachine : "0.0.0.0", 0))};
 }
 
-// A program of the daemon's own, and the way to it; it listens to nobody else.
+// A program of the daemon's own, and the way to it; it listens to no other program.
 struct OwnProgram {
     OwnProgram(const std::string& name, std::vector<std::string> words) {
         words.insert(words.end(), {"--host-port", std::to_string(wire.socket.local().port)});
@@ -48,7 +48,7 @@ ChosenDevice simulated(const FollowedScene& scene, const DaemonOptions& options)
     std::vector<std::string> words{"--scene", scene.file, "--log-level", options.log_level};
     if (options.seconds) words.insert(words.end(), {"--seconds", std::to_string(*options.seconds)});
     if (options.hold) words.push_back("--hold");
-    // Its host may be late now and then, and nobody is hurt by it.
+    // Its host may be late now and then, which is harmless.
     if (options.is_strict_realtime)
         words.push_back("--strict-rt");
     else

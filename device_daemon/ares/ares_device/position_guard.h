@@ -2,7 +2,7 @@
 //
 // Belief begins when the device says that it is calibrated and, if the home place is known, every slider is
 // where it is with the handle in that place. It ends with the first sign that an encoder lies; from then on
-// nothing is believed, calibrated or not, until somebody orders a reset with the handle in the home place, or
+// nothing is believed, calibrated or not, until a user orders a reset with the handle in the home place, or
 // the device homes again. Without a home place a reset alone brings the belief back, and an offset that
 // stayed is not found. It is RT-safe, for one thread.
 #pragma once

@@ -33,7 +33,7 @@ struct AresPlant {
     double play = 0;             // m, between each slider and its link
 };
 
-// If all is zero, nobody holds the handle.
+// If all is zero, no hand holds the handle.
 struct HandImpedance {
     double mass = 0.1;               // kg
     double damping = 8;              // N·s/m

@@ -1,5 +1,5 @@
 // What is farther from where it was than its largest speed allows has not moved there: its sensor has
-// slipped, or somebody has mixed up two of them.
+// slipped, or two of them are mixed up.
 //
 // It is pure, and RT-safe. Units are m or rad, and s.
 #pragma once

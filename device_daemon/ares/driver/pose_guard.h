@@ -1,7 +1,7 @@
 // Decides whether the pose that a bridge says may be believed, and remembers why not.
 //
 // What is no pose at all is refused as long as it is none. After a jump nothing is believed, however well it
-// looks, until somebody orders a reset or the arm calibrates anew: the same as for ARES (position_guard.h).
+// looks, until a user orders a reset or the arm calibrates anew: the same as for ARES (position_guard.h).
 // Before calibration the handle may be anywhere, and nothing is a jump. It is RT-safe, for one thread.
 #pragma once
 

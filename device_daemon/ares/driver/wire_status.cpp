@@ -14,7 +14,7 @@ constexpr uint16_t kVoltageEnabledBit = 1u << 4;
 constexpr uint32_t kPassingFaults =
     wire::kFaultOverTemperature | wire::kFaultOverSpeed | wire::kFaultWatchdog | wire::kFaultLatePackets;
 
-// The first one that is there counts, and the gravest comes first: what is broken, and what nobody has given
+// The first one that is there counts, and the gravest comes first: what is broken, and what no user has given
 // a name, before what passes.
 constexpr std::pair<uint32_t, StopCause> kCauses[] = {
     {wire::kFaultEmergencyStop, StopCause::kEmergencyStop},

@@ -23,7 +23,7 @@ bool ControllerLink<Packets>::poll(int64_t now_ns) noexcept {
     return has_command;
 }
 
-// Nobody else is listened to while there is a host, so nobody shall stand in its way either.
+// No other sender is listened to while there is a host, so none may stand in its way either.
 template <class Packets>
 void ControllerLink<Packets>::keepStrangersOut() noexcept {
     const auto host = session_.hasHost() ? std::optional(session_.host()) : only_host_;

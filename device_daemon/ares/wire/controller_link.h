@@ -15,7 +15,7 @@ class ControllerLink {
     using State = typename Packets::State;
     using Command = typename Packets::Command;
 
-    // With `only_host`, nobody else is ever listened to.
+    // With `only_host`, no other sender is ever listened to.
     ControllerLink(const Describe& description, const Endpoint& local,
                    const std::optional<Endpoint>& only_host = {})
         : socket_(local), session_(description), only_host_(only_host) {

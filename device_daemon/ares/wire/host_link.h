@@ -1,4 +1,4 @@
-// This is a HostSession on its socket. Nobody but its controller gets a packet into that, so that a flood of
+// This is a HostSession on its socket. Only its controller gets a packet into that, so that a flood of
 // others keeps no state out.
 //
 // Making one throws UserError. Afterwards everything is RT-safe but for the socket's system calls; one thread
@@ -12,7 +12,7 @@
 
 namespace bonemill::wire {
 
-// Returns a seed for session numbers that nobody can guess.
+// Returns a seed for session numbers that cannot be guessed.
 uint64_t randomSeed();
 
 template <class Packets>

@@ -9,7 +9,7 @@
 namespace bonemill::wire {
 namespace {
 
-// A watchdog that is shorter than so many periods of the states would trip at once.
+// A watchdog that is shorter than N periods of the states would trip at once.
 constexpr uint64_t kPeriodsPerWatchdog = 2;
 
 const char* negativeFigure(const Describe& d) noexcept {

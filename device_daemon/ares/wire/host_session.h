@@ -41,7 +41,7 @@ class HostSession {
     const DescribeRequest* requestDue(int64_t now_ns) noexcept;
 
     // Completes a command (header, reflected sequence, host's time) for sending. False, before a description
-    // has come, says that there is nobody to send it to.
+    // has come, says that there is no peer to send it to.
     bool seal(Command& command, int64_t now_ns) noexcept;
 
     // The controller has described itself in this session.

@@ -13,9 +13,9 @@ inline constexpr uint32_t kShortestWatchdogUs = 2000;
 inline constexpr uint32_t kDefaultWatchdogUs = 5000;
 inline constexpr uint32_t kLongestWatchdogUs = 30000;
 
-// So many good packets in a row, and so many of ours reflected by them, make a link that is trusted.
+// This many good packets in a row, and this many of ours reflected by them, make a link that is trusted.
 inline constexpr uint32_t kPacketsUntilTrusted = 10;
-// A packet is late when it comes so many periods after the one before.
+// A packet is late when it comes N periods after the one before.
 inline constexpr double kLatePeriods = 1.5;
 // The leaky bucket: it fills when more than a fifth of the packets is late for long, or 25 in a row.
 inline constexpr int kLateDrops = 4;  // that a late packet adds; one in time takes one away

@@ -48,7 +48,7 @@ class UdpSocket {
     std::span<const std::byte> receive(std::span<std::byte> buffer, Endpoint& source) noexcept;
     // False says that the network took nothing; the packet is then lost as any other may be.
     bool send(std::span<const std::byte> bytes, const Endpoint& to) noexcept;
-    // Lets the kernel drop what anybody but `source` sends, so that a flood of it cannot fill the queue;
+    // Lets the kernel drop what any host but `source` sends, so that a flood of it cannot fill the queue;
     // nullopt lets all in. What waits already stays. Where the kernel refuses, everybody stays admitted.
     void admitOnly(const std::optional<Endpoint>& source) noexcept;
     // Sleeps until a datagram is there, or until the deadline (CLOCK_MONOTONIC ns). True says that one is.

@@ -1,5 +1,5 @@
 // Looks for a vendor's devices on USB, so that "no device" becomes "not plugged in", "no permission" or
-// "somebody else has it".
+// "another user has it".
 //
 // It reads /sys, opens nothing, and is for start-up only.
 #pragma once

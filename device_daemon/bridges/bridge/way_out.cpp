@@ -21,7 +21,7 @@ constexpr int64_t kLookEveryNs = 20 * kNsPerMillisecond;
 }  // namespace
 
 WayOut::WayOut() {
-    signal(SIGPIPE, SIG_IGN);  // that nobody reads what is printed is no reason to leave force behind
+    signal(SIGPIPE, SIG_IGN);  // that no process reads what is printed is no reason to leave force behind
     thread_ = std::thread([this] { watch(); });
 }
 

@@ -132,7 +132,7 @@ ArmReading HaplyArm::read(bool has_answered) const noexcept {
     return reading;
 }
 
-// The service lets go of an arm that nobody commands.
+// The service lets go of an arm that is not commanded.
 void HaplyArm::release() noexcept {
     if (!socket_) return;
     if (has_driven_) socket_->send(forceMessage(state_, dialect_, Eigen::Vector3d::Zero()));

@@ -37,7 +37,7 @@ void DeviceLoop::adaptToDevice() noexcept {
     motion.max_force = device.max_force;
     states_.setMotionLimits(motion);
     abilities_ = device.abilities;
-    // A simulated hand without a switch hurts nobody; every other device needs one, or its user's word.
+    // A simulated hand without a switch is harmless; every other device needs one, or its user's word.
     const bool hurts_nobody = (abilities_ & kAbilitySimulated) && !(abilities_ & kAbilityEnablingSwitch);
     states_.setNeedsEnablingSwitch(config_.states.needs_enabling_switch && !hurts_nobody);
 }

@@ -71,7 +71,7 @@ class DeviceLoop {
     DeviceReading reading_;    // the newest that was heard, with the newest fault
     int64_t heard_ns_ = 0;     // then
     bool is_heard_ = false;    // in this period
-    bool has_status_ = false;  // likewise, of its switches
+    bool has_status_ = false;  // the same, of its switches
     double elapsed_ = 0;       // s, of this period
     Wrench commanded_;         // by the newest plausible command
     int64_t command_stamp_ns_ = 0;

@@ -1,7 +1,7 @@
 // Watches what handle and motors do to the hand while the device is engaged, and names the first limit that
 // is passed: speed, power, energy, a force that is not the one that was ordered, a motor that is too hot.
 //
-// A wrench in itself harms nobody as long as the hand holds against it. What harms is a handle that flies,
+// A wrench in itself is harmless as long as the hand holds against it. What harms is a handle that flies,
 // motors that drive the hand on and on, and motors that do not do what they are told. It is RT-safe, for one
 // thread; time comes in as a parameter. Frames are D, units N, N·m, m/s, rad/s, W, J, s.
 #pragma once

@@ -97,8 +97,8 @@ void SafetyStates::stop(StopCause cause, uint32_t fault_code) noexcept {
 void SafetyStates::takeReset(const SafetyInput& input, StopCause active) noexcept {
     const bool is_pressed = input.has_status && (input.reading.status & kStatusResetPressed);
     const bool is_new = input.is_reset_ordered || (is_pressed && !was_reset_pressed_);
-    // Nobody resets an emergency stop ahead of closing its chain. With a closed one the drive may still keep
-    // the fault: it is asked to clear it.
+    // An emergency stop cannot be reset before its chain is closed. With a closed one the drive may still
+    // keep the fault: it is asked to clear it.
     const bool is_chain_open = input.reading.status & kStatusEmergencyStop;
     reset_for_ = is_chain_open ? 0 : is_new ? kResetTime : reset_for_ - input.dt;
     if (reset_for_ <= 0) return;

@@ -5,7 +5,7 @@
 // the commanded wrench is small, and the enabling switch was pressed afresh and is held (or the user has said
 // that there is none). Then the force comes in engage_time. It leaves with the switch (ready), with
 // haptic_server (paused), with the device (disconnected), and by any stop, of which the first cause stays
-// until somebody resets. All ways out take the force with them in ramp_time, or in kStopTime where a limit
+// until a user resets. All ways out take the force with them in ramp_time, or in kStopTime where a limit
 // has tripped; an emergency stop takes it at once.
 //
 // It is RT-safe, for one thread, and pure: time comes in as a parameter. Units are SI.
@@ -36,7 +36,8 @@ struct SafetyInput {
     bool is_reset_ordered = false;  // by a user, in this period
 };
 
-// What a loop leaves to the next one: a stop that nobody has reset, if there is one, and the count of resets.
+// What a loop leaves to the next one: a stop that has not been reset, if there is one, and the count of
+// resets.
 struct SafetyLatch {
     SafetyState state = SafetyState::kDisconnected;  // that of a stop, or this one
     StopCause cause = StopCause::kNone;

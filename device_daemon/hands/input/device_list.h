@@ -25,7 +25,7 @@ struct ListedDevice {
 // Whether the library of a vendor can be loaded is found out by who loads it.
 struct ArmLibrary {
     bool loads = false;
-    std::string why_not;  // empty: nobody has tried
+    std::string why_not;  // empty: not tried
 };
 struct ArmLibraries {
     ArmLibrary force_dimension;

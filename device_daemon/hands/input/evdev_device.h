@@ -20,7 +20,7 @@ struct EvdevDevice {
 };
 
 // Nothing comes of a path that does not exist, may not be read, or is no input device. An exclusive device is
-// heard by nobody else from then on: the desktop would take a pedal's key for typing.
+// heard by no other program from then on: the desktop would take a pedal's key for typing.
 std::optional<EvdevDevice> openEvdev(const std::string& path, bool is_exclusive);
 
 // Returns an input device that is there now, or nothing; called on a reading thread.

@@ -23,7 +23,7 @@ bool askForDevice(int socket);
 enum class SpnavState {
     kNoSocket,   // spacenavd is not installed, or does not run
     kForbidden,  // the socket may not be opened
-    kSilent,     // nobody listens behind the socket
+    kSilent,     // no daemon listens behind the socket
     kNoDevice,   // it runs, and has no device
     kReady,
 };

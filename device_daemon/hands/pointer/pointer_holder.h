@@ -22,7 +22,7 @@ class PointerHolder {
     std::optional<uint64_t> holder(int64_t now_ns) const noexcept;
 
   private:
-    uint64_t sender_ = 0;  // 0: nobody
+    uint64_t sender_ = 0;  // 0: none
     uint32_t sequence_ = 0;
     int64_t heard_ns_ = 0;
 };

@@ -25,7 +25,7 @@ void StructureMeter::add(const TickStep& step) noexcept {
     hit->damage_time += step.dt;
 }
 
-// A structure that was never in reach was not cut: a gate may ask for that. How far it was nobody knows.
+// A structure that was never in reach was not cut: a gate may ask for that. How far it was is unknown.
 void StructureMeter::append(Figures& figures) const {
     for (size_t id = 0; id < structures_.size(); ++id) {
         const Structure& structure = structures_[id];

@@ -8,7 +8,7 @@
 namespace bonemill {
 
 // A gate on a figure that was not measured is not passed. A sub-score on one is left out; its weight then
-// counts with a score of 0, so that nobody gains by what was not done.
+// counts with a score of 0, so that what was not done gains nothing.
 Assessment judge(const JudgedTask& task, Figures figures);
 
 }  // namespace bonemill

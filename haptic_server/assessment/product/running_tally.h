@@ -22,7 +22,7 @@ class RunningTally {
                  const JudgedTask& task);
 
     static constexpr uint32_t kLeavesAtOnce = 64;  // some milliseconds
-    // Looks at up to so many leaves that changed since; false: others still wait.
+    // Looks at up to N leaves that changed since; false: others still wait.
     bool update(uint32_t most_leaves = kLeavesAtOnce);
 
     // Voxels that were bone and are gone, by ZoneId.

@@ -101,7 +101,7 @@ void describeMetal(const CaseBone& bone, const VolumeGeometry& geometry, std::ve
             "them");
 }
 
-// Those that are asked for, and noise beside the largest of the others: so many voxels are none.
+// Those that are asked for, and noise beside the largest of the others: this many voxels are none.
 std::vector<bool> droppedOf(const BonePieces& pieces, const std::vector<uint32_t>& asked_for,
                             uint32_t& smallest) {
     std::vector<bool> is_dropped(pieces.list().size());

@@ -32,7 +32,7 @@ const std::array<Colour, kMostColours + 1> kColours = {{{222, 190, 130},
 struct SideOfFigure {
     const char* file;
     const char* title;        // for patients
-    const char* plain_title;  // where nobody knows how the patient lay
+    const char* plain_title;  // where it is unknown how the patient lay
     ViewSide side;
 };
 

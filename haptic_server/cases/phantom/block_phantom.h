@@ -28,7 +28,7 @@ struct BlockPhantom {
     // The grid lies around the block and its margin, in step with the block's middle axis.
     VolumeGeometry grid() const;
     // It is linear from air_hu to the first layer over a voxel on both sides of each face, so that the
-    // iso-surface half-way is the face exactly; between layers likewise.
+    // iso-surface half-way is the face exactly, between layers too.
     double hu(const Eigen::Vector3d& p_W) const noexcept;
     // It is the layer of the point, from 1, and 0 outside.
     uint8_t label(const Eigen::Vector3d& p_W) const noexcept;

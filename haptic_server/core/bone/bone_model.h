@@ -7,7 +7,7 @@
 namespace bonemill {
 
 struct BoneModel {
-    // Milling can open so many bricks in a session: 34 million voxels, 34 cm³ at 0.1 mm, in 110 MB.
+    // How many bricks milling can open in a session: 34 million voxels, 34 cm³ at 0.1 mm, in 110 MB.
     static constexpr size_t kMostSpareBricks = 8192;
 
     // leaf_cells is per axis, as for LeafLattice. It allocates.

@@ -21,7 +21,7 @@ struct LeafCopy {
 struct BoneSnapshot {
     std::vector<std::shared_ptr<const LeafCopy>> leaves;  // those that differ; ascending
     int64_t missing_voxels = 0;  // of the scanned bone's voxels at or above the iso-value, net
-    uint64_t ticks = 0;          // what the first so many ticks of the session milled is in it, and no more
+    uint64_t ticks = 0;          // what the first N ticks of the session milled is in it, and no more
 
     // These are the leaf's densities; null means as scanned. It is RT-safe.
     const Density* densitiesOf(LeafId leaf) const noexcept {

@@ -18,7 +18,7 @@ struct Candidates {
     std::vector<float> area;        // m², of the whole patch
     std::vector<float> nearest;     // m: no place of the patch was nearer to the tool at the gathering
     std::vector<PatchId> patch;
-    size_t most;  // at most so many, though there may be room for more
+    size_t most;  // at most this many, though there may be room for more
     size_t count = 0;
 
     explicit Candidates(size_t room) : patch(room), most(room) {

@@ -17,7 +17,7 @@ bool isInside(const VoxelVolume& volume, const Vector3d& p_V) noexcept {
     return volume.at(voxel.x(), voxel.y(), voxel.z()) >= volume.iso();
 }
 
-constexpr size_t kSampleTests = 4;  // an exact sample by itself takes as long as so many distances in a batch
+constexpr size_t kSampleTests = 4;  // an exact sample by itself takes as long as N distances in a batch
 
 double smoothstep(double t) noexcept {
     t = std::clamp(t, 0.0, 1.0);

@@ -47,7 +47,7 @@ struct ShellView {
     int level;
     double sample_spacing;                 // m, near the tool; 0: one sample per point
     int most_samples;                      // about as many near the tool; the spacing gives way
-    size_t affordable_samples = SIZE_MAX;  // there is time for so many
+    size_t affordable_samples = SIZE_MAX;  // how many there is time for
 };
 
 struct GradientContactResult {
@@ -112,9 +112,9 @@ class GradientContact {
 
   private:
     static constexpr size_t kMostPieces = 65536;
-    // What was sampled as finely as asked for may come to so many times most_samples.
+    // What was sampled as finely as asked for may come to N times most_samples.
     static constexpr size_t kMostTimes = 2;
-    // To cut the surface into samples and to solve with them takes as long as so many point tests, each.
+    // To cut the surface into samples and to solve with them takes as long as N point tests, each.
     static constexpr size_t kTestsPerSample = 20;
     // A contact counts for the stiffness cap in proportion to its depth, so that a new one comes in smoothly.
     static constexpr double kFullShareDepth = 20e-6;  // m

@@ -184,7 +184,7 @@ void GradientContact::movePlacesOntoSurface(const VoxelVolume& volume, size_t fr
 // side by side.
 void GradientContact::fillHoles(size_t coarse) noexcept {
     Candidates& c = candidates_;
-    const size_t whole = coarse - split_count_;  // so many were not cut
+    const size_t whole = coarse - split_count_;  // how many were not cut
     size_t last = split_count_;
     size_t from = coarse;
     for (size_t n = 0; n < split_count_ && split_[n] < whole; ++n) {

@@ -104,7 +104,7 @@ class PointShell {
             if (!is_stale[leaf]) stale[stale_count++] = leaf;
             is_stale[leaf] = true;
         }
-        // A cell's point depends on so many voxels beyond the cell's corners.
+        // A cell's point depends on N voxels beyond the cell's corners.
         int reach() const noexcept { return config.normals == ShellNormals::kCentralDifference ? 1 : 0; }
     };
     // These are sums over the patches of one block.

@@ -52,7 +52,7 @@ class SurfacePieces {
         return std::min(kLengthPerDistance * nearest, float(tool.thinnestRadius()));
     }
 
-    // It allocates room for so many pieces.
+    // It allocates room for N pieces.
     explicit SurfacePieces(size_t room);
 
     // Begins anew with no piece, around a tool at X_VT that may move by `margin` (m, as `fine_within` and

@@ -1,4 +1,4 @@
-// Finds the springs nearest to the wished ones with which the device comes to rest although nobody holds it:
+// Finds the springs nearest to the wished ones with which the device comes to rest although no hand holds it:
 // the wished ones if they do; else as stiff ones with a larger relaxing share, which is felt only as a
 // quicker rise of the force; else softer ones. docs/research/stability.md says what rests on it.
 //

@@ -112,7 +112,7 @@ struct BurrPlane {
     float reach_squared;      // m²: no limit from there on
     float core_squared;       // m²: inside, the limit is the last density there is
     int iso;
-    int amount;  // at most so many counts towards the limit
+    int amount;  // at most this many count towards the limit
 };
 
 struct MilledPlane {
@@ -156,7 +156,7 @@ struct VoxelBox {
     const uint16_t* first;
     size_t stride_y, stride_z;
 };
-// The sides of so many cells are looked at together: the bytes of a word.
+// The sides of N cells are looked at together: the bytes of a word.
 inline constexpr int kCellsAtOnce = 8;
 
 // These are the voxels in their bricks (brick_layout.h), for kernels that look at any of them; -1 .. dims is

@@ -16,7 +16,7 @@ class ChangeCollector {
   public:
     static constexpr int kAllParts = -1;
 
-    // There is room for changes in any box of so many voxels. A tick makes the surface of at most
+    // There is room for changes in any box of N voxels. A tick makes the surface of at most
     // `most_cells` anew, but for the first part that it changes, however large that is.
     ChangeCollector(const LeafLattice& lattice, const Eigen::Vector3i& most_voxels, size_t most_cells)
         : changes_(lattice, most_voxels), most_cells_(most_cells) {}

@@ -12,7 +12,7 @@ namespace bonemill {
 
 class ChangedRuns {
   public:
-    // There is room for changes in any box of so many voxels, cut at the borders of leaves and of bricks.
+    // There is room for changes in any box of N voxels, cut at the borders of leaves and of bricks.
     ChangedRuns(const LeafLattice& lattice, const Eigen::Vector3i& most_voxels);
 
     void clear() noexcept { run_count_ = density_count_ = leaf_count_ = 0; }

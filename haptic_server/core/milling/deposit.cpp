@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-// Beyond the bricks that a burr can reach in a tick there are so many more on each side, in which what is
+// Beyond the bricks that a burr can reach in a tick there are N more on each side, in which what is
 // left behind rises at the rate; in the outermost it comes at once.
 constexpr int kBricksAround = 2;
 constexpr int64_t kLookedAtPerCell = 8;
@@ -77,7 +77,7 @@ size_t Deposit::claim(const Eigen::Vector3i& brick) noexcept {
     return slot;
 }
 
-// So many bricks lie around the burr.
+// How many bricks lie around the burr.
 IndexBox Deposit::around(const VoxelVolume& volume, const Eigen::Vector3d& p_VB) const noexcept {
     const Eigen::Array3d place = (p_VB.array() / volume.spacing().array() + 1) / kBrickCells;
     const Eigen::Array3d low = (place - slots_per_axis_.cast<double>().array() / 2 + 0.5).floor();

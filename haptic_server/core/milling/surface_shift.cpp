@@ -353,7 +353,7 @@ bool SurfaceShift::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, Mill
     return of_part.changed.isEmpty() || collector_.takePart(volume, 0, of_part, of_leaf);
 }
 
-// Forgets the voxels that stay as they are, so that nobody looks at the cells around them.
+// Forgets the voxels that stay as they are, so that the cells around them are not looked at.
 void SurfaceShift::collectRow(const VoxelVolume& volume, const Vector3i& first, int count, ChangedRuns& rows,
                               MillingResult& of_part) noexcept {
     volume.readRow(first, count, old_.data());

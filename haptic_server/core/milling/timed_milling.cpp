@@ -10,7 +10,7 @@ namespace {
 
 constexpr int64_t kCellsLookedAtPerWorkedOn = 8;  // so much quicker
 
-// A burr of this radius can change so many voxels per axis.
+// How many voxels per axis a burr of this radius can change.
 Eigen::Vector3i mostVoxels(const VoxelVolume& volume, double burr_radius, double longest_way) noexcept {
     const auto reach = [&](int direction) {
         return BurrLimit(volume, burr_radius, MillingShape::kSubVoxel, direction).reach();

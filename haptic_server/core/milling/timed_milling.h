@@ -20,7 +20,7 @@ struct MillingConfig {
     double removal_rate = 0;   // density counts/s
     double addition_rate = 0;  // density counts/s
     MillingShape shape = MillingShape::kVoxelCentres;
-    // A tick makes the surface of so many cells anew; bricks for which there is no time wait for the next
+    // A tick makes the surface of N cells anew; bricks for which there is no time wait for the next
     // one, in turn.
     size_t most_cells = 50'000'000;  // whose surface is made anew; eight that are only looked at count as one
     double longest_way = 0;          // m: of a burr in a tick

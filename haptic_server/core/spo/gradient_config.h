@@ -14,8 +14,8 @@ struct GradientConfig {
     EnergyCouplingConfig coupling;
     double max_speed = 0.5;                    // m/s of the tool point
     double max_angular_speed = 240 * kDegree;  // rad/s
-    // So many points may be tested in a tick, about; a test is one point's distance, energy and wrench at one
-    // pose. A quarter as many candidates have room.
+    // About this many points may be tested in a tick; a test is one point's distance, energy and wrench at
+    // one pose. A quarter as many candidates have room.
     size_t most_point_tests = 2'000'000;
 };
 

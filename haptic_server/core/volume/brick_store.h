@@ -66,7 +66,7 @@ class BrickStore {
     size_t spareCount() const noexcept { return pool_.size() / kBrickSize - used_; }
     size_t ownCount() const noexcept { return used_ - kSharedSlots; }
     size_t sharedCount() const noexcept { return brickCount() - ownCount(); }
-    // Makes at least so many spare ones, all their pages touched. Allocates and moves the data.
+    // Makes at least N spare ones, all their pages touched. Allocates and moves the data.
     void makeSpare(size_t count);
     void dropSpare();
     BrickStore withoutSpare() const;

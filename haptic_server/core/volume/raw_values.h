@@ -45,7 +45,7 @@ class RawValues {
     void reverseBlocks(size_t stride, size_t count) noexcept;
     // The value becomes the lowest finite one of all.
     void setToLowest(size_t n) noexcept;
-    // Gives back the memory of the values begin .. end - 1, which nobody may read any more.
+    // Gives back the memory of the values begin .. end - 1, which no caller may read any more.
     void forget(size_t begin, size_t end) noexcept;
 
     // see(span of the samples as they are held): the fast way to read them all.

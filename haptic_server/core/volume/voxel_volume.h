@@ -50,7 +50,7 @@ class VoxelVolume {
     }
     Density at(int i, int j, int k) const noexcept { return at(offset(i, j, k)); }
     // Returns plain densities by offset, which the compiler can read many at a time. It is for the owner
-    // of the volume only (tick thread): nobody else writes, so its reads race with nothing. Other
+    // of the volume only (tick thread): no other thread writes, so its reads race with nothing. Other
     // threads use at().
     const Density* ownerData() const noexcept { return bricks_.data(); }
     // Copies `count` voxels along x to `out`, and up to kReadSlack more behind them. Only the owner may call

@@ -10,7 +10,7 @@ namespace bonemill {
 // rounding, at the same place in W. What leaves the box ends at the new volume's border of air.
 VoxelVolume refinedPart(const VoxelVolume& volume, const IndexBox& box, int times);
 
-// refinedPart() would make so many voxels.
+// How many voxels refinedPart() would make.
 size_t refinedCount(const IndexBox& box, int times);
 
 // This is the largest refinement 1 .. `most` with at most `room` voxels.

@@ -18,7 +18,7 @@ struct ParetoPoint {
 // are both on the front.
 std::vector<bool> paretoFront(std::span<const ParetoPoint> points);
 
-// Errors that differ by less than this part are the same for a choice: nobody pays for the difference.
+// Errors that differ by less than this part are the same for a choice.
 inline constexpr double kSameError = 0.02;
 
 // This is the most accurate candidate with time <= budget, and of those with the same error the fastest one.

@@ -15,7 +15,7 @@ struct Truth {
 };
 inline constexpr int kLeastRefinement = 4, kMostRefinement = 16;
 
-// The voxels are so many times denser that the burr on a plane touches some 8 of them across already with 1
+// The voxels are denser by so much that the burr on a plane touches some 8 of them across already with 1
 // N: then the sums over the contact points are good to 0.1 % (patch.csv).
 int wantedRefinement(double spacing, const FixedTickConfig& tick) noexcept;
 

@@ -41,7 +41,7 @@ struct Histogram {
 
 Histogram countInto(const ValueCounts& values, double low, double width, size_t bins);
 
-// So many bins, or a few less, from the lowest to the highest finite value.
+// N bins, or a few less, from the lowest to the highest finite value.
 Histogram histogramOfAll(const ValueCounts& values, const ValueRange& range, size_t bins);
 
 // Some 256 bins over the range, zoomed in until the tails that are cut off hold next to nothing.

@@ -294,7 +294,7 @@ Received receiveFrom(const std::filesystem::path& path, const StartReader& start
     }
     if (incoming.isLate()) {
         kill(child, SIGKILL);
-        // Whoever waits for a disk that is gone cannot be ended, so nobody waits for its end either.
+        // Whoever waits for a disk that is gone cannot be ended, so its end is not waited for either.
         waitpid(child, nullptr, WNOHANG);
         throw UserError(nameOfFileBeingRead(path) + ": could not be read within " + secondsText(most) +
                         " s; is its disk or network slow or gone, or does it lead to a pipe?");

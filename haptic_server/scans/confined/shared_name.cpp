@@ -22,7 +22,7 @@ std::atomic<bool> is_ending = false;
 thread_local char file_of_thread[kNameBytes];
 
 // A thread whose stack is used up needs another one to say what it was at. A thread that has one keeps it,
-// and nobody else takes this one away when the thread ends.
+// and nothing else takes this one away when the thread ends.
 class HandlersStack {
   public:
     HandlersStack() {

@@ -192,7 +192,7 @@ VoxelVolume densifyNearBone(RawVolume&& raw, const DensityMapping& mapping,
     const size_t slice = size_t(raw.geometry.dims.x()) * size_t(raw.geometry.dims.y());
     size_t kept = 0;  // first slice that has not been given back
     return nearBone(raw, mapping, is_kept, [&](int k) {
-        // Bricks are filled layer by layer, so nobody asks again for what lies a brick below.
+        // Bricks are filled layer by layer, so what lies a brick below is not asked for again.
         for (; kept + kBrickEdge <= size_t(k); ++kept) raw.values.forget(slice * kept, slice * (kept + 1));
     });
 }

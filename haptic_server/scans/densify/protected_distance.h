@@ -13,11 +13,11 @@
 
 namespace bonemill {
 
-// The work goes on in slabs of so many voxels, with what lies within reach of them.
+// The work goes on in slabs of N voxels, with what lies within reach of them.
 inline constexpr int64_t kVoxelsAtOnce = 20 << 20;
 
 // The field is null if no voxel is of a protected material. `reach` is in m and > 0. Throws UserError if it
-// is so many voxels that neither time nor memory would be bounded by the scan's.
+// has more voxels than that: neither time nor memory would be bounded by the scan's.
 std::unique_ptr<DistanceField> protectedDistance(const BoneProperties& properties,
                                                  const MaterialTable& materials,
                                                  const Eigen::Vector3d& spacing, double reach,

@@ -21,7 +21,7 @@ double placeAlong(const Eigen::Vector3d& normal, const DicomSlice& slice);  // m
 std::string nameOfSlice(const DicomSlice& slice);
 std::string nameAndPlace(const DicomSlice& slice, const Eigen::Vector3d& normal);
 
-// Empty, or that so many slices are missing that bone cannot be guessed there, and where.
+// Empty, or that N slices are missing that bone cannot be guessed there, and where.
 std::string problemOfGap(const std::vector<DicomSlice>& slices, const std::vector<SlicePlace>& places,
                          const std::vector<DicomSlice>& strangers);
 

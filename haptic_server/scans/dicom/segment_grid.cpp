@@ -63,7 +63,7 @@ struct SliceStack {
     double step;
 };
 
-// Whether each slice is where so many even steps lead to.
+// Whether each slice is where that number of even steps leads to.
 bool isEven(const SliceStack& stack, const std::vector<double>& slices) {
     for (size_t n = 0; n < slices.size(); ++n)
         if (std::abs((slices[n] - slices.front()) / stack.step - stack.counts[n]) > kMostOffPlace)

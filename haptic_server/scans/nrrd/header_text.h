@@ -6,7 +6,7 @@
 
 namespace bonemill {
 
-// These are the file's first bytes, `most` of them where it has so many; none when it cannot be read.
+// These are the file's first bytes, `most` of them where it has as many; none when it cannot be read.
 std::string firstBytes(const std::filesystem::path& path, size_t most);
 
 // The text without blanks and the carriage return of a line around it.

@@ -30,7 +30,7 @@ struct ItkImageHeader {
     std::array<std::array<double, 3>, 3> axis{};  // where each index axis points
 };
 
-// What reading a file of so many bytes of voxels may take: the file, what it unpacks to and some tables.
+// What reading a file of N bytes of voxels may take: the file, what it unpacks to and some tables.
 // Lengths that ask for more are damaged.
 uint64_t mostMemoryToRead(const std::filesystem::path& file, uint64_t voxel_bytes);
 

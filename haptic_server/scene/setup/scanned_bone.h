@@ -17,8 +17,8 @@ struct ScannedBone {
     VoxelVolume volume;
     DensityMapping mapping;
     ScannedMaterials materials;
-    // What each voxel of bone is made of (inner_values.h), x fastest; empty: what its density says, or nobody
-    // asks.
+    // What each voxel of bone is made of (inner_values.h), x fastest; empty: what its density says, or no
+    // effect asks.
     RawValues inner_values;
     std::shared_ptr<const Surroundings> surroundings;  // null: all of the scan is in the volume
     bool lacks_patient_axes;                           // RawVolume

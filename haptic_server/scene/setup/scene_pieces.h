@@ -15,7 +15,7 @@ bool choosesPieces(const scene::Scene& scene);
 // How the pieces that go are told of.
 struct DroppedVoxels {
     BonePieces::See see = {};  // gets each voxel that goes
-    int scan_voxels = 1;       // so many of the scan are one of the volume
+    int scan_voxels = 1;       // voxels of the scan per voxel of the volume, per axis
 };
 // By smallest_piece_voxels, keep_pieces and drop_piece; `region` is empty without a volume.region. The remark
 // lists the largest pieces that were kept and that were dropped, with number, size and place. Throws

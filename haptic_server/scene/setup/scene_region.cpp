@@ -136,7 +136,7 @@ RawVolume resampled(const LoadedScene& loaded, const RawVolume& scan, std::vecto
     return resampleRegion(scan, region, bandOf(scan), deblur_mm * kMillimetre);
 }
 
-// So many times larger voxels leave no more than kMostAround of them.
+// Voxels that are N times larger leave no more than kMostAround of them.
 int coarseFactorOf(const VolumeGeometry& scan) {
     int factor = 1;
     while (scan.voxelCount() / (size_t(factor) * size_t(factor) * size_t(factor)) > kMostAround) ++factor;

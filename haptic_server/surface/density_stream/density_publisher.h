@@ -1,6 +1,6 @@
 // Shows the scan's densities to viewers that wish for them: the topics of bricks and of wishes.
 //
-// The publisher thread owns it; no write waits for a reader. It writes nothing that nobody wishes.
+// The publisher thread owns it; no write waits for a reader. It writes only what a viewer wishes.
 #pragma once
 
 #include "common/dds/endpoint.h"

@@ -19,7 +19,7 @@ class DensitySource {
   public:
     static constexpr int kBrickVoxels = 16;
 
-    // References, which must outlive this object, as must the properties; null: nobody asks for materials.
+    // References, which must outlive this object, as must the properties; null: no viewer asks for materials.
     DensitySource(const BoneModel& bone, const BoneHistory& history,
                   const BoneProperties* properties = nullptr)
         : bone_(bone),
@@ -31,7 +31,7 @@ class DensitySource {
     uint32_t brickCount() const { return uint32_t(bricks_.prod()); }
 
     std::vector<Density> scanned(uint32_t brick) const;
-    // It is empty where nobody asks for materials.
+    // It is empty where no viewer asks for materials.
     std::vector<MaterialId> materials(uint32_t brick) const;
     // It has a bit per brick, the lowest of a byte first: scanned as air only.
     std::string airBits() const;

@@ -18,7 +18,7 @@ struct WishedBrick {
     bool operator==(const WishedBrick&) const = default;
 };
 
-// Returns the wish of this sender and epoch for a grid of so many bricks, what is lacking first; nothing for
+// Returns the wish of this sender and epoch for a grid of N bricks, what is lacking first; nothing for
 // other bytes, and for wishes that are larger than any viewer's. It never throws on any bytes.
 std::optional<std::vector<WishedBrick>> parseDensityWish(std::span<const uint8_t> payload, uint64_t sender,
                                                          uint64_t epoch, uint32_t brick_count);

@@ -16,7 +16,7 @@ namespace bonemill {
 
 inline constexpr double kSurroundingsMoved = 0.15;
 
-// So many leaf numbers they take at most.
+// How many leaf numbers they take at most.
 uint32_t surroundingsLeafCount(const VolumeGeometry& scan);
 
 // The sink gets the meshes (V, m), numbered from first_leaf on; empty ones do not come. False from it ends

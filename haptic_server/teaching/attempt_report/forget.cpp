@@ -28,7 +28,7 @@ void eachResult(const fs::path& class_folder,
             try {
                 see(file, parseResult(readBounded(file, kLargestResult), file.string()));
             } catch (const UserError&) {
-                continue;  // nobody's result
+                continue;  // no person's result
             }
         }
     }

@@ -1,4 +1,4 @@
-// How a report looks, on a screen and on A4. It names no font and no file of anybody else.
+// How a report looks, on a screen and on A4. It names no font and no file from elsewhere.
 #pragma once
 
 namespace bonemill {

@@ -38,7 +38,7 @@ std::string inFileName(const std::string& pseudonym) {
     return name == pseudonym ? name : name + text;
 }
 
-// Somebody may have put a link there, to have another file written over.
+// Another user may have put a link there, to have another file written over.
 void requireNoLink(const fs::path& path) {
     std::error_code error;
     if (fs::is_symlink(fs::symlink_status(path, error)))

@@ -27,7 +27,7 @@ class ResultFolder {
     // Throws UserError.
     void write(const AttemptResult& result, std::vector<ReportPicture> pictures, double begin_s) const;
 
-    // The results of one scene (by its hash) and one person, or of anybody with an empty pseudonym, in the
+    // The results of one scene (by its hash) and one person, or of everyone with an empty pseudonym, in the
     // order of time. A person's are looked for by the files' names. What is no result is passed over: a
     // person's edit must not cost the others theirs. At most kMostRead files are read, the newest by name.
     static constexpr size_t kMostRead = 400;

@@ -10,7 +10,7 @@ namespace bonemill {
 namespace {
 
 using Json = nlohmann::ordered_json;
-// Objects of the other kind take a time that is quadratic in their keys, which anybody may have written.
+// Objects of the other kind take a time that is quadratic in their keys, which a stranger may have written.
 using ReadJson = nlohmann::json;
 
 constexpr int kFormat = 1;

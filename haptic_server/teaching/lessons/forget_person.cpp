@@ -38,7 +38,7 @@ std::set<std::string> traineesOf(const fs::path& journal) {
     return trainees;
 }
 
-// What its writer has not yet written may be of anybody.
+// What its writer has not yet written may be of any person.
 void forgetRecording(const fs::path& file, const std::string& pseudonym, Forgotten& forgotten) {
     if (isJournalWritten(file)) {
         forgotten.problems.push_back(file.string() +

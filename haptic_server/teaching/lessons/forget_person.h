@@ -13,8 +13,8 @@ struct ForgetOptions {
 };
 
 // Takes the person's lines out of every class table in the folder, deletes results, reports and statements,
-// and the recordings that hold nobody else's attempts, and says on `out` what was deleted and what must still
-// be looked at. Returns the exit code: 1 if something is left. Throws UserError if the folder is none.
+// and the recordings that hold no other person's attempts, and says on `out` what was deleted and what must
+// still be looked at. Returns the exit code: 1 if something is left. Throws UserError if the folder is none.
 int forgetPerson(const ForgetOptions& options, std::ostream& out);
 
 }  // namespace bonemill

@@ -46,7 +46,7 @@ std::string pictureOf(const fs::path& file) {
 }
 
 // Says what the scene names and is not there, or nothing. Everybody in the session reads it: folders of this
-// PC are nobody else's business.
+// PC stay private.
 std::string missingOf(const LoadedScene& loaded) {
     for (const NamedFile& file : filesOf(loaded)) {
         std::error_code error;

@@ -19,7 +19,7 @@ struct ListedScene {
     std::vector<NamedFile> files = {};  // all that the scene reads
 };
 
-// So many are listed at most; viewers take no more.
+// How many are listed at most; viewers take no more.
 inline constexpr size_t kMostListedScenes = 64;
 inline constexpr size_t kMostPictureBytes = 64u << 10;
 

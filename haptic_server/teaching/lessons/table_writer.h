@@ -1,5 +1,5 @@
 // Writes a class' attempts into its table on a thread of its own: a disk or a network folder that hangs keeps
-// nobody else waiting.
+// no other caller waiting.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@ class TableWriter {
 
     static constexpr int kLongestEnd_s = 5;
 
-    // Any thread, at once. False: so many lines wait already that this one is left out. `scene` is the
+    // Any thread, at once. False: the queue is full and this line is left out. `scene` is the
     // scene's title; `order` is the one that waits for the line, if there is one. The attempt is judged
     // first, if it is to be: its files come before its line, which is there without them, too.
     bool write(const topics::Attempt& attempt, const std::string& scene,

@@ -190,7 +190,7 @@ Participant StudyFolder::enrol(const std::string& group, const std::string& pseu
     for (const PlannedSession& planned : plannedSessions(protocol_, group, participant.place))
         participant.sessions.push_back(
             {newUuid(), participant.sessions.size(), planned.condition, planned.task, planned.attempt});
-    write(counted);  // first: a place that nobody has is better than one that two have
+    write(counted);  // first: a place that no participant has is better than one that two have
     writePrivateFile(folderOf(participant.pseudonym) / "participant.json", toJson(participant));
     return participant;
 }
