@@ -26,7 +26,7 @@ std::string pointName(const testing::TestParamInfo<NamedPoint>& info) {
 
 constexpr int kNone = 0, kTypical = 2;
 constexpr LoopPlace kPlane = LoopPlace::kPlane, kHole = LoopPlace::kHole;
-// A handle of 0.1 kg and 0.5 N·s/m that nobody holds, a tick of delay, encoders of 5 µm.
+// A handle of 0.1 kg and 0.5 N·s/m that no hand holds, a tick of delay, encoders of 5 µm.
 constexpr LoopPoint light(LoopPlace place, double friction) {
     return {.place = place, .hand = kNone, .friction = friction, .mass = 0.1, .damping = 0.5};
 }

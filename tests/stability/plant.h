@@ -3,7 +3,7 @@
 //
 // One rigid body carries the device's and the hand's mass and inertia (isotropic, about the tool point). On
 // it act the commanded wrench after the amplifiers' first-order pole, viscous and Coulomb friction of the
-// device, the hand's spring and damper towards its target, and a constant bias (a weight when nobody holds
+// device, the hand's spring and damper towards its target, and a constant bias (a weight when no hand holds
 // the handle). The ranges of the defaults are in docs/research/stability.md. It is integrated by leapfrog at
 // kRate_hz or finer; friction is implicit, so that the body truly sticks and Coulomb friction cannot chatter.
 // Units are SI, axes W. It is deterministic.
@@ -51,7 +51,7 @@ class Plant {
     const Eigen::Vector3d& velocity() const noexcept { return v_; }
     const Eigen::Vector3d& angularVelocity() const noexcept { return w_; }
     // The encoders say the position in whole steps per axis, and the rotation vector from the
-    // start pose likewise.
+    // start pose the same.
     Pose measured() const noexcept;
     // Returns the kinetic energy and what the hand's springs hold, J.
     double energy() const noexcept;

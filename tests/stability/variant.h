@@ -39,7 +39,7 @@ Names feltEffects();                          // of the variants that leave the 
 Names feltEffectsBut(const Names& left_out);  // and not all together
 // The burr of these spins faster than vibration can follow, and its friction is as high as can be expected.
 inline constexpr double kSpinSpeed = 4000, kCuttingFriction = 0.7;  // rad/s; μ_c
-// The vibration is of 400 Hz then: over so many ticks it sums to nothing.
+// The vibration is of 400 Hz then: over N ticks it sums to nothing.
 inline constexpr size_t kVibrationTicks = 5;
 
 // They are the default preset with other devices: an arm that gives 3 N and no torque ("arm"), and workspaces
@@ -66,7 +66,7 @@ double& couplingStiffness(FixedTickConfig& config);
 double& contactStiffness(FixedTickConfig& config);
 
 // Makes free air feel like this (N·s/m) at the coupling's stiffness: the gradient presets by their damping
-// time, thesis_2012 by its static damping, which as printed is 0.5 whatever the stiffness, and likewise vps
+// time, thesis_2012 by its static damping, which as printed is 0.5 whatever the stiffness, and so does vps
 // and penalty_sdf. The rigid laws have no drag in air.
 void setDragInAir(FixedTickConfig& config, double drag);
 

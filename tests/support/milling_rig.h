@@ -142,7 +142,7 @@ class MillingRig final : private TickIo {
         return largest;
     }
     Eigen::Vector3d center() const { return {config.size.x() / 2, config.size.y() / 2, config.surface}; }
-    // Returns the mean of a figure over the last so many seconds.
+    // Returns the mean of a figure over the last N seconds.
     template <class Figure>
     double mean(double seconds, Figure&& figure) const {
         const size_t count = size_t(std::lround(seconds * config.rate));

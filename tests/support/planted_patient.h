@@ -98,7 +98,7 @@ inline std::vector<std::string> plantedUnder(const std::filesystem::path& folder
 }
 
 struct PlantedSlice {
-    int number = 0, edge = 40;  // of so many pixels a side, a mm each
+    int number = 0, edge = 40;  // pixels a side, a mm each
     std::function<int(const Eigen::Vector3i& voxel)> hu;
 };
 

@@ -1,4 +1,4 @@
-// A journal with some of its messages changed, as somebody could who knows the format: its sums are right.
+// A journal with some of its messages changed, as an attacker could who knows the format: its sums are right.
 #pragma once
 
 #include <filesystem>

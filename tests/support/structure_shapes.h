@@ -7,7 +7,7 @@
 
 namespace bonemill::test {
 
-// The rings lie at so many heights; a triangle's middle is nearer to the centre than its corners by a share
+// The rings lie at N heights; a triangle's middle is nearer to the centre than its corners by a share
 // of about (π / 2 kBallRings)² of the radius.
 inline constexpr int kBallRings = 48;
 

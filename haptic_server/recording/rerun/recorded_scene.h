@@ -1,5 +1,5 @@
 // The scene of a recorded session, and whether the files that it reads are still those that were read then. A
-// journal may come from anybody: what it does not list with its hash is not opened. For normal threads, at
+// journal may come from a stranger: what it does not list with its hash is not opened. For normal threads, at
 // the start.
 #pragma once
 

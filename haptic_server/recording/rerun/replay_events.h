@@ -39,7 +39,7 @@ class ReplayEvents {
     mutable std::mutex mutex_;
     std::map<uint64_t, std::string> events_;
     const std::vector<std::string> structures_;  // the scene's materials
-    const uint64_t pause_ticks_;                 // what comes again within so many ticks is the same event
+    const uint64_t pause_ticks_;                 // what comes again within N ticks is the same event
     std::map<uint32_t, uint64_t> seen_;          // of each bit: 1 + the tick that had it last
 };
 

@@ -38,7 +38,7 @@ class Rerun {
 
     BoneHistory& history() noexcept { return history_; }
     const BoneHistory& history() const noexcept { return history_; }
-    // What is in force; nobody else chooses.
+    // What is in force; no other object chooses.
     ToolSwitch& tools() noexcept { return tools_; }
     AccuracySwitch& accuracies() noexcept { return accuracy_; }
 

@@ -25,7 +25,7 @@
 namespace bonemill {
 namespace {
 
-// Hostile files could unpack to far more than they are: so many leaves are compared, and so many poses wait
+// Hostile files could unpack to far more than they are: N leaves are compared, and N poses wait
 // for their tick.
 constexpr size_t kMostLeafHashes = size_t(1) << 27, kMostWaitingPoses = 100'000;
 
@@ -54,7 +54,7 @@ uint64_t leafHash(const VoxelVolume& volume, const LeafLattice& lattice, LeafId 
     return hashOf(std::span(densities).first(size_t(voxels.count())));
 }
 
-// What the leaves that changed were, after so many ticks.
+// What the leaves that changed were, after N ticks.
 using LeafHashes = std::vector<std::pair<LeafId, uint64_t>>;
 
 // Reads the bones of a journal: how the leaves were that changed.

@@ -23,7 +23,7 @@ bool parse(std::span<const uint8_t> payload, topics::Command& command) {
 }  // namespace
 
 // Who comes again with another participant, its first one gone, goes on counting; a lower number is of
-// somebody new.
+// a new sender.
 CommandInbox::Sender* CommandInbox::senderOf(const topics::Command& command, const CommandOrigin& origin) {
     const auto known = senders_.find(command.sender());
     if (known == senders_.end()) {

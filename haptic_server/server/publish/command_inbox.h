@@ -39,7 +39,7 @@ class CommandInbox {
         std::optional<topics::Command> command;
         std::optional<CommandAcknowledgement> acknowledgement;
         bool is_foreign =
-            false;  // the sender is another participant's; it is answered where nobody else waits
+            false;  // the sender is another participant's; it is answered where no other client waits
     };
 
     // `is_there` says whether a writer that was an origin still lives.

@@ -20,7 +20,7 @@ struct OtherServer {
 std::optional<OtherServer> findOtherServer(const dds::Participant& participant, uint32_t session,
                                            std::chrono::milliseconds patience);
 
-// Returns what somebody else calls a thing, as it may stand in a log: printable, and not long.
+// Returns what another process calls a thing, as it may stand in a log: printable, and not long.
 std::string printableName(std::string name);
 
 // Says who has the session, since when, and what to do.

@@ -15,7 +15,7 @@ namespace bonemill {
 
 class ProvenSenders {
   public:
-    // `find` returns whose participant it is; nothing if it is nobody that the session knows.
+    // `find` returns whose participant it is; nothing if the session does not know it.
     explicit ProvenSenders(std::function<std::optional<Identity>(const GuidPrefix&)> find)
         : find_(std::move(find)) {}
 

@@ -14,7 +14,7 @@ namespace {
 
 // A flood of commands must not keep the publisher thread from publishing.
 constexpr size_t kMaxCommandsPerCall = 1024;
-constexpr size_t kMaxViewersPerCall = 256;  // likewise of announcements
+constexpr size_t kMaxViewersPerCall = 256;  // of announcements
 
 int64_t unixTime_ns() {
     const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();

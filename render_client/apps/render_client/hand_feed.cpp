@@ -48,7 +48,7 @@ std::optional<HudNotice> HandFeed::update(const SessionView& session, bool begin
     return notice;
 }
 
-// The wish is of the old scene, or of the bone before: nobody must be drawn there.
+// The wish is of the old scene, or of the bone before: no hand may be drawn there.
 void HandFeed::rest(const SessionView& session, Clock::time_point now) {
     const bool is_attempt = session.lesson && session.lesson->is_running();
     const int64_t attempt_ns = is_attempt ? session.lesson->start_stamp_ns() : seen_attempt_ns_;
@@ -92,7 +92,7 @@ std::optional<HudNotice> HandFeed::watch(const SessionView& session, Clock::time
     return std::nullopt;
 }
 
-// Once in each run of the server: a user who has let the tool go, or whom somebody else was faster than, is
+// Once in each run of the server: a user who has let the tool go, or whom another user was faster than, is
 // not asked again.
 bool HandFeed::isOffered(const SessionView& session, bool has_seen_bone) {
     const bool is_wanted = begins_by_itself_ || isHeldByMouse(session);

@@ -15,7 +15,7 @@ class RemarkFeed {
     RemarkFeed(ViewerControls& controls, RenderScene& scene) : controls_(controls), scene_(scene) {}
 
     // Once per picture, after its events and before the wishes are carried out. Returns what the user should
-    // notice: a note that somebody else wrote just now.
+    // notice: a note that another person wrote just now.
     std::optional<HudNotice> update(const SessionView& session, Wishes& wishes);
 
   private:

@@ -60,7 +60,7 @@ class SceneFeed {
     AnnounceClock announce_clock_;
     std::pair<uint64_t, uint32_t> shown_info_;  // epoch and revision of the scene info that was passed on
     uint64_t shown_structures_ = 0;             // SceneSubscriber::structureChanges() that were passed on
-    uint64_t shown_remarks_ = 0;                // SceneSubscriber::remarkChanges() likewise
+    uint64_t shown_remarks_ = 0;                // the same of SceneSubscriber::remarkChanges()
     uint64_t structures_epoch_ = 0;             // of theirs
     uint64_t complete_epoch_ = 0;               // server run whose model was complete once; 0: none
     bool had_server_ = false;

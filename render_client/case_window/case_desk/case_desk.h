@@ -56,7 +56,7 @@ class CaseDesk {
     Eigen::AlignedBox3d scanBox() const { return boxOfScan(scan_->geometry); }
     const Histogram& histogram() const { return histogram_; }
 
-    // The bone. While the value is held (a slider is being moved) nobody looks for bone.
+    // The bone. While the value is held (a slider is being moved) no thread looks for bone.
     const std::optional<IsoProposal>& proposed() const { return proposed_; }
     std::optional<double> iso() const;
     void setIso(std::optional<double> iso);
@@ -72,7 +72,7 @@ class CaseDesk {
     const std::optional<CasePlan>& plan() const { return plan_; }
     const std::string& planProblem() const { return plan_problem_; }
     bool isOfPart() const { return !request_.at_mm.empty(); }
-    // The part lies at the cross, or where the hand begins as long as nobody has moved the cross.
+    // The part lies at the cross, or where the hand begins as long as the cross has not been moved.
     void millPart(bool is_wanted);
     void placeAt(const Eigen::Vector3d& p_W);
     double sizeMm() const { return request_.size_mm; }

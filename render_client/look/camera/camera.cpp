@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMaxDepthRatio = 5000;         // far over near
 constexpr double kDepthStep = 1.0 / (1 << 24);  // of the depth buffer
-// At the focus one step is so small a part of a pixel in a picture of so many lines: the occlusion takes
+// At the focus one step is so small a part of a pixel in a picture of N lines: the occlusion takes
 // normals from differences of depth, and flat faces have stripes where steps are larger.
 constexpr double kStepOfPixel = 0.01;
 constexpr int kLines = 1000;

@@ -14,7 +14,7 @@ struct Condition {
     std::string text;  // UTF-8, a sentence or two; a plain fault is listed, but not said
     HudTone tone = HudTone::kPlain;
     bool is_fault = false;  // it stays in the list of faults
-    bool lasts = true;      // false: it has happened since the server began, nobody knows how often
+    bool lasts = true;      // false: it has happened since the server began, how often is unknown
 };
 
 // The worst comes first.

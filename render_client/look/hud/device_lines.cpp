@@ -8,7 +8,7 @@ namespace {
 
 constexpr size_t kLongestDeviceName = 20;
 
-// A state of a later version is an alarm, for nobody here knows what it means.
+// A state of a later version is an alarm, as its meaning is unknown here.
 HudTone toneOf(SafetyState state) {
     switch (state) {
         case SafetyState::kEngaged:

@@ -10,15 +10,16 @@ namespace bonemill {
 // This dash stands for a value that is no number.
 inline constexpr char kNoNumber[] = "\u2013";
 
-// Returns the number with so many decimals, and its unit.
+// Returns the number with N decimals, and its unit.
 std::string figureText(double value, int decimals, const char* unit);
 // Returns the number with three significant digits or so, whatever its size, and its unit.
 std::string readableText(double value, const char* unit);
-// Returns the length of a vector of three numbers, times `scale`, likewise; a dash for what is no vector.
+// Returns the length of a vector of three numbers, times `scale`, in the same form; a dash for what is no
+// vector.
 std::string lengthText(std::span<const double> v, double scale, const char* unit);
-// Returns at most so many signs (UTF-8), the last one an ellipsis if some are left out.
+// Returns at most N signs (UTF-8), the last one an ellipsis if some are left out.
 std::string shortenedText(const std::string& text, size_t most);
-// A row has room for so many characters.
+// How many characters a row has room for.
 inline constexpr size_t kLongestRow = 26;
 // Returns lines of at most `most` bytes, cut at spaces; a longer word stays whole.
 std::vector<std::string> wrappedText(const std::string& text, size_t most);

@@ -57,7 +57,7 @@ struct HudLegend {
     std::string low, high;                      // what the first and the last one stand for
 };
 
-// It says whether strangers can join the session: an open or a closed lock, or none where nobody else can
+// It says whether strangers can join the session: an open or a closed lock, or none where no other host can
 // come at all.
 enum class HudLock { kNone, kOpen, kClosed };
 

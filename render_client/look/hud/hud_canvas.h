@@ -29,7 +29,7 @@ class HudCanvas {
     // The height of the font (pixels) is the unit of the layout.
     float em() const { return font_.pixelHeight(); }
     float width(std::string_view utf8, FontStyle style) const { return font_.width(utf8, style); }
-    // Returns the text, cut short with an ellipsis where it is wider than so many pixels.
+    // Returns the text, cut short with an ellipsis where it is wider than N pixels.
     std::string fitted(const std::string& utf8, FontStyle style, float most) const;
 
     // Adds a box with rounded corners; a radius of 0 leaves them sharp.

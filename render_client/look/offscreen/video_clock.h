@@ -10,7 +10,7 @@ namespace bonemill {
 
 class VideoClock {
   public:
-    // A clock that leaps (a replay's: somebody seeks in it) goes on in the video as if it had not.
+    // A clock that leaps (a replay's: a viewer seeks in it) goes on in the video as if it had not.
     VideoClock(double fps, bool may_leap) : fps_(fps), may_leap_(may_leap) {}
 
     // The clock of what is shown stands at `now_s`, and would have gone on by `expected_s` without a leap:

@@ -27,7 +27,7 @@ class VideoFile {
     // Shows it for `times` frames. Throws UserError with what ffmpeg says.
     void add(const Picture& picture, size_t times = 1);
 
-    // Waits for the encoder and puts the file in its place. Throws UserError likewise.
+    // Waits for the encoder and puts the file in its place. Throws UserError if either fails.
     void finish();
 
   private:

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kGhostDistance = 1.5e-4;  // m
 constexpr double kGhostAngle = 0.03;       // rad
-// So many half picture diagonals at the target does the shadow map cover when one is close.
+// How many half picture diagonals at the target the shadow map covers when one is close.
 constexpr double kShownBeyondView = 2.0;
 constexpr float kShadowReach = 4;    // in burr radii, so are the two below
 constexpr float kShadowedShaft = 5;  // length

@@ -68,7 +68,7 @@ struct FrameView {
     std::optional<Pose> X_WT_expert;       // where an expert's tool was
     std::optional<Eigen::Vector3d> f_T_W;  // the arrow's force, N
     std::optional<Pull> pull;              // of a mouse that holds the tool
-    std::optional<BurrGap> gap;            // likewise
+    std::optional<BurrGap> gap;            // nothing: not shown
     bool shows_handpiece = true;
     BurrWork burr_work = BurrWork::kIdle;
     CutPlanes cuts_W;

@@ -6,7 +6,7 @@
 namespace bonemill {
 namespace {
 
-constexpr double kLoosest = 2;        // a range that is so many times too wide is made anew
+constexpr double kLoosest = 2;        // a range that is N times too wide is made anew
 constexpr double kRangeMargin = 0.1;  // of the near and far distance: room for the tool to move
 
 bool isSame(const Camera& a, const Camera& b) {

@@ -33,7 +33,7 @@ class PictureChanges {
     Camera camera_;
     DepthRange range_;
     PixelBox moving_;                // in the last picture
-    std::vector<float> still_like_;  // likewise
+    std::vector<float> still_like_;  // in the last picture
 };
 
 }  // namespace bonemill

@@ -91,7 +91,7 @@ void RenderScene::makeEffects(const topics::SceneInfo& info) {
 }
 
 void RenderScene::setNode(const NodeMesh& mesh) {
-    nodes_.set(mesh);  // throws when it contradicts itself: then nobody gets it
+    nodes_.set(mesh);  // throws when it contradicts itself: then no other part gets it
     if (effects_) effects_->setNode(mesh);
     if (has_effects_ && awaits_info_) early_nodes_.insert_or_assign(mesh.leaf, mesh);
 }

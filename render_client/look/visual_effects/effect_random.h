@@ -13,7 +13,7 @@ class EffectRandom {
     float unit() { return float(engine_() >> 8) * 0x1p-24f; }  // 0 .. below 1
     float between(float low, float high) { return low + (high - low) * unit(); }
     // Returns a point in the cube of half edge 1. Each coordinate is drawn by itself, since the order of
-    // arguments is nobody's.
+    // arguments is the compiler's choice.
     Eigen::Vector3f inCube() {
         const float x = between(-1, 1), y = between(-1, 1), z = between(-1, 1);
         return {x, y, z};

@@ -30,7 +30,7 @@ class ImGuiStage {
     void feed(const WindowEvent& event);
     // What is copied and pasted goes through these; without them it stays within this context.
     void useClipboard(std::function<std::string()> read, std::function<void(const std::string&)> write);
-    // Forgets what was scrolled and typed and nobody asked for.
+    // Forgets what was scrolled and typed and no widget asked for.
     void dropInput();
     // The controls are built between these two. `seconds` have gone by since the last ones.
     void begin(double seconds);

@@ -31,7 +31,7 @@ class Panel {
     // the time (s) since the picture before. It is called before the events of the picture.
     void setPicture(int width, int height, int view_width, float scale, double seconds);
     // Passes an event on to the panel, which changes settings and wishes. Returns true when the event was
-    // meant for the panel and nobody else is to act on it.
+    // meant for the panel alone.
     bool handle(const WindowEvent& event, ViewerControls& controls, const SessionView& session,
                 Wishes& wishes);
     // Brings the panel up to date with the settings and the session, to be drawn.

@@ -14,7 +14,7 @@ bool PanelContent::hasStructures() const {
            std::ranges::any_of(session_.info->materials(), [](const auto& m) { return m.is_protected(); });
 }
 
-// The first place of the modes is nobody's: there the key counts on.
+// The first place of the modes is free: there the key counts on.
 void PanelContent::buildStructures() {
     for (int i = 0; i < session_.info->materials_size(); ++i) {
         if (!session_.info->materials(i).is_protected()) continue;

@@ -158,7 +158,7 @@ void Relay::addGuest(Line& line) {
     say(*control_, news);
 }
 
-// Returns true when so many bytes are there.
+// Returns true when N bytes are there.
 bool Relay::readGreeting(Line& line, size_t bytes) {
     std::array<char, 64> buffer;
     const ssize_t count =

@@ -13,9 +13,9 @@ namespace bonemill {
 // Listens there; port 0: any. Throws UserError.
 Descriptor listenOn(const std::string& address, uint16_t port);
 uint16_t portOf(int socket);
-// Returns who came next and from where; nothing when nobody waits, or no descriptor is left.
+// Returns who came next and from where; nothing when no peer waits, or no descriptor is left.
 Descriptor acceptFrom(int listener, PeerAddress& from);
-// Takes so many descriptors, or as many as this user may have; returns how many that are.
+// Takes N descriptors, or as many as this user may have; returns how many that are.
 size_t allowDescriptors(size_t count);
 
 }  // namespace bonemill
