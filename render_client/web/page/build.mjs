@@ -2,7 +2,7 @@
 // In the work folder lie copies of the sources, the packages (npm ci, when package-lock.json changed) and the code made
 // from proto/, and contained.json names the packages that the page holds; the out folder gets index.html, page.css and the three scripts, each also compressed, and tests.mjs.
 import { execFileSync } from 'node:child_process';
-import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { dirname, join, resolve } from 'node:path';
 import { gzipSync } from 'node:zlib';
@@ -35,7 +35,7 @@ for (const [folder, from] of [['src', join(source, 'src')], ['tests', join(sourc
   cpSync(from, join(work, folder), { recursive: true });
 }
 mkdirSync(join(work, 'generated'), { recursive: true });
-const protos = ['gateway', 'topics', 'densities', 'scene'].map((name) => join(proto, `${name}.proto`));
+const protos = readdirSync(proto).filter((name) => /^(gateway|topics|densities|scene)(_\w+)?\.proto$/.test(name)).map((name) => join(proto, name));
 run('protoc', '-I', proto, `--plugin=protoc-gen-es=${join(work, 'node_modules/.bin/protoc-gen-es')}`, '--es_out=generated', '--es_opt=target=ts', ...protos);
 run(process.execPath, join(work, 'node_modules/typescript/bin/tsc'), '--noEmit');
 
