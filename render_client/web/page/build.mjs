@@ -53,7 +53,7 @@ const { build } = createRequire(join(work, 'package.json'))('esbuild');
 const common = { absWorkingDir: work, bundle: true, format: 'esm', legalComments: 'eof', logLevel: 'warning', plugins: [glsl] };
 const made = await build({
   ...common, metafile: true, minify: true, target: 'es2022', outdir: out,
-  entryPoints: { page: 'src/main.ts', link: 'link/link_worker.ts', sound: 'sound/sound_worklet.ts' },
+  entryPoints: { page: 'src/main.ts', link: 'src/link/link_worker.ts', sound: 'src/sound/sound_worklet.ts' },
 });
 // Which packages the page holds, for deploy/security/make-sbom.
 const parts = Object.values(made.metafile.outputs).flatMap(({ inputs }) => Object.keys(inputs).filter((file) => inputs[file].bytesInOutput > 0));

@@ -113,6 +113,21 @@ TEST_F(CheckDocs, EveryPackageHasItsRow) {
               "docs/develop/dependencies.md: git is not in deploy/packages*.txt\n");
 }
 
+TEST_F(CheckDocs, FiguresOfAccuracyAreThoseOfTheShippedFile) {
+    set("deploy/scenes/tooth_corridor.accuracy.json",
+        R"({"settings": {"balanced": {"force_error_percent": 0.0545, "tick_p50_us": 62.33,)"
+        R"( "tick_p99_us": 128.96, "tick_p99_9_us": 157.57}}})");
+    const std::string section = "## How exact, how fast, how stable\n\n";
+    readme(section + "It is right to 0.05 % in 62 µs, at p99.9 in 158\nµs a tick.\n\n## Next\n\n9 % more.\n");
+    const Finished finished = check();
+    EXPECT_EQ(finished.exit_code, 0) << finished.out << finished.err;
+    expectFound(section + "It is right to 0.24 % in 62 µs.\n",
+                "12: 0.24 % is not in deploy/scenes/tooth_corridor.accuracy.json: force_error_percent 0.05");
+    expectFound(section + "It takes 62 µs.\n",
+                "1: the section \"How exact, how fast, how stable\" quotes no figure in % of "
+                "deploy/scenes/tooth_corridor.accuracy.json");
+}
+
 TEST_F(CheckDocs, WithoutDocumentsTheCheckIsBlind) {
     std::filesystem::remove_all(root_.path());
     std::filesystem::create_directories(root_.path());
