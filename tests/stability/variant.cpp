@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "haptic_server/laws/all_laws.h"
 #include "tests/support/typical_effects.h"
 
 namespace bonemill::test {
@@ -138,6 +139,7 @@ Names feltEffectsBut(const Names& left_out) {
 }
 
 void applyVariant(const Variant& variant, FixedTickConfig& config) {
+    config.laws = allLaws();
     config.accuracy = presetSettings(variant.preset);
     scaleWorkspace(config, variant.workspace_scale);
     if (!variant.add_effects) return;

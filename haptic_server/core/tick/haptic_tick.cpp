@@ -44,18 +44,16 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
       tools_(choices.tools),
       accuracy_(choices.accuracy),
       tool_(tools_.chosen()),
-      thesis_(config.contact, config.coupling, worldOf(bone_), tools_[tool_], config.dt),
-      gradient_(config.gradient, worldOf(bone_), tools_[tool_], config.dt),
-      compared_({config.contact, config.coupling, config.gradient.coupling}, worldOf(bone_), tools_.all(),
-                tools_[tool_], config.dt),
-      model_(&gradient_),
+      models_(config.laws, {config.contact, config.coupling, config.gradient, worldOf(bone_), tools_.all(),
+                            tools_[tool_], config.dt}),
+      model_(&models_.of(accuracy_.chosen().law)),
       affordable_(config.dt),
       sample_cap_(config.dt),
       effects_(makeEffects(config.effects, bone_,
                            {config.dt, tools_.largestBurrRadius(), tools_.largestBurrReach(),
-                            gradient_.mostCandidates(), config.most_milled_cells,
+                            models_.mostCandidates(), config.most_milled_cells,
                             config.gradient.max_speed * config.dt}),
-               gradient_.mostCandidates(), config.gradient.contact.stiffness_per_area),
+               models_.mostCandidates(), config.gradient.contact.stiffness_per_area),
       hand_limits_(config.hand, handSideOf(config).spring, config.dt),
       hand_coupling_(config_),
       X_WV_(bone_.volume.geometry().X_WV),
@@ -65,7 +63,7 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
     const AccuracySettings& settings = accuracy_.chosen();
     bone_.shell.prepare(bone_.volume, bone_.lattice, levelOf(bone_.shell, settings),
                         int(bone_.lattice.leafCount()));
-    gradient_.setEffects(effects_.weights(), effects_.energy());
+    models_.forEach([&](SpoModel& model) { model.setEffects(effects_.weights(), effects_.energy()); });
     takeUp(settings);
 }
 
@@ -88,7 +86,7 @@ void HapticTick::chooseSettings(const SpoStep& step, uint32_t& faults) noexcept 
 void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
     settings_ = settings;
     bone_.shell.follow(levelOf(bone_.shell, settings));
-    SpoModel* model = modelOf(settings.law);
+    SpoModel* model = &models_.of(settings.law);
     model->setAccuracy(settings);
     has_changed_suddenly_ = true;
     if (model != model_) {
@@ -98,31 +96,24 @@ void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
     model_ = model;
 }
 
-SpoModel* HapticTick::modelOf(ContactLaw law) noexcept {
-    if (law == ContactLaw::kThesis2012) return &thesis_;
-    if (SpoModel* compared = compared_.of(law)) return compared;
-    return &gradient_;
-}
-
 void HapticTick::adaptTo(const DeviceCapabilities& device) noexcept {
     hand_coupling_.adaptTo(device);
     estimate_ =
         HandEstimate(device.handle, hand_coupling_.side().spring, config_.workspace_scale, config_.dt);
-    thesis_.setCoupling(hand_coupling_.side().thesis);
     useCoupling();
 }
 
 void HapticTick::useCoupling() noexcept {
     const HandSide& side = hand_coupling_.side();
-    gradient_.setCoupling(side.gradient, side.most_pull);
-    compared_.setCoupling(side.gradient, side.most_pull);
+    const SpoCoupling coupling{side.thesis, side.gradient, side.most_pull};
+    models_.forEach([&](SpoModel& model) { model.setCoupling(coupling); });
     hand_limits_.setDevice(side.limits, side.spring);
 }
 
 // The account begins anew whenever something else than hand and tool changes what is stored.
 void HapticTick::keepAccount(const SpoStep& step, const DeviceInput& input) noexcept {
     const bool is_felt = !place_.isLost() && !input.is_stale && input.device.isEngaged();
-    const bool says_something = is_felt && model_ == &gradient_ && !gradient_.isToolGrowing() &&
+    const bool says_something = is_felt && model_->traits().has_energy && !step.is_tool_growing &&
                                 !std::exchange(has_changed_suddenly_, false);
     if (says_something ? hand_coupling_.takeAccount(X_VT_device_, step) : hand_coupling_.passOver())
         useCoupling();
@@ -145,9 +136,7 @@ void HapticTick::chooseTool() noexcept {
     const size_t chosen = decisions_.tool;
     if (chosen == tool_) return;
     tool_ = chosen;
-    thesis_.setTool(tools_[tool_]);
-    gradient_.setTool(tools_[tool_]);
-    compared_.setTool(tools_[tool_]);
+    models_.forEach([&](SpoModel& model) { model.setTool(tools_[tool_]); });
     effects_.restart(Restart::kOtherTool);
     has_changed_suddenly_ = true;
     hand_limits_.beginSuddenChange();
@@ -200,7 +189,8 @@ void HapticTick::capSamples(const DeviceInput& input, double load, const SpoStep
         decisions_.most_samples = sample_cap_.most() < UINT32_MAX ? uint32_t(sample_cap_.most()) : 0;
     }
     if (decisions_.most_samples == std::exchange(most_samples_, decisions_.most_samples)) return;
-    gradient_.setAffordableSamples(most_samples_ == 0 ? SIZE_MAX : size_t(most_samples_));
+    const size_t most = most_samples_ == 0 ? SIZE_MAX : size_t(most_samples_);
+    models_.forEach([&](SpoModel& model) { model.setAffordableSamples(most); });
 }
 
 void HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept {
@@ -237,7 +227,7 @@ void HapticTick::placeTool() noexcept {
     if (steps == kMostSteps) return;  // it comes as it can
     X_VT_ = X_VT;
     model_->restart();
-    gradient_.expectOtherBone();
+    models_.forEach([](SpoModel& model) { model.expectOtherBone(); });
     effects_.restart(Restart::kOtherLaw);
 }
 
@@ -270,8 +260,9 @@ bool HapticTick::believe(const DeviceInput& input) noexcept {
     const bool is_believed = input.is_repeated ? place_.repeat(input.periods)  //
                                                : place_.take(X_VT_reading, input.periods);
     if (!is_believed) return false;
-    X_VT_device_ =
-        model_ == &gradient_ ? estimate_.take(X_VT_reading, hand_coupling_.standsAlone()) : X_VT_reading;
+    X_VT_device_ = model_->traits().wants_estimate
+                       ? estimate_.take(X_VT_reading, hand_coupling_.standsAlone())
+                       : X_VT_reading;
     return true;
 }
 
@@ -291,9 +282,10 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
         hand_limits_.beginSuddenChange();
     was_pedal_down_ = start.is_pedal_down, was_add_wanted_ = start.is_add_wanted;
     start.tool = &tools_[tool_];
-    start.shape = model_ == &thesis_ ? MillingShape::kVoxelCentres : MillingShape::kSubVoxel;
+    start.shape =
+        model_->traits().mills_voxel_centres ? MillingShape::kVoxelCentres : MillingShape::kSubVoxel;
     start.X_VT_start = X_VT_;
-    compared_.setCutting(start.is_pedal_down);
+    model_->setCutting(start.is_pedal_down);
     effects_.begin(start);
 }
 
@@ -305,7 +297,7 @@ SpoStep HapticTick::moveAndFeel(const DeviceInput& input, uint32_t& faults) noex
     if (step.has_stalled) faults |= kFaultStalled;
     if (step.has_fewer_samples) faults |= kFaultFewerSamples;
     if (step.has_contact_overflow) faults |= kFaultContactOverflow;
-    if (model_ == &gradient_ && gradient_.isToolGrowing()) hand_limits_.beginSuddenChange();
+    if (step.is_tool_growing) hand_limits_.beginSuddenChange();
     keepAccount(step, input);
     effects_.addToHand(step.wrench_hand_V);
     step.wrench_hand_V.torque /= config_.workspace_scale;  // hand_side.h
@@ -327,7 +319,7 @@ MillingResult HapticTick::mill(uint32_t& faults) noexcept {
     if (history_->restoreSome(bone_, shell_is_complete)) {
         waits_for_release_ = true;
         hand_limits_.beginSuddenChange();
-        gradient_.expectOtherBone();
+        models_.forEach([](SpoModel& model) { model.expectOtherBone(); });
         effects_.restart(history_->isTargetScanned() ? Restart::kScanPutBack : Restart::kBonePutBack);
         has_changed_suddenly_ = true;
     } else {

@@ -10,8 +10,7 @@
 #include "haptic_server/core/bone/bone_model.h"
 #include "haptic_server/core/effects/effect_host.h"
 #include "haptic_server/core/milling/milling_result.h"
-#include "haptic_server/core/spo/gradient_model.h"
-#include "haptic_server/core/spo/thesis_2012_model.h"
+#include "haptic_server/core/spo/spo_models.h"
 #include "haptic_server/core/telemetry/tick_record.h"
 #include "haptic_server/core/tick/accuracy_switch.h"
 #include "haptic_server/core/tick/affordable_shell.h"
@@ -22,7 +21,6 @@
 #include "haptic_server/core/tick/tick_config.h"
 #include "haptic_server/core/tick/tick_io.h"
 #include "haptic_server/core/tick/tool_switch.h"
-#include "haptic_server/laws/compared_laws.h"
 
 namespace bonemill {
 
@@ -65,7 +63,6 @@ class HapticTick {
     void decide(const DeviceInput& input) noexcept;
     void chooseSettings(const SpoStep& step, uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;
-    SpoModel* modelOf(ContactLaw law) noexcept;
     void chooseTool() noexcept;
     void beginEffects(const DeviceInput& input) noexcept;
     SpoStep moveAndFeel(const DeviceInput& input, uint32_t& faults) noexcept;
@@ -84,10 +81,8 @@ class HapticTick {
     size_t tool_;                // of tools_
     TickDecisions decisions_;    // for the tick under way
     uint32_t most_samples_ = 0;  // in force; 0: no cap
-    Thesis2012Model thesis_;
-    GradientModel gradient_;
-    ComparedLaws compared_;
-    SpoModel* model_;  // thesis_, gradient_ or one of compared_
+    SpoModels models_;
+    SpoModel* model_;  // of models_, in force
     AccuracySettings settings_;
     AffordableShell affordable_;
     SampleCap sample_cap_;

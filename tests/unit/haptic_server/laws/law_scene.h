@@ -1,7 +1,10 @@
 // The laws of other schools on analytic bone: a law with its tool, made a tick at a time.
 #pragma once
 
-#include "haptic_server/laws/compared_laws.h"
+#include "haptic_server/laws/all_laws.h"
+#include "haptic_server/laws/constraint_law.h"
+#include "haptic_server/laws/penalty_sdf.h"
+#include "haptic_server/laws/vps.h"
 #include "tests/support/contact_scene.h"
 
 namespace bonemill::test {
@@ -21,8 +24,14 @@ struct LawRun {
     LawRun(ContactLaw law, const ContactScene& scene, const Pose& start, const LawConfig& config = {},
            double radius = kLawRadius)
         : tool{&scene.tool, {.radius = radius}, 50},
-          laws(config, scene.world(), {&tool, 1}, tool, 1e-3),
-          model(*laws.of(law)),
+          laws(allLaws(), {config.points,
+                           config.steps,
+                           {.coupling = config.coupling},
+                           scene.world(),
+                           {&tool, 1},
+                           tool,
+                           1e-3}),
+          model(laws.of(law)),
           spo(start) {
         for (const Preset preset : kComparedLaws)
             if (presetSettings(preset).law == law) model.setAccuracy(presetSettings(preset));
@@ -40,7 +49,7 @@ struct LawRun {
     }
 
     SpoTool tool;
-    ComparedLaws laws;
+    SpoModels laws;
     SpoModel& model;
     Pose spo;
 };
