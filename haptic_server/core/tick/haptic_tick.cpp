@@ -79,7 +79,7 @@ void HapticTick::chooseSettings(const SpoStep& step, uint32_t& faults) noexcept 
         shell.prepare(bone_.volume, bone_.lattice, levelOf(shell, chosen), kLeavesPreparedPerTick);
     if (!is_complete) faults |= kFaultShellOverflow;
     if (!is_ready) return;
-    hand_limits_.beginSuddenChange();
+    noteSuddenChange(SuddenChange::kSettings);
     takeUp(chosen);
 }
 
@@ -88,12 +88,19 @@ void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
     bone_.shell.follow(levelOf(bone_.shell, settings));
     SpoModel* model = &models_.of(settings.law);
     model->setAccuracy(settings);
-    has_changed_suddenly_ = true;
     if (model != model_) {
         model->restart();
         effects_.restart(Restart::kOtherLaw);
     }
     model_ = model;
+}
+
+// The force comes at a limited rate, and the account of energy begins anew. Two changes leave the account as
+// it is. The pedal softens the contact by what a tick cuts: µJ, of a tank of 1 mJ, which is not to be filled
+// by playing the pedal. While a tool grows no account is kept anyway.
+void HapticTick::noteSuddenChange(SuddenChange why) noexcept {
+    hand_limits_.beginSuddenChange();
+    if (why != SuddenChange::kPedal && why != SuddenChange::kToolGrows) has_changed_suddenly_ = true;
 }
 
 void HapticTick::adaptTo(const DeviceCapabilities& device) noexcept {
@@ -138,8 +145,7 @@ void HapticTick::chooseTool() noexcept {
     tool_ = chosen;
     models_.forEach([&](SpoModel& model) { model.setTool(tools_[tool_]); });
     effects_.restart(Restart::kOtherTool);
-    has_changed_suddenly_ = true;
-    hand_limits_.beginSuddenChange();
+    noteSuddenChange(SuddenChange::kTool);
 }
 
 bool HapticTick::tick(TickIo& io) noexcept {
@@ -207,8 +213,7 @@ void HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept
     } else if (is_placed) {
         placeTool();
     } else if (place_.hasJumped()) {
-        hand_limits_.beginSuddenChange();
-        has_changed_suddenly_ = true;
+        noteSuddenChange(SuddenChange::kHandJumps);
     }
 }
 
@@ -222,8 +227,7 @@ void HapticTick::placeTool() noexcept {
     const Eigen::Vector3d step = radius * (X_VT.rotation * Eigen::Vector3d::UnitY());
     int steps = 0;
     for (; steps < kMostSteps && isInBone(X_VT, radius); ++steps) X_VT.position += step;
-    hand_limits_.beginSuddenChange();
-    has_changed_suddenly_ = true;
+    noteSuddenChange(SuddenChange::kHandJumps);
     if (steps == kMostSteps) return;  // it comes as it can
     X_VT_ = X_VT;
     model_->restart();
@@ -279,7 +283,7 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     start.is_pedal_down = start.may_mill && remove && !add;
     start.is_add_wanted = start.may_mill && add && !remove;
     if (start.is_pedal_down != was_pedal_down_ || start.is_add_wanted != was_add_wanted_)
-        hand_limits_.beginSuddenChange();
+        noteSuddenChange(SuddenChange::kPedal);
     was_pedal_down_ = start.is_pedal_down, was_add_wanted_ = start.is_add_wanted;
     start.tool = &tools_[tool_];
     start.shape =
@@ -297,7 +301,7 @@ SpoStep HapticTick::moveAndFeel(const DeviceInput& input, uint32_t& faults) noex
     if (step.has_stalled) faults |= kFaultStalled;
     if (step.has_fewer_samples) faults |= kFaultFewerSamples;
     if (step.has_contact_overflow) faults |= kFaultContactOverflow;
-    if (step.is_tool_growing) hand_limits_.beginSuddenChange();
+    if (step.is_tool_growing) noteSuddenChange(SuddenChange::kToolGrows);
     keepAccount(step, input);
     effects_.addToHand(step.wrench_hand_V);
     step.wrench_hand_V.torque /= config_.workspace_scale;  // hand_side.h
@@ -318,10 +322,9 @@ MillingResult HapticTick::mill(uint32_t& faults) noexcept {
     bool shell_is_complete = true;
     if (history_->restoreSome(bone_, shell_is_complete)) {
         waits_for_release_ = true;
-        hand_limits_.beginSuddenChange();
+        noteSuddenChange(SuddenChange::kBone);
         models_.forEach([](SpoModel& model) { model.expectOtherBone(); });
         effects_.restart(history_->isTargetScanned() ? Restart::kScanPutBack : Restart::kBonePutBack);
-        has_changed_suddenly_ = true;
     } else {
         milled = millWithEffects(faults);
     }

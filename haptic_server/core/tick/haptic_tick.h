@@ -53,6 +53,9 @@ class HapticTick {
     Pose X_WT() const noexcept { return X_WV_ * X_VT_; }
 
   private:
+    // This changes at one stroke what the hand feels.
+    enum class SuddenChange : uint8_t { kHandJumps, kSettings, kTool, kBone, kPedal, kToolGrows };
+    void noteSuddenChange(SuddenChange why) noexcept;
     void adaptTo(const DeviceCapabilities& device) noexcept;
     void keepAccount(const SpoStep& step, const DeviceInput& input) noexcept;
     void useCoupling() noexcept;
@@ -96,8 +99,10 @@ class HapticTick {
     HandPlace place_;
     uint32_t placements_ = 0;                               // of the hand, that were followed
     bool was_pedal_down_ = false, was_add_wanted_ = false;  // in the last tick
-    bool waits_for_release_ = false;     // the bone was put back: it is not milled by a pedal that was down
-    bool has_changed_suddenly_ = false;  // what the simulated side stores, by no one's work
+    bool waits_for_release_ = false;  // the bone was put back: it is not milled by a pedal that was down
+    // What the simulated side stores, by no work, since the account was kept; before the first tick all of
+    // it.
+    bool has_changed_suddenly_ = true;
     uint64_t tick_ = 0;
     uint32_t latched_faults_ = 0;
 };
