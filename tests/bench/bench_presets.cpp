@@ -64,12 +64,11 @@ void measure(const Setting& setting, const RawVolume& scan, const ToolModel& too
     config.accuracy = presetSettings(setting.preset);
     config.accuracy.shell_factor = setting.scaling_factor;
     test::ScriptedIo io(test::straightPath(kStart, kEnd, kTicks, kButtonRemove));
-    FixedTick(config, bone).run(io);
-    for (const TickRecord& record : io.records) {
+    FixedTick(config, bone).run(io, [&cost](const TickRecord& record) {
         cost.force.record(record.force_ns);
         cost.milling.record(record.compute_ns - record.force_ns);
         cost.whole.record(record.compute_ns);
-    }
+    });
 }
 
 void print(const char* what, const LatencyHistogram& h, const LatencyHistogram& reference) {

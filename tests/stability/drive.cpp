@@ -46,7 +46,8 @@ Stepper::Stepper(Scene& scene, const ToolSwitch* tools, BoneHistory* history)
 const TickRecord& Stepper::step(const Pose& X_WT_device, uint32_t buttons) {
     input_.X_WT_device = X_WT_device;
     input_.buttons = buttons | held_buttons_;
-    tick_.tick(*this);
+    record_ = *tick_.tick(*this);
+    faults_ |= record_.faults;
     plugIn(nullptr);
     return record_;
 }

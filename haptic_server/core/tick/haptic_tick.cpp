@@ -148,9 +148,9 @@ void HapticTick::chooseTool() noexcept {
     noteSuddenChange(SuddenChange::kTool);
 }
 
-bool HapticTick::tick(TickIo& io) noexcept {
+const TickRecord* HapticTick::tick(TickIo& io) noexcept {
     DeviceInput input;
-    if (!io.read(input)) return false;
+    if (!io.read(input)) return nullptr;
     const RtScope scope;
     uint32_t faults = input.faults | (input.is_stale ? kFaultStaleDevice : kFaultNone);
     decide(input);
@@ -167,7 +167,7 @@ bool HapticTick::tick(TickIo& io) noexcept {
     keepWaiting(step);
     const EffectRecord& effects = effects_.finish();
     chooseSettings(step, faults);
-    TickRecord record = makeRecord(input, step);
+    TickRecord& record = record_ = makeRecord(input, step);
     record.removed_voxels = milled.removed_voxels;
     record.added_voxels = milled.added_voxels;
     record.removed = milled.removed_voxels * bone_.volume.voxelVolume();
@@ -183,9 +183,8 @@ bool HapticTick::tick(TickIo& io) noexcept {
     record.faults = faults;
     record.input = recordedInput(input, decisions_);
     latched_faults_ |= faults;
-    io.push(record);
     ++tick_;
-    return true;
+    return &record;
 }
 
 // The clock decides that; a replay has it from then.

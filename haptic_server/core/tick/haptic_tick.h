@@ -1,5 +1,5 @@
 // A tick is one cycle of the haptic loop: read → pose → contact → solve → limit → write → mill → refresh
-// shell → push telemetry. The effects of the scene act in between (effects/haptic_effect.h). The same tick
+// shell → record. The effects of the scene act in between (effects/haptic_effect.h). The same tick
 // runs behind the device link in real time, and in `simulate` without it.
 //
 // Inside there is one frame, V. What comes in is converted in acceptPose(), what goes out in write and
@@ -44,8 +44,9 @@ class HapticTick {
     // shell follows the level of the settings in force.
     HapticTick(const TickConfig& config, const TickBone& bone, const TickChoices& choices);
 
-    // Does one tick; false when io.read() said stop. RT-safe; sets the RtScope guard around its work.
-    bool tick(TickIo& io) noexcept;
+    // Does one tick and returns what it did, good until the next one; null when io.read() said stop. RT-safe;
+    // sets the RtScope guard around its work.
+    const TickRecord* tick(TickIo& io) noexcept;
 
     // Returns the faults of all ticks so far (bits of TickFault). It is for the tick thread only.
     uint32_t latchedFaults() const noexcept { return latched_faults_; }
@@ -103,6 +104,7 @@ class HapticTick {
     // What the simulated side stores, by no work, since the account was kept; before the first tick all of
     // it.
     bool has_changed_suddenly_ = true;
+    TickRecord record_{};  // of the last tick
     uint64_t tick_ = 0;
     uint32_t latched_faults_ = 0;
 };
