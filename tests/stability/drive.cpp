@@ -88,7 +88,7 @@ ClosedLoop::ClosedLoop(const LoopConfig& config, Scene& scene, const Pose& start
       config_(config),
       declared_(declared(config, scene.config.dt)),
       start_(start),
-      workspace_scale_(scene.config.workspace_scale),
+      workspace_scale_(scene.config.hand_space.wayAtTool(1.0)),
       on_the_way_(size_t(config.delay_ticks)) {}
 
 void ClosedLoop::declare() {

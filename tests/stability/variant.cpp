@@ -141,7 +141,7 @@ Names feltEffectsBut(const Names& left_out) {
 void applyVariant(const Variant& variant, FixedTickConfig& config) {
     config.laws = allLaws();
     config.accuracy = presetSettings(variant.preset);
-    scaleWorkspace(config, variant.workspace_scale);
+    setHandSpace(config, HandSpace(variant.workspace_scale));
     if (!variant.add_effects) return;
     config.tool.burr.speed = kSpinSpeed;
     config.tool.burr.friction = kCuttingFriction;

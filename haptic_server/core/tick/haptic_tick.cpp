@@ -58,8 +58,8 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
       hand_coupling_(config_),
       X_WV_(bone_.volume.geometry().X_WV),
       X_VW_(X_WV_.inverse()),
-      place_(middleOf(bone_.volume), config.workspace_scale, config.dt) {
-    BONEMILL_ASSERT(config.dt > 0 && config.workspace_scale > 0 && config.most_milled_cells > 0);
+      place_(middleOf(bone_.volume), config.hand_space, config.dt) {
+    BONEMILL_ASSERT(config.dt > 0 && config.most_milled_cells > 0);
     const AccuracySettings& settings = accuracy_.chosen();
     bone_.shell.prepare(bone_.volume, bone_.lattice, levelOf(bone_.shell, settings),
                         int(bone_.lattice.leafCount()));
@@ -105,8 +105,7 @@ void HapticTick::noteSuddenChange(SuddenChange why) noexcept {
 
 void HapticTick::adaptTo(const DeviceCapabilities& device) noexcept {
     hand_coupling_.adaptTo(device);
-    estimate_ =
-        HandEstimate(device.handle, hand_coupling_.side().spring, config_.workspace_scale, config_.dt);
+    estimate_ = HandEstimate(device.handle, hand_coupling_.side().spring, config_.hand_space, config_.dt);
     useCoupling();
 }
 
@@ -303,7 +302,7 @@ SpoStep HapticTick::moveAndFeel(const DeviceInput& input, uint32_t& faults) noex
     if (step.is_tool_growing) noteSuddenChange(SuddenChange::kToolGrows);
     keepAccount(step, input);
     effects_.addToHand(step.wrench_hand_V);
-    step.wrench_hand_V.torque /= config_.workspace_scale;  // hand_side.h
+    step.wrench_hand_V.torque = config_.hand_space.torqueAtHand(step.wrench_hand_V.torque);
     const bool is_felt = step.is_solved && !place_.isLost();
     step.wrench_hand_V = hand_limits_.limit(
         {step.wrench_hand_V, is_felt, X_VT_device_, input.stale_factor, place_.hasJumped()});

@@ -1,6 +1,7 @@
 // A tick is told this at the start.
 #pragma once
 
+#include "common/geometry/hand_space.h"
 #include "haptic_server/core/accuracy/accuracy_settings.h"
 #include "haptic_server/core/contact/contact_configs.h"
 #include "haptic_server/core/coupling/virtual_coupling.h"
@@ -19,8 +20,7 @@ struct TickConfig {
     HandLimitsConfig hand;
     GradientConfig gradient;
     EffectConfigs effects;
-    // The tool moves so many times as far as the handle, and turns with it. Couplings are those of the tool.
-    double workspace_scale = 1;
+    HandSpace hand_space;                                   // `hand` is at the hand, all else at the tool
     size_t most_milled_cells = MillingConfig{}.most_cells;  // in a tick
 };
 

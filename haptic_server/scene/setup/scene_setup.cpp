@@ -236,7 +236,7 @@ TickConfig tickConfigOf(const scene::Scene& scene) {
                        .static_damping = coupling.static_damping()};
     config.hand = {.max_force = coupling.max_force_n(),
                    .max_torque = coupling.max_torque_nmm() * kMillimetre};
-    scaleWorkspace(config, scene.device().workspace_scale());
+    setHandSpace(config, HandSpace(scene.device().workspace_scale()));
     config.effects = effectConfigsOf(scene);
     TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
     return config;

@@ -115,7 +115,7 @@ bool DeviceLinkIo::takeSample() noexcept {
     }
     const Eigen::Map<const Eigen::Vector3d> p_DT(sample.p_DT);
     const Eigen::Quaterniond q_DT(sample.q_DT[0], sample.q_DT[1], sample.q_DT[2], sample.q_DT[3]);
-    X_WT_device_ = config_.X_WD * Pose{config_.workspace_scale * p_DT, q_DT.normalized()};
+    X_WT_device_ = config_.X_WD * config_.hand_space.poseAtTool({p_DT, q_DT.normalized()});
     buttons_ = sample.buttons;
     placements_ = sample.placements;
     device_ = {sample.state, sample.stop_cause, sample.fault_code, sample.flags};

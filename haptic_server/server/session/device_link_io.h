@@ -4,6 +4,7 @@
 
 #include <atomic>
 
+#include "common/geometry/hand_space.h"
 #include "common/ipc/device_link.h"
 #include "common/ipc/stale_ramp.h"
 #include "common/rt/seqlock.h"
@@ -17,7 +18,7 @@ struct DeviceLinkIoConfig {
     int64_t period_ns = 1'000'000;
     StaleRampConfig ramp;
     Pose X_WD;
-    double workspace_scale = 1;     // the tool moves so many times as far as the handle
+    HandSpace hand_space;
     bool ends_with_device = false;  // end the session when the device leaves in order
     uint32_t scene_revision =
         0;  // DeviceLink::announceScene(): samples of another scene's device do not count

@@ -47,7 +47,7 @@ DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& l
     config.ramp.stale_after_ns = nsOfMilliseconds(loop.stale_after_ms());
     config.ramp.ramp_down_ns = nsOfMilliseconds(loop.ramp_ms());
     config.X_WD = simulation.X_WD;
-    config.workspace_scale = simulation.tick.workspace_scale;
+    config.hand_space = simulation.tick.hand_space;
     return config;
 }
 

@@ -192,7 +192,7 @@ TEST_F(DeviceLinkIoTest, ImplausibleSamplesAndStampsAreNotBelieved) {
 }
 
 TEST_F(DeviceLinkIoTest, TheToolMovesAsFarAsTheScaleSaysAndTurnsWithTheHandle) {
-    config_.workspace_scale = 3;
+    config_.hand_space = HandSpace(3);
     DeviceLinkIo io(config_, server_);
     DeviceSample sample = sampleAt(0.01);
     sample.q_DT[0] = sample.q_DT[3] = M_SQRT1_2;
