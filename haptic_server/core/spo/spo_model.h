@@ -31,7 +31,8 @@ struct SpoWorld {
 struct SpoCoupling {
     CouplingConfig thesis;
     EnergyCouplingConfig energy;
-    double most_pull = std::numeric_limits<double>::infinity();  // N: of `energy`, if the tool carries more
+    double most_pull =
+        std::numeric_limits<double>::infinity();  // N, of `energy`; less if the tool carries less
 };
 
 // A law asks this of the tick around it.

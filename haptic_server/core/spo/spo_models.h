@@ -1,7 +1,7 @@
 // The contact laws that a tick can choose from. Each is handed in as a way to make its model, so that the
-// tick needs to know none of them; which there are is up to whoever sets up the tick.
+// tick knows none of them by name.
 //
-// Construction allocates; all else is RT-safe.
+// Construction allocates; all else is RT-safe, for the tick thread only.
 #pragma once
 
 #include <algorithm>

@@ -100,11 +100,9 @@ class HapticTick {
     HandPlace place_;
     uint32_t placements_ = 0;                               // of the hand, that were followed
     bool was_pedal_down_ = false, was_add_wanted_ = false;  // in the last tick
-    bool waits_for_release_ = false;  // the bone was put back: it is not milled by a pedal that was down
-    // What the simulated side stores, by no work, since the account was kept; before the first tick all of
-    // it.
-    bool has_changed_suddenly_ = true;
-    TickRecord record_{};  // of the last tick
+    bool waits_for_release_ = false;    // the bone was put back: it is not milled by a pedal that was down
+    bool has_changed_suddenly_ = true;  // what the simulated side stores, by no work, since the last account
+    TickRecord record_{};               // of the last tick
     uint64_t tick_ = 0;
     uint32_t latched_faults_ = 0;
 };

@@ -1,6 +1,7 @@
 // The laws of other schools on analytic bone: a law with its tool, made a tick at a time.
 #pragma once
 
+#include "haptic_server/core/tick/tick_config.h"
 #include "haptic_server/laws/all_laws.h"
 #include "haptic_server/laws/constraint_law.h"
 #include "haptic_server/laws/penalty_sdf.h"
@@ -21,16 +22,11 @@ inline ContactScene lawPlane(const Eigen::Vector3d& normal = Eigen::Vector3d::Un
 }
 
 struct LawRun {
-    LawRun(ContactLaw law, const ContactScene& scene, const Pose& start, const LawConfig& config = {},
-           double radius = kLawRadius)
+    LawRun(ContactLaw law, const ContactScene& scene, const Pose& start, double radius = kLawRadius)
         : tool{&scene.tool, {.radius = radius}, 50},
-          laws(allLaws(), {config.points,
-                           config.steps,
-                           {.coupling = config.coupling},
-                           scene.world(),
-                           {&tool, 1},
-                           tool,
-                           1e-3}),
+          laws(
+              allLaws(),
+              {config.contact, config.coupling, config.gradient, scene.world(), {&tool, 1}, tool, config.dt}),
           model(laws.of(law)),
           spo(start) {
         for (const Preset preset : kComparedLaws)
@@ -48,6 +44,7 @@ struct LawRun {
         return step;
     }
 
+    TickConfig config;
     SpoTool tool;
     SpoModels laws;
     SpoModel& model;
