@@ -28,11 +28,9 @@ DeviceLoopConfig loopOf(const scene::Scene& scene) {
     return loop;
 }
 
-Pose startOf(const scene::SimulatedOperator& person, const Pose& X_WD, double scale) {
+Pose startOf(const scene::SimulatedOperator& person, const Pose& X_WD, const HandSpace& space) {
     if (person.waypoint_size() == 0) return {};
-    Pose X_DT = X_WD.inverse() * poseOf(person.waypoint(0));
-    X_DT.position /= scale;
-    return X_DT;
+    return space.poseAtHand(X_WD.inverse() * poseOf(person.waypoint(0)));
 }
 
 // Pushing away from the user moves the tool away from the scene's first view.
@@ -41,7 +39,7 @@ RateConfig ratesOf(const scene::Scene& scene, const Pose& X_WD) {
     const Eigen::Vector3d up_W =
         unitUp(camera.has_up() ? vectorOf(camera.up()) : Eigen::Vector3d(Eigen::Vector3d::Zero()));
     RateConfig rates;
-    rates.workspace_scale = scene.device().workspace_scale();
+    rates.hand_space = HandSpace(scene.device().workspace_scale());
     // Its user thinks in the axes of the first picture: U is that camera.
     const Eigen::Matrix3d R_WU =
         viewAxes(kDegree * camera.azimuth_deg(), kDegree * camera.elevation_deg(), up_W);
@@ -59,11 +57,11 @@ AresDeviceConfig declaring(const scene::Scene& scene, AresDeviceConfig config) {
 
 DeviceSetup deviceSetupOf(const scene::Scene& scene) {
     const Pose X_WD = poseOf(scene.device());
-    const double scale = scene.device().workspace_scale();
-    const Pose X_DT_start = startOf(scene.simulated_operator(), X_WD, scale);
+    const HandSpace space(scene.device().workspace_scale());
+    const Pose X_DT_start = startOf(scene.simulated_operator(), X_WD, space);
     return {.rate_hz = scene.loop().rate_hz(),
             .X_WD = X_WD,
-            .workspace_scale = scale,
+            .hand_space = space,
             .X_DT_start = X_DT_start,
             .ares = declaring(scene, aresConfigOf(scene.device(), false)),
             .simulated_ares = declaring(scene, aresConfigOf(scene.device(), true, X_DT_start)),

@@ -1,6 +1,7 @@
 // Makes what the daemon needs of the scene file, at start-up: the place where units and frames change.
 #pragma once
 
+#include "common/geometry/hand_space.h"
 #include "device_daemon/ares/ares_device/ares_device.h"
 #include "device_daemon/control/device_loop/device_loop.h"
 #include "device_daemon/hands/input/rate_control.h"
@@ -11,7 +12,7 @@ namespace bonemill {
 struct DeviceSetup {
     double rate_hz;
     Pose X_WD;
-    double workspace_scale;
+    HandSpace hand_space;
     Pose X_DT_start;        // where the scripted hand begins; D's origin without one
     AresDeviceConfig ares;  // the real one
     AresDeviceConfig simulated_ares;

@@ -48,15 +48,12 @@ class ComparedLaw : public SpoModel {
         field_ = &tool_.model->field(settings_);
         saturate();
     }
-    // Takes effect with the next advance(), whose coupling pulls with `most_pull` (N) at most.
-    void setCoupling(const EnergyCouplingConfig& coupling, double most_pull) noexcept {
-        config_.coupling = coupling;
-        most_pull_ = most_pull;
+    void setCoupling(const SpoCoupling& coupling) noexcept override {
+        config_.coupling = coupling.energy;
+        most_pull_ = coupling.most_pull;
         saturate();
     }
-
-    // The burr removes bone from the next advance() on, or no longer does.
-    void setCutting(bool is_cutting) noexcept { is_cutting_ = is_cutting; }
+    void setCutting(bool is_cutting) noexcept override { is_cutting_ = is_cutting; }
 
   protected:
     // A rigid burr that never entered the bone would cut nothing: while it cuts, it may be so deep in it, m.

@@ -45,7 +45,7 @@ int64_t processorNs() {
 
 class TimedIo final : public TickIo {
   public:
-    explicit TimedIo(std::span<const DeviceInput> path) : path_(path) { records.reserve(path.size()); }
+    explicit TimedIo(std::span<const DeviceInput> path) : path_(path) {}
 
     bool read(DeviceInput& input) noexcept override {
         if (path_.empty()) return false;
@@ -57,9 +57,6 @@ class TimedIo final : public TickIo {
     }
     int64_t write(const Wrench&) noexcept override { return processorNs(); }
     int64_t now() noexcept override { return processorNs(); }
-    void push(const TickRecord& record) noexcept override { records.push_back(record); }
-
-    std::vector<TickRecord> records;
 
   private:
     std::span<const DeviceInput> path_;
@@ -84,14 +81,13 @@ class HeavyCase {
         size_t late = 0;
         uint32_t faults = 0, contacts = 0;
         TimedIo io(path_);
-        FixedTick(config_, *simulation_.bone).run(io);
-        for (const TickRecord& record : io.records) {
+        FixedTick(config_, *simulation_.bone).run(io, [&](const TickRecord& record) {
             faults |= record.faults;
-            if (record.contacts == 0) continue;
+            if (record.contacts == 0) return;
             durations_ns.push_back(record.compute_ns);
             contacts = std::max(contacts, record.contacts);
             late += double(record.compute_ns) > 0.8 * config_.dt * double(kNsPerSecond);
-        }
+        });
         const size_t ticks = durations_ns.size();
         const TickTimes us = timesOf(std::move(durations_ns));
         return {{"p50", us.p50},  {"p99", us.p99}, {"p999", us.p99_9},          {"max", us.max},

@@ -15,6 +15,7 @@
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "haptic_server/lab/accuracy_report/timed_run.h"
+#include "haptic_server/laws/all_laws.h"
 #include "haptic_server/recording/statistics/tick_times.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
 #include "tests/bench/bench_output.h"
@@ -89,6 +90,7 @@ LawFigures slide(Preset preset, const Touch& touch, double voxel) {
     BoneModel bone(VoxelVolume(scene.bone.volume), Eigen::Vector3i::Constant(16),
                    {.levels = {{presetSettings(preset).shell_factor}}});
     FixedTickConfig config;
+    config.laws = allLaws();
     config.accuracy = presetSettings(preset);
     config.tool = {&scene.tool, {.radius = kRadius}, 50};
     PosePath path;

@@ -38,7 +38,7 @@ void run(double rate_hz, double seconds, const std::string& json_path) {
     inRealTime([&] {
         CorridorIo io(period_ns, seconds, loop);
         before = pageFaultsOf(gettid()).value_or(PageFaults{});
-        tick.run(io);
+        io.lead(tick, [](const TickRecord&) {});
         after = pageFaultsOf(gettid()).value_or(PageFaults{});
     });
     for (const std::string& missing : report.missing) std::printf("not granted: %s\n", missing.c_str());

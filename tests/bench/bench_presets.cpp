@@ -12,6 +12,7 @@
 #include "common/rt/latency_histogram.h"
 #include "haptic_server/cases/phantom/tooth_phantom.h"
 #include "haptic_server/core/tick/fixed_tick.h"
+#include "haptic_server/laws/all_laws.h"
 #include "haptic_server/scans/densify/densify.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
 #include "tests/support/scripted_io.h"
@@ -57,17 +58,17 @@ void measure(const Setting& setting, const RawVolume& scan, const ToolModel& too
     BoneModel bone(densify(scan, DensityWindow{-1000, 3000, 600}), leaf_cells,
                    {.levels = {{setting.scaling_factor}}});
     FixedTickConfig config;
+    config.laws = allLaws();
     config.tool.model = &tool;
     config.effects.time_removal = test::kTimeRemoval;
     config.accuracy = presetSettings(setting.preset);
     config.accuracy.shell_factor = setting.scaling_factor;
     test::ScriptedIo io(test::straightPath(kStart, kEnd, kTicks, kButtonRemove));
-    FixedTick(config, bone).run(io);
-    for (const TickRecord& record : io.records) {
+    FixedTick(config, bone).run(io, [&cost](const TickRecord& record) {
         cost.force.record(record.force_ns);
         cost.milling.record(record.compute_ns - record.force_ns);
         cost.whole.record(record.compute_ns);
-    }
+    });
 }
 
 void print(const char* what, const LatencyHistogram& h, const LatencyHistogram& reference) {

@@ -87,8 +87,8 @@ Remeshing millBesideMesher(const RemeshOptions& o) {
     std::jthread mesher([&] { result.mesher_share = meshWhile(is_running, rounds, put) / o.seconds; });
     std::jthread publisher([&] { publishWhile(is_running, outbox, result.published); });
     result.report.append(inRealTime([&] {
-        CorridorIo io(std::llround(double(kNsPerSecond) / o.rate_hz), o.seconds, result.tick, &cuts);
-        tick.run(io);
+        CorridorIo io(std::llround(double(kNsPerSecond) / o.rate_hz), o.seconds, result.tick);
+        io.lead(tick, [&cuts](const TickRecord& record) { tellMesher(cuts, record.cut); });
     }));
     is_running = false;
     mesher.join();

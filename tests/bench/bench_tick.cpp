@@ -45,7 +45,8 @@ TickFigures measureTicks(const TickCase& c) {
     const ToolModel tool = buildTool(tool_config).model;
     const WeaveConfig way{.burr_radius = c.burr_radius, .ticks = c.ticks, .mills = c.mills};
     test::ScriptedIo io(weave(bone.volume, way));
-    FixedTick(configOf(c, tool), bone).run(io);
+    FixedTick tick(configOf(c, tool), bone);
+    io.lead(tick);
     return figuresOf(io.records, size_t(way.approach_ticks));
 }
 

@@ -54,12 +54,11 @@ TickConfig corridorTick(double rate_hz) {
     return config;
 }
 
-CorridorIo::CorridorIo(int64_t period_ns, double seconds, Waits& waits, SpscRing<Cut>* cuts)
+CorridorIo::CorridorIo(int64_t period_ns, double seconds, Waits& waits)
     : timer_(period_ns, monotonicNowNs()),
       period_ns_(period_ns),
       end_ns_(monotonicNowNs() + int64_t(seconds * double(kNsPerSecond))),
-      waits_(waits),
-      cuts_(cuts) {}
+      waits_(waits) {}
 
 bool CorridorIo::read(DeviceInput& input) noexcept {
     const int64_t due = timer_.waitNext();
@@ -84,12 +83,11 @@ int64_t CorridorIo::now() noexcept {
     return monotonicNowNs();
 }
 
-void CorridorIo::push(const TickRecord& record) noexcept {
+void CorridorIo::note(const TickRecord& record) noexcept {
     waits_.compute.record(record.compute_ns);
     waits_.missed_by_compute += record.compute_ns > period_ns_;
     waits_.missed = timer_.missedPeriods();
     waits_.faults |= record.faults;
-    if (cuts_ && !record.cut.isEmpty()) cuts_->tryPush(record.cut);
 }
 
 RealtimeReport inRealTime(const std::function<void()>& work) {

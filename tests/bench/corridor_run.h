@@ -7,10 +7,8 @@
 #include "common/rt/latency_histogram.h"
 #include "common/rt/periodic_timer.h"
 #include "common/rt/realtime.h"
-#include "common/rt/spsc_ring.h"
 #include "haptic_server/core/bone/bone_model.h"
-#include "haptic_server/core/tick/tick_config.h"
-#include "haptic_server/core/tick/tick_io.h"
+#include "haptic_server/core/tick/fixed_tick.h"
 
 namespace bonemill::bench {
 
@@ -30,19 +28,26 @@ TickConfig corridorTick(double rate_hz);
 // Makes the device go up and down the corridor by the clock, a little farther beside each time.
 class CorridorIo final : public TickIo {
   public:
-    // `cuts` may be null.
-    CorridorIo(int64_t period_ns, double seconds, Waits& waits, SpscRing<Cut>* cuts = nullptr);
+    CorridorIo(int64_t period_ns, double seconds, Waits& waits);
 
     bool read(DeviceInput& input) noexcept override;
     int64_t write(const Wrench&) noexcept override;
     int64_t now() noexcept override;
-    void push(const TickRecord& record) noexcept override;
+    // Does the ticks, with take(record) after each.
+    template <class Take>
+    void lead(FixedTick& tick, Take take) {
+        tick.run(*this, [&](const TickRecord& record) {
+            note(record);
+            take(record);
+        });
+    }
 
   private:
+    void note(const TickRecord& record) noexcept;
+
     PeriodicTimer timer_;
     int64_t period_ns_, end_ns_, start_ns_ = 0, first_ns_ = 0;
     Waits& waits_;
-    SpscRing<Cut>* cuts_;
 };
 
 // Works on a thread of its own with the tick's priority, and says what the machine does not grant.

@@ -46,7 +46,8 @@ Stepper::Stepper(Scene& scene, const ToolSwitch* tools, BoneHistory* history)
 const TickRecord& Stepper::step(const Pose& X_WT_device, uint32_t buttons) {
     input_.X_WT_device = X_WT_device;
     input_.buttons = buttons | held_buttons_;
-    tick_.tick(*this);
+    record_ = *tick_.tick(*this);
+    faults_ |= record_.faults;
     plugIn(nullptr);
     return record_;
 }
@@ -87,7 +88,7 @@ ClosedLoop::ClosedLoop(const LoopConfig& config, Scene& scene, const Pose& start
       config_(config),
       declared_(declared(config, scene.config.dt)),
       start_(start),
-      workspace_scale_(scene.config.workspace_scale),
+      workspace_scale_(scene.config.hand_space.wayAtTool(1.0)),
       on_the_way_(size_t(config.delay_ticks)) {}
 
 void ClosedLoop::declare() {

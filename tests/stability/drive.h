@@ -40,10 +40,6 @@ class Stepper : private TickIo {
     bool read(DeviceInput& input) noexcept override;
     int64_t write(const Wrench& wrench_hand_W) noexcept override;
     int64_t now() noexcept override { return 0; }
-    void push(const TickRecord& record) noexcept override {
-        record_ = record;
-        faults_ |= record.faults;
-    }
 
     uint32_t faults_ = 0;
     uint32_t held_buttons_;

@@ -33,10 +33,7 @@ std::vector<Pose> polyline(const std::vector<Pose>& corners, double speed, int r
 double gained(Scene& scene, const std::vector<Pose>& path, size_t drop_from = 0, size_t dropped = 0) {
     Stepper stepper(scene), undisturbed(scene);
     AlgorithmEnergy meter;
-    const auto handle = [&](Pose tool) {
-        tool.position /= scene.config.workspace_scale;
-        return tool;
-    };
+    const auto handle = [&](const Pose& tool) { return scene.config.hand_space.poseAtHand(tool); };
     double pressed = 0;
     for (size_t n = 0; n < path.size(); ++n) {
         const bool is_dropped = n >= drop_from && n < drop_from + dropped;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "haptic_server/laws/all_laws.h"
 #include "tests/support/typical_effects.h"
 
 namespace bonemill::test {
@@ -138,8 +139,9 @@ Names feltEffectsBut(const Names& left_out) {
 }
 
 void applyVariant(const Variant& variant, FixedTickConfig& config) {
+    config.laws = allLaws();
     config.accuracy = presetSettings(variant.preset);
-    scaleWorkspace(config, variant.workspace_scale);
+    setHandSpace(config, HandSpace(variant.workspace_scale));
     if (!variant.add_effects) return;
     config.tool.burr.speed = kSpinSpeed;
     config.tool.burr.friction = kCuttingFriction;

@@ -13,8 +13,7 @@ template <class Tick>
 std::vector<TickRecord> lead(Tick& tick, const std::vector<DeviceInput>& inputs) {
     EXPECT_FALSE(inputs.empty());
     ScriptedIo io(inputs);
-    while (tick.tick(io)) {
-    }
+    io.lead(tick);
     EXPECT_EQ(io.records.size(), inputs.size());
     return io.records;
 }

@@ -88,7 +88,10 @@ class MillingRig final : private TickIo {
         buttons_ = buttons;
         left_ = int(std::lround(seconds * config.rate / config.periods));
         records.reserve(records.size() + size_t(left_));
-        tick_.run(*this);
+        tick_.run(*this, [this](const TickRecord& record) {
+            spo_ = Eigen::Map<const Eigen::Vector3d>(record.p_WT);
+            records.push_back(record);
+        });
     }
     // The hand presses along `direction` (unit) with this force, which comes up within kRise, ahead of the
     // tool by what it moved in the last tick; across it the hand stays where it starts.
@@ -209,10 +212,6 @@ class MillingRig final : private TickIo {
     }
     int64_t write(const Wrench&) noexcept override { return 0; }
     int64_t now() noexcept override { return 0; }
-    void push(const TickRecord& record) noexcept override {
-        spo_ = Eigen::Map<const Eigen::Vector3d>(record.p_WT);
-        records.push_back(record);
-    }
 
     ToolModel tool_;
     FixedTick tick_;

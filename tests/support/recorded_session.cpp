@@ -61,6 +61,7 @@ class LiveIo final : public TickIo {
   public:
     bool read(DeviceInput& input) noexcept override {
         input = {};
+        tick_ = next_++;
         const double t = double(tick_) * 1e-3;
         const bool is_silent = has_orders && tick_ >= kTickOfSilence && tick_ < kTickOfSilence + 60;
         input.is_repeated = is_silent || tick_ % 97 == 96;
@@ -76,19 +77,13 @@ class LiveIo final : public TickIo {
     }
     int64_t write(const Wrench&) noexcept override { return int64_t(tick_) * kPeriodNs; }
     int64_t now() noexcept override { return int64_t(tick_) * kPeriodNs; }
-    void push(const TickRecord& record) noexcept override {
-        record_ = record;
-        ++tick_;
-    }
 
     bool has_orders = true;
-    const TickRecord& record() const { return record_; }
 
   private:
-    uint64_t tick_ = 0;
+    uint64_t tick_ = 0, next_ = 0;
     Pose newest_ = poseAt(0);
     DeviceCapabilities device_ = testDevice();
-    TickRecord record_{};
 };
 
 std::string textOf(const std::filesystem::path& path) {
@@ -173,11 +168,11 @@ RecordedSession recordSession(const std::filesystem::path& folder, const Recorde
             journal.putBone(history.snapshot(bone), history.finishedOrder());
             journal.round();
         }
-        tick.tick(io);
-        journal.add(io.record());
-        hash.addRecord(io.record(), recorded);
+        const TickRecord& record = *tick.tick(io);
+        journal.add(record);
+        hash.addRecord(record, recorded);
         session.missing_voxels.push_back(history.missingVoxels());
-        session.x_m.push_back(io.record().p_WT[0]);
+        session.x_m.push_back(record.p_WT[0]);
     }
     hash.addVolume(bone.volume);
     session.state_hash = hash.value();

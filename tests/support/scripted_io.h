@@ -1,10 +1,11 @@
-// Drives HapticTick from a list of device inputs and keeps what it said.
+// Drives a HapticTick or FixedTick from a list of device inputs and keeps its records.
 #pragma once
 
 #include <vector>
 
 #include "common/base/units.h"
 #include "common/rt/clock.h"
+#include "haptic_server/core/telemetry/tick_record.h"
 #include "haptic_server/core/tick/tick_io.h"
 
 namespace bonemill::test {
@@ -26,7 +27,20 @@ class ScriptedIo final : public TickIo {
         return monotonicNowNs();
     }
     int64_t now() noexcept override { return monotonicNowNs(); }
-    void push(const TickRecord& record) noexcept override { records.push_back(record); }  // reserved above
+
+    // Does one tick; false at the end of the inputs. There is memory for the records.
+    template <class Tick>
+    bool step(Tick& tick) noexcept {
+        const TickRecord* record = tick.tick(*this);
+        if (record) records.push_back(*record);
+        return record;
+    }
+    // Does all that are left.
+    template <class Tick>
+    void lead(Tick& tick) noexcept {
+        while (step(tick)) {
+        }
+    }
 
     std::vector<TickRecord> records;
     Wrench last_wrench;

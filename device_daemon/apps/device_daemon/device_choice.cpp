@@ -71,7 +71,7 @@ ChosenDevice pointer(const FollowedScene& scene, const DaemonOptions& options) {
                                                                    .session = options.session,
                                                                    .epoch = scene.epoch,
                                                                    .X_WD = setup.X_WD,
-                                                                   .workspace_scale = setup.workspace_scale,
+                                                                   .hand_space = setup.hand_space,
                                                                    .X_DT_start = setup.X_DT_start})};
 }
 

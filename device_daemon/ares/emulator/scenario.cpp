@@ -7,6 +7,7 @@
 #include "common/base/user_error.h"
 #include "common/config/scene_geometry.h"
 #include "common/device_messages/device_messages.h"
+#include "common/geometry/hand_space.h"
 #include "device_daemon/ares/ares_device/scene_ares.h"
 
 namespace bonemill {
@@ -36,17 +37,15 @@ HandImpedance handOf(const scene::SimulatedOperator& person) {
 }
 
 // The handle moves less than the tool by the workspace's scale.
-OperatorPath pathOf(const scene::SimulatedOperator& person, const Pose& X_WD, double scale) {
+OperatorPath pathOf(const scene::SimulatedOperator& person, const Pose& X_WD, const HandSpace& space) {
     const Pose X_DW = X_WD.inverse();
     std::vector<Waypoint> waypoints;
     for (const auto& waypoint : person.waypoint()) {
         const uint32_t buttons =
             (waypoint.remove() ? kButtonRemove : 0u) | (waypoint.add() ? kButtonAdd : 0u);
-        Pose X_DT = X_DW * poseOf(waypoint);
-        X_DT.position /= scale;
-        waypoints.push_back({waypoint.time_s(), X_DT, buttons});
+        waypoints.push_back({waypoint.time_s(), space.poseAtHand(X_DW * poseOf(waypoint)), buttons});
     }
-    return OperatorPath(std::move(waypoints), kMillimetre * person.tremor_mm() / scale);
+    return OperatorPath(std::move(waypoints), space.wayAtHand(kMillimetre * person.tremor_mm()));
 }
 
 std::vector<std::string> phasesOf(const scene::SimulatedOperator& person) {
@@ -100,7 +99,7 @@ Scenario scenarioOf(const scene::Scene& scene) {
                       .geometry = aresConfigOf(device, true).geometry,
                       .plant = plantOf(device),
                       .hand = handOf(scene.simulated_operator()),
-                      .path = pathOf(scene.simulated_operator(), X_WD, device.workspace_scale()),
+                      .path = pathOf(scene.simulated_operator(), X_WD, HandSpace(device.workspace_scale())),
                       .phases = phasesOf(scene.simulated_operator()),
                       .max_actuator_force = device.max_actuator_force_n(),
                       .max_force = device.max_force_n(),

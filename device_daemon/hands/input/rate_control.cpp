@@ -41,7 +41,7 @@ double responseOf(double deflection, double dead_zone) noexcept {
 
 Rates ratesOf(const std::array<float, 6>& deflections, bool is_fine, const RateConfig& config) noexcept {
     const double mode = is_fine ? config.fine_share : 1;
-    const double speed = mode * config.max_speed / config.workspace_scale;
+    const double speed = config.hand_space.wayAtHand(mode * config.max_speed);
     return {config.R_DU * (speed * sharesOf(deflections.data(), config.dead_zone)),
             config.R_DU * (mode * config.max_spin * sharesOf(deflections.data() + 3, config.dead_zone))};
 }

@@ -7,16 +7,16 @@
 
 #include <array>
 
-#include "common/geometry/pose.h"
+#include "common/geometry/hand_space.h"
 
 namespace bonemill {
 
 struct RateConfig {
-    double max_speed = 0.06;     // m/s of the tool, with all axes together
-    double max_spin = 1;         // rad/s, at full deflection
-    double dead_zone = 0.1;      // share of the full deflection
-    double fine_share = 0.2;     // of the rates in the fine mode
-    double workspace_scale = 1;  // the tool moves so many times as far as the handle
+    double max_speed = 0.06;  // m/s of the tool, with all axes together
+    double max_spin = 1;      // rad/s, at full deflection
+    double dead_zone = 0.1;   // share of the full deflection
+    double fine_share = 0.2;  // of the rates in the fine mode
+    HandSpace hand_space = {};
     Eigen::Quaterniond R_DU = Eigen::Quaterniond::Identity();
 };
 

@@ -130,8 +130,8 @@ void PointerDevice::publish(const HandWish& wish) noexcept {
         placed_as_ = wish.placements;
         ++wished_placements_;
     }
-    const Pose X_DT = X_DW_ * wish.X_WT;
-    const Eigen::Vector3d p_DT = X_DT.position / config_.workspace_scale;
+    const Pose X_DT = config_.hand_space.poseAtHand(X_DW_ * wish.X_WT);
+    const Eigen::Vector3d& p_DT = X_DT.position;
     const Eigen::Quaterniond& q = X_DT.rotation;
     newest_.write({.p_DT = {p_DT.x(), p_DT.y(), p_DT.z()},
                    .q_DT = {q.w(), q.x(), q.y(), q.z()},

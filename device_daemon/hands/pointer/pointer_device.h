@@ -2,8 +2,8 @@
 //
 // Viewers publish on the topic HandPointer where they want the tool (docs/teach/viewer.md). A thread of this
 // class reads them and hands the newest wish of who holds to the loop through a seqlock; the loop moves a
-// VirtualHandle, which feels the wrench of haptic_server. Wishes are in W; the handle is in D, with
-// X_WD of the scene and the tool moving workspace_scale times as far as the handle.
+// VirtualHandle, which feels the wrench of haptic_server. Wishes are the tool's, in W; the handle is in D,
+// with X_WD of the scene, and moves as its HandSpace says.
 //
 // A wish with a new number of placements puts the handle there without a way there, and so does the beginning
 // of an attempt, where the scene begins; the server's tool goes along, if there is no bone.
@@ -20,6 +20,7 @@
 
 #include "common/dds/endpoint.h"
 #include "common/dds/wait_set.h"
+#include "common/geometry/hand_space.h"
 #include "common/rt/clock.h"
 #include "common/rt/seqlock.h"
 #include "device_daemon/hands/pointer/pointer_holder.h"
@@ -32,7 +33,7 @@ struct PointerConfig {
     uint32_t session = 1;  // that of server and viewers
     uint64_t epoch = 0;    // of the server's run: followRun()
     Pose X_WD = {};
-    double workspace_scale = 1;
+    HandSpace hand_space = {};
     Pose X_DT_start = {};  // the handle rests there until a viewer holds it
 };
 

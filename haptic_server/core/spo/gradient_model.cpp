@@ -61,9 +61,9 @@ void GradientModel::setTool(const SpoTool& tool) noexcept {
     setAccuracy(settings_);
 }
 
-void GradientModel::setCoupling(const EnergyCouplingConfig& coupling, double most_pull) noexcept {
-    most_pull_ = most_pull;
-    wished_ = coupling;
+void GradientModel::setCoupling(const SpoCoupling& coupling) noexcept {
+    most_pull_ = coupling.most_pull;
+    wished_ = coupling.energy;
     saturate();
 }
 
@@ -220,6 +220,7 @@ SpoStep GradientModel::advance(const Pose& X_VT, const Pose& X_VT_device) noexce
     out.contacts = state.contacts;
     out.budget_share = double(point_tests_) / double(most_point_tests_);
     out.max_penetration = state.max_depth;
+    out.is_tool_growing = isToolGrowing();
     last_depth_ = state.max_depth;
     knows_depth_ = true;
     feel(state.X_VT, tick);

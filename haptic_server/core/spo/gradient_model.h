@@ -19,26 +19,18 @@ class GradientModel final : public SpoModel {
     // Allocates the room for contact points.
     GradientModel(const GradientConfig& config, const SpoWorld& world, const SpoTool& tool, double dt);
 
+    SpoTraits traits() const noexcept override { return {.has_energy = true, .wants_estimate = true}; }
     SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept override;
     void restart() noexcept override;
-    // Before the next advance() the bone is another one where the tool may be, and what it does to the tool
-    // is felt whole. It is RT-safe, for the tick thread only.
-    void expectOtherBone() noexcept { knows_depth_ = false; }
-    // A tool that was chosen, or has bone around it of a sudden, where it has no room is still felt smaller
-    // than it is.
-    bool isToolGrowing() const noexcept { return growing_.offset() > 0; }
+    void expectOtherBone() noexcept override { knows_depth_ = false; }
     void setAccuracy(const AccuracySettings& settings) noexcept override;
     void setTool(const SpoTool& tool) noexcept override;
-    // Takes effect with the next advance(), whose coupling pulls with `most_pull` (N) at most, or with what
-    // the tool carries if that is less. It is RT-safe, for the tick thread only.
-    void setCoupling(const EnergyCouplingConfig& coupling, double most_pull) noexcept;
-    // From now on there is time for so many samples of the surface in a gathering. It is RT-safe, for the
-    // tick thread only.
-    void setAffordableSamples(size_t most) noexcept { affordable_samples_ = most; }
+    void setCoupling(const SpoCoupling& coupling) noexcept override;
+    void setAffordableSamples(size_t most) noexcept override { affordable_samples_ = most; }
     void setEffects(ContactWeights* weights, SolveEnergy* energy) noexcept override;
     size_t listContacts(std::span<SurfaceContact> out) noexcept override;
+    size_t mostCandidates() const noexcept override { return contact_.room(); }
 
-    size_t mostCandidates() const noexcept { return contact_.room(); }
     // Returns all energy (J) of the last advance() at its final pose, damping included, for
     // tests and reports.
     double energy() const noexcept { return energy_; }
@@ -60,6 +52,7 @@ class GradientModel final : public SpoModel {
         Pose X_VT_start, X_VT_device;
         SpoStep* out;
     };
+    bool isToolGrowing() const noexcept { return growing_.offset() > 0; }
     void useTool() noexcept;
     void saturate() noexcept;
     void fitTool(const Tick& tick) noexcept;

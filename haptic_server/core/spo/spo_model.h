@@ -1,14 +1,20 @@
 // Decides how the simulated tool (SPO) follows the hand and meets the bone: there is one interface for all
-// contact laws. The scene chooses. All poses and wrenches are in V.
+// contact laws, and the tick knows no other. The scene chooses. All poses and wrenches are in V.
+//
+// All but construction is RT-safe and for the tick thread only. What is set takes effect with the next
+// advance(). A law leaves out what means nothing to it.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "haptic_server/core/accuracy/accuracy_settings.h"
 #include "haptic_server/core/contact/contact_weights.h"
 #include "haptic_server/core/contact/point_shell.h"
 #include "haptic_server/core/contact/surface_contact.h"
+#include "haptic_server/core/coupling/energy_coupling.h"
+#include "haptic_server/core/coupling/virtual_coupling.h"
 #include "haptic_server/core/spo/solve_energy.h"
 #include "haptic_server/core/spo/spo_tool.h"
 
@@ -19,6 +25,21 @@ struct SpoWorld {
     const VoxelVolume& volume;
     const LeafLattice& lattice;
     const PointShell& shell;
+};
+
+// This holds the tool to the hand, in laws of either kind.
+struct SpoCoupling {
+    CouplingConfig thesis;
+    EnergyCouplingConfig energy;
+    double most_pull =
+        std::numeric_limits<double>::infinity();  // N, of `energy`; less if the tool carries less
+};
+
+// A law asks this of the tick around it.
+struct SpoTraits {
+    bool has_energy = false;           // SpoStep::stored_energy is all that it stores: an account can be kept
+    bool wants_estimate = false;       // of the hand's pose between two steps of the encoders
+    bool mills_voxel_centres = false;  // the burr takes a voxel whose centre it reaches; else it cuts finer
 };
 
 // It is the outcome of one tick, in V.
@@ -44,26 +65,36 @@ struct SpoStep {
     bool has_fewer_samples = false;
     // There were more points near the tool than there is room or time for: the solve was cut short.
     bool has_contact_overflow = false;
+    // A tool that was chosen, or has bone around it of a sudden, where it has no room is still felt smaller
+    // than it is.
+    bool is_tool_growing = false;
 };
 
 class SpoModel {
   public:
     virtual ~SpoModel() = default;
-    // Does one tick of length dt: the tool is at X_VT, and the hand holds it at X_VT_device. It is RT-safe,
-    // for the tick thread only.
+    virtual SpoTraits traits() const noexcept { return {}; }
+    // Does one tick of length dt: the tool is at X_VT, and the hand holds it at X_VT_device.
     virtual SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept = 0;
     // Forgets earlier ticks. It is called when the model becomes active.
     virtual void restart() noexcept = 0;
-    // Takes effect with the next advance(). It is RT-safe, for the tick thread only.
     virtual void setAccuracy(const AccuracySettings& settings) noexcept = 0;
-    // Gives another tool at the same pose; takes effect with the next advance(). It is RT-safe, for the
-    // tick thread only.
+    // Gives another tool at the same pose.
     virtual void setTool(const SpoTool& tool) noexcept = 0;
-    // Takes what effects add; null adds nothing. Only the gradient law has room for them.
+    virtual void setCoupling(const SpoCoupling& coupling) noexcept = 0;
+    // Takes what effects add; null adds nothing.
     virtual void setEffects(ContactWeights*, SolveEnergy*) noexcept {}
+    // The burr removes bone, or no longer does.
+    virtual void setCutting(bool) noexcept {}
+    // There is time for so many samples of the surface in a gathering.
+    virtual void setAffordableSamples(size_t) noexcept {}
+    // The bone is another one where the tool may be, and what it does to the tool is felt whole.
+    virtual void expectOtherBone() noexcept {}
     // Lists where the tool touches the bone at the end of the last advance(), as many as `out` has room for,
-    // and returns how many. It is RT-safe, for the tick thread only.
+    // and returns how many: mostCandidates() at most.
     virtual size_t listContacts(std::span<SurfaceContact>) noexcept { return 0; }
+    // Points that effects may be asked about in a gathering.
+    virtual size_t mostCandidates() const noexcept { return 0; }
 };
 
 // Returns the shell level of these settings: their factor's, or the first level if that was not built.

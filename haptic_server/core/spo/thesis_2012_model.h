@@ -13,12 +13,12 @@ class Thesis2012Model final : public SpoModel {
     Thesis2012Model(const PenaltyContactConfig& contact, const CouplingConfig& coupling,
                     const SpoWorld& world, const SpoTool& tool, double dt);
 
+    SpoTraits traits() const noexcept override { return {.mills_voxel_centres = true}; }
     SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept override;
     void restart() noexcept override {}
     void setAccuracy(const AccuracySettings& settings) noexcept override;
     void setTool(const SpoTool& tool) noexcept override { tool_ = tool.model; }
-    // Takes effect with the next advance(). It is RT-safe, for the tick thread only.
-    void setCoupling(const CouplingConfig& coupling) noexcept { coupling_ = coupling; }
+    void setCoupling(const SpoCoupling& coupling) noexcept override { coupling_ = coupling.thesis; }
 
   private:
     PenaltyContactConfig contact_;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "common/rt/spsc_ring.h"
 #include "haptic_server/core/volume/index_box.h"
 
 namespace bonemill {
@@ -27,6 +28,12 @@ inline Cut cutOf(const IndexBox& voxels, int64_t start_ns) noexcept {
     Eigen::Map<Eigen::Vector3i>(cut.voxels_min) = voxels.min;
     Eigen::Map<Eigen::Vector3i>(cut.voxels_max) = voxels.max;
     return cut;
+}
+
+// Tells the mesher, which reads the ring, if there is anything to tell. RT-safe, for the ring's only
+// producer.
+inline void tellMesher(SpscRing<Cut>& cuts, const Cut& cut) noexcept {
+    if (!cut.isEmpty()) cuts.tryPush(cut);
 }
 
 }  // namespace bonemill

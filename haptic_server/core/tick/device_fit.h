@@ -28,7 +28,7 @@ class DeviceFit {
 
   private:
     EnergyCouplingConfig coupling_;
-    double scale_ = 1;  // of the workspace
+    HandSpace space_;
     LoopFit translation_, rotation_;
 };
 

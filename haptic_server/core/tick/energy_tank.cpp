@@ -17,11 +17,13 @@ double counted(double damping, double inertia, double stiffness) noexcept {
 
 }  // namespace
 
-void EnergyTank::setDevice(const HandleDynamics& handle, const HandSpring& spring, double scale,
+void EnergyTank::setDevice(const HandleDynamics& handle, const HandSpring& spring, const HandSpace& space,
                            const Felt& felt) noexcept {
     felt_ = felt;
-    damping_ = counted(handle.damping, handle.mass, spring.stiffness * scale) / scale;
-    angular_damping_ = counted(handle.angular_damping, handle.inertia, spring.rotation_stiffness) * scale;
+    damping_ = space.forcePerWayAtTool(
+        counted(handle.damping, handle.mass, space.forcePerWayAtHand(spring.stiffness)));
+    angular_damping_ =
+        space.torqueAtTool(counted(handle.angular_damping, handle.inertia, spring.rotation_stiffness));
     const double delay = handle.mass > 0 || handle.inertia > 0 ? handle.delay / dt_ : 1;
     delay_ticks_ = size_t(std::clamp(std::lround(delay), 0L, long(kRings - 2)));
     fill();

@@ -12,7 +12,7 @@
 #include <array>
 
 #include "common/device_messages/device_messages.h"
-#include "common/geometry/pose.h"
+#include "common/geometry/hand_space.h"
 #include "haptic_server/core/tick/hand_limits.h"
 
 namespace bonemill {
@@ -37,7 +37,7 @@ class EnergyTank {
     struct Felt {
         bool force = true, torque = true;
     };
-    void setDevice(const HandleDynamics& handle, const HandSpring& spring, double workspace_scale,
+    void setDevice(const HandleDynamics& handle, const HandSpring& spring, const HandSpace& space,
                    const Felt& felt) noexcept;
     // Begins anew with a full tank: what is stored has changed at one stroke, or nobody kept the account.
     void fill() noexcept {

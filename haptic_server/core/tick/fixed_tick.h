@@ -13,11 +13,11 @@ class FixedTick {
           accuracy_(config.accuracy),
           tick_(config, {bone, history}, {tools_, accuracy_}) {}
 
-    bool tick(TickIo& io) noexcept { return tick_.tick(io); }
-    // Goes on to the end of the input.
-    void run(TickIo& io) noexcept {
-        while (tick_.tick(io)) {
-        }
+    const TickRecord* tick(TickIo& io) noexcept { return tick_.tick(io); }
+    // Goes on to the end of the input, with take(record) after each tick.
+    template <class Take>
+    void run(TickIo& io, Take take) {
+        while (const TickRecord* record = tick(io)) take(*record);
     }
     HapticTick& whole() noexcept { return tick_; }
 

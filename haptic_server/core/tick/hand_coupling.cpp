@@ -25,7 +25,7 @@ void HandCoupling::adaptTo(const DeviceCapabilities& device) noexcept {
     wished_ = fitted_ = side_.gradient;
     fit_ = DeviceFit(config_, wished_, device);
     is_fitted_ = fit_.isDone();
-    tank_.setDevice(device.handle, side_.spring, config_.workspace_scale,
+    tank_.setDevice(device.handle, side_.spring, config_.hand_space,
                     {.force = side_.limits.max_force > 0, .torque = side_.limits.max_torque > 0});
     given_ = given_turns_ = 0;
     stands_alone_ = true;
@@ -54,7 +54,7 @@ bool HandCoupling::takeAccount(const Pose& X_VT_device, const SpoStep& step) noe
     const HandLimitsConfig& limits = side_.limits;
     if (limits.max_force > 0) limitLength(port.wrench_hand_V.force, limits.max_force);
     if (limits.max_torque > 0)
-        limitLength(port.wrench_hand_V.torque, limits.max_torque * config_.workspace_scale);
+        limitLength(port.wrench_hand_V.torque, config_.hand_space.torqueAtTool(limits.max_torque));
     tank_.add(port);
     if (tank_.isEmpty()) {
         give(tank_.turnsMoreThanMoves());
@@ -83,7 +83,7 @@ void HandCoupling::use() noexcept {
         halved(coupling.translation_stiffness, has_two_levels ? std::max(0, given_ - 1) : given_);
     coupling.rotation_stiffness = halved(fitted_.rotation_stiffness, given_turns_);
     coupling.saturation_torque = halved(fitted_.saturation_torque, given_turns_);
-    side_.setGradient(coupling, config_.workspace_scale);
+    side_.setGradient(coupling, config_.hand_space);
 }
 
 }  // namespace bonemill

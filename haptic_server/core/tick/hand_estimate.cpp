@@ -70,16 +70,16 @@ double AxisEstimate::trust() const noexcept {
     return std::clamp((kBadModel - surprise_) / (kBadModel - kGoodModel), 0.0, 1.0);
 }
 
-// At the tool the same force moves `scale` times as far, and the same turn takes the hand's torque.
-HandEstimate::HandEstimate(const HandleDynamics& handle, const HandSpring& spring, double scale,
+// The translation is the tool's; the rotation is the hand's, which the tool shares, with the hand's torque.
+HandEstimate::HandEstimate(const HandleDynamics& handle, const HandSpring& spring, const HandSpace& space,
                            double dt) noexcept
-    : translation_(
-          {handle.mass / scale, handle.damping / scale, handle.encoder_step * scale, spring.stiffness},
-          handle.amplifier_time, dt),
+    : translation_({space.forcePerWayAtTool(handle.mass), space.forcePerWayAtTool(handle.damping),
+                    space.wayAtTool(handle.encoder_step), spring.stiffness},
+                   handle.amplifier_time, dt),
       rotation_({handle.inertia, handle.angular_damping, handle.encoder_angle, spring.rotation_stiffness},
                 handle.amplifier_time, dt),
-      scale_(scale),
-      farthest_(std::max(kFarthestSteps * handle.encoder_step, kLeastFarthest) * scale) {
+      space_(space),
+      farthest_(space.wayAtTool(std::max(kFarthestSteps * handle.encoder_step, kLeastFarthest))) {
     const double ticks = std::min(handle.delay / dt, double(kRoom - 2));
     delay_ticks_ = size_t(ticks + 1e-9);
     delay_rest_ = std::max(ticks - double(delay_ticks_), 0.0);
@@ -95,7 +95,8 @@ Pose HandEstimate::take(const Pose& X_VT_reading, bool stands_alone) noexcept {
         X_VT_ = X_VT_reading;
         return X_VT_;
     }
-    translation_.setHand(stands_alone ? 0 : kHandMass / scale_, stands_alone ? 0 : kHandDamping / scale_);
+    translation_.setHand(stands_alone ? 0 : space_.forcePerWayAtTool(kHandMass),
+                         stands_alone ? 0 : space_.forcePerWayAtTool(kHandDamping));
     // In the period that has just ended the wrench of so many ticks before took over from its predecessor.
     const Wrench &later = commanded(delay_ticks_), &earlier = commanded(delay_ticks_ + 1);
     const Vector3d way = translation_.predict(earlier.force, later.force, delay_rest_);

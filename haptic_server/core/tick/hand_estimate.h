@@ -7,14 +7,14 @@
 // it is never farther from the reading than half a step, however wrong the model is: without a hand, in a
 // stiff one, or after a lost tick.
 //
-// Poses and wrenches are in V, torques about the tool point. The tool moves `workspace_scale` times as far as
-// the handle. It is RT-safe, for the tick thread.
+// Poses and wrenches are in V, torques about the tool point. Poses are the tool's, wrenches those at the
+// hand. It is RT-safe, for the tick thread.
 #pragma once
 
 #include <array>
 
 #include "common/device_messages/device_messages.h"
-#include "common/geometry/pose.h"
+#include "common/geometry/hand_space.h"
 #include "haptic_server/core/tick/hand_limits.h"
 
 namespace bonemill {
@@ -61,7 +61,7 @@ class AxisEstimate {
 class HandEstimate {
   public:
     HandEstimate() = default;
-    HandEstimate(const HandleDynamics& handle, const HandSpring& spring, double workspace_scale,
+    HandEstimate(const HandleDynamics& handle, const HandSpring& spring, const HandSpace& space,
                  double dt) noexcept;
 
     bool isIdle() const noexcept { return translation_.isIdle() && rotation_.isIdle(); }
@@ -77,7 +77,7 @@ class HandEstimate {
     }
 
     AxisEstimate translation_, rotation_;
-    double scale_ = 1;                     // of the workspace
+    HandSpace space_;
     double farthest_ = 0;                  // m: from there it starts anew
     size_t delay_ticks_ = 0;               // whole ones
     double delay_rest_ = 0;                // of a tick

@@ -42,7 +42,7 @@ struct HandLimitsConfig {
 
 // A motion of the hand makes this of the wrench from one tick to the next, when nothing else changes.
 struct HandSpring {
-    double stiffness = 0;           // N/m of the tool's way, which is workspace_scale times the hand's
+    double stiffness = 0;           // N/m of the tool's way
     double rotation_stiffness = 0;  // N·m/rad
     double lever = 0;               // m: of the force about the tool point
 };

@@ -4,25 +4,28 @@
 // believed as soon as it could have got there. A device that is late says nothing of its hand: the way it
 // could have gone grows meanwhile.
 //
-// Poses are in V, of the tool, which moves `workspace_scale` times as far as the hand. It is RT-safe, for the
-// tick thread only.
+// Poses are in V, of the tool. It is RT-safe, for the tick thread only.
 #pragma once
 
 #include <algorithm>
 
-#include "common/geometry/pose.h"
+#include "common/geometry/hand_space.h"
 
 namespace bonemill {
 
 class HandPlace {
   public:
-    // m/s and rad/s: no hand that mills is so quick, and the daemon stops a handle that flies long before.
+    // m/s and rad/s, of the hand: no hand that mills is so quick, and the daemon stops a handle that flies
+    // long before.
     static constexpr double kMostSpeed = 3, kMostSpin = 60;
     static constexpr double kFarthest = 10;     // m from the middle of the bone: no workspace is so large
     static constexpr double kLostAfter = 0.02;  // s without a sample that can be believed
 
-    HandPlace(const Eigen::Vector3d& p_V_middle, double workspace_scale, double dt) noexcept
-        : middle_(p_V_middle), scale_(workspace_scale), dt_(dt) {}
+    HandPlace(const Eigen::Vector3d& p_V_middle, const HandSpace& space, double dt) noexcept
+        : middle_(p_V_middle),
+          farthest_(std::max(kFarthest, space.wayAtTool(kFarthest))),
+          most_speed_(space.wayAtTool(kMostSpeed)),
+          dt_(dt) {}
 
     // Takes a tick's sample, a pose; the tick before was `periods` ago. False: it is refused.
     bool take(const Pose& X_VT_sample, int periods) noexcept {
@@ -65,15 +68,16 @@ class HandPlace {
 
   private:
     bool isWithinReach(const Pose& X_VT) const noexcept {
-        if (!((X_VT.position - middle_).norm() < kFarthest * std::max(1.0, scale_))) return false;
+        if (!((X_VT.position - middle_).norm() < farthest_)) return false;
         if (!has_pose_) return true;
         const double way = (X_VT.position - X_VT_.position).norm();
         const double turn = logRotation(X_VT.rotation * X_VT_.rotation.conjugate()).norm();
-        return way <= kMostSpeed * scale_ * unheard_for_ && turn <= kMostSpin * unheard_for_;
+        return way <= most_speed_ * unheard_for_ && turn <= kMostSpin * unheard_for_;
     }
 
     Eigen::Vector3d middle_;
-    double scale_, dt_;
+    double farthest_, most_speed_;  // m and m/s, of the tool
+    double dt_;
     Pose X_VT_;               // the last one believed
     double unheard_for_ = 0;  // s since then
     double refused_for_ = 0;  // s since the tick before the first that was refused; 0: the last was believed

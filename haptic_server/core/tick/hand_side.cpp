@@ -22,13 +22,13 @@ double torqueOf(const DeviceCapabilities& device) noexcept {
 }
 
 // It is as stiff as the quicker of the two laws.
-HandSpring springOf(const HandSide& side, double workspace_scale) noexcept {
+HandSpring springOf(const HandSide& side, const HandSpace& space) noexcept {
     const EnergyCouplingConfig& gradient = side.gradient;
     return {.stiffness = std::max(side.thesis.translation_stiffness,
                                   gradient.translation_stiffness * (1 + gradient.relaxing_share)),
             .rotation_stiffness =
-                std::max(side.thesis.rotation_stiffness / 2, gradient.rotation_stiffness) / workspace_scale,
-            .lever = gradient.p_TG.norm() / workspace_scale};
+                space.torqueAtHand(std::max(side.thesis.rotation_stiffness / 2, gradient.rotation_stiffness)),
+            .lever = space.wayAtHand(gradient.p_TG.norm())};
 }
 
 void limitStiffness(HandSide& side, double most) noexcept {
@@ -46,53 +46,55 @@ void limitRotationStiffness(HandSide& side, double most) noexcept {
     stiffness = most;
 }
 
-void fitForce(HandSide& side, const DeviceCapabilities& device, double workspace_scale) noexcept {
+void fitForce(HandSide& side, const DeviceCapabilities& device, const HandSpace& space) noexcept {
     side.limits.max_force = std::min(side.limits.max_force, forceOf(device));
     if (side.limits.max_force == 0) return;
     side.most_pull = side.limits.max_force;
     if (device.max_stiffness > 0)
-        limitStiffness(side, std::max(device.max_stiffness, kLeastStiffness) / workspace_scale);
+        limitStiffness(side, space.forcePerWayAtTool(std::max(device.max_stiffness, kLeastStiffness)));
 }
 
-void fitTorque(HandSide& side, const DeviceCapabilities& device, double workspace_scale) noexcept {
+void fitTorque(HandSide& side, const DeviceCapabilities& device, const HandSpace& space) noexcept {
     side.limits.max_torque = std::min(side.limits.max_torque, torqueOf(device));
     if (side.limits.max_torque == 0) return;
     if (device.max_rotation_stiffness > 0)
         limitRotationStiffness(
-            side, std::max(device.max_rotation_stiffness, kLeastRotationStiffness) * workspace_scale);
+            side, space.torqueAtTool(std::max(device.max_rotation_stiffness, kLeastRotationStiffness)));
     side.gradient.saturation_torque =
-        std::min(side.gradient.saturation_torque, side.limits.max_torque * workspace_scale);
+        std::min(side.gradient.saturation_torque, space.torqueAtTool(side.limits.max_torque));
 }
 
 }  // namespace
 
-void HandSide::setGradient(const EnergyCouplingConfig& coupling, double workspace_scale) noexcept {
+void HandSide::setGradient(const EnergyCouplingConfig& coupling, const HandSpace& space) noexcept {
     gradient = coupling;
-    spring = springOf(*this, workspace_scale);
+    spring = springOf(*this, space);
 }
 
-void scaleWorkspace(TickConfig& config, double scale) noexcept {
-    config.workspace_scale = scale;
-    config.coupling.translation_stiffness /= scale;
-    config.coupling.rotation_stiffness *= scale;
+void setHandSpace(TickConfig& config, const HandSpace& space) noexcept {
+    config.hand_space = space;
+    const auto bring = [&space](double& push, double& turn) {
+        push = space.forcePerWayAtTool(push);
+        turn = space.torqueAtTool(turn);
+    };
+    bring(config.coupling.translation_stiffness, config.coupling.rotation_stiffness);
     EnergyCouplingConfig& gradient = config.gradient.coupling;
-    gradient.translation_stiffness /= scale;
-    gradient.rotation_stiffness *= scale;
-    gradient.saturation_torque *= scale;
+    bring(gradient.translation_stiffness, gradient.rotation_stiffness);
+    gradient.saturation_torque = space.torqueAtTool(gradient.saturation_torque);
 }
 
 HandSide handSideOf(const TickConfig& config) noexcept {
     HandSide side{
         .limits = config.hand, .spring = {}, .thesis = config.coupling, .gradient = config.gradient.coupling};
-    side.spring = springOf(side, config.workspace_scale);
+    side.spring = springOf(side, config.hand_space);
     return side;
 }
 
 HandSide handSideOf(const TickConfig& config, const DeviceCapabilities& device) noexcept {
     HandSide side = handSideOf(config);
-    fitForce(side, device, config.workspace_scale);
-    fitTorque(side, device, config.workspace_scale);
-    side.spring = springOf(side, config.workspace_scale);
+    fitForce(side, device, config.hand_space);
+    fitTorque(side, device, config.hand_space);
+    side.spring = springOf(side, config.hand_space);
     return side;
 }
 

@@ -2,11 +2,8 @@
 // what it feels, and the couplings of both laws, which no device is to be held more stiffly by than it can
 // bear.
 //
-// Couplings and poses are the tool's, limits and the spring's wrench the hand's. The tool moves
-// workspace_scale times as far as the handle and turns with it. Seen from the hand the tool's world is
-// smaller by that factor: the force is the same, the torque is divided by it, and so is the power, in
-// translation and rotation alike. Were the torque not divided, a closed path of the hand could gain energy.
-// It is RT-safe and pure.
+// Couplings and poses are the tool's, limits and the spring's wrench the hand's
+// (common/geometry/hand_space.h). It is RT-safe and pure.
 #pragma once
 
 #include <limits>
@@ -16,9 +13,8 @@
 
 namespace bonemill {
 
-// Turns couplings as the hand is to feel them into those at the tool: where it goes `scale` times as far, a
-// spring of the same force is softer, and one of `scale` times the torque stiffer.
-void scaleWorkspace(TickConfig& config, double scale) noexcept;
+// The couplings of `config` are as the hand is to feel them, and become those at the tool.
+void setHandSpace(TickConfig& config, const HandSpace& space) noexcept;
 
 struct HandSide {
     HandLimitsConfig limits;
@@ -28,7 +24,7 @@ struct HandSide {
     double most_pull = std::numeric_limits<double>::infinity();  // N: of the gradient law's coupling
 
     // The hand's spring follows.
-    void setGradient(const EnergyCouplingConfig& coupling, double workspace_scale) noexcept;
+    void setGradient(const EnergyCouplingConfig& coupling, const HandSpace& space) noexcept;
 };
 
 // Before a device has said what it can do, everything is as the scene says.

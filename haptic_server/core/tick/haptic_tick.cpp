@@ -44,28 +44,26 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
       tools_(choices.tools),
       accuracy_(choices.accuracy),
       tool_(tools_.chosen()),
-      thesis_(config.contact, config.coupling, worldOf(bone_), tools_[tool_], config.dt),
-      gradient_(config.gradient, worldOf(bone_), tools_[tool_], config.dt),
-      compared_({config.contact, config.coupling, config.gradient.coupling}, worldOf(bone_), tools_.all(),
-                tools_[tool_], config.dt),
-      model_(&gradient_),
+      models_(config.laws, {config.contact, config.coupling, config.gradient, worldOf(bone_), tools_.all(),
+                            tools_[tool_], config.dt}),
+      model_(&models_.of(accuracy_.chosen().law)),
       affordable_(config.dt),
       sample_cap_(config.dt),
       effects_(makeEffects(config.effects, bone_,
                            {config.dt, tools_.largestBurrRadius(), tools_.largestBurrReach(),
-                            gradient_.mostCandidates(), config.most_milled_cells,
+                            models_.mostCandidates(), config.most_milled_cells,
                             config.gradient.max_speed * config.dt}),
-               gradient_.mostCandidates(), config.gradient.contact.stiffness_per_area),
+               models_.mostCandidates(), config.gradient.contact.stiffness_per_area),
       hand_limits_(config.hand, handSideOf(config).spring, config.dt),
       hand_coupling_(config_),
       X_WV_(bone_.volume.geometry().X_WV),
       X_VW_(X_WV_.inverse()),
-      place_(middleOf(bone_.volume), config.workspace_scale, config.dt) {
-    BONEMILL_ASSERT(config.dt > 0 && config.workspace_scale > 0 && config.most_milled_cells > 0);
+      place_(middleOf(bone_.volume), config.hand_space, config.dt) {
+    BONEMILL_ASSERT(config.dt > 0 && config.most_milled_cells > 0);
     const AccuracySettings& settings = accuracy_.chosen();
     bone_.shell.prepare(bone_.volume, bone_.lattice, levelOf(bone_.shell, settings),
                         int(bone_.lattice.leafCount()));
-    gradient_.setEffects(effects_.weights(), effects_.energy());
+    models_.forEach([&](SpoModel& model) { model.setEffects(effects_.weights(), effects_.energy()); });
     takeUp(settings);
 }
 
@@ -81,16 +79,15 @@ void HapticTick::chooseSettings(const SpoStep& step, uint32_t& faults) noexcept 
         shell.prepare(bone_.volume, bone_.lattice, levelOf(shell, chosen), kLeavesPreparedPerTick);
     if (!is_complete) faults |= kFaultShellOverflow;
     if (!is_ready) return;
-    hand_limits_.beginSuddenChange();
+    noteSuddenChange(SuddenChange::kSettings);
     takeUp(chosen);
 }
 
 void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
     settings_ = settings;
     bone_.shell.follow(levelOf(bone_.shell, settings));
-    SpoModel* model = modelOf(settings.law);
+    SpoModel* model = &models_.of(settings.law);
     model->setAccuracy(settings);
-    has_changed_suddenly_ = true;
     if (model != model_) {
         model->restart();
         effects_.restart(Restart::kOtherLaw);
@@ -98,31 +95,31 @@ void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
     model_ = model;
 }
 
-SpoModel* HapticTick::modelOf(ContactLaw law) noexcept {
-    if (law == ContactLaw::kThesis2012) return &thesis_;
-    if (SpoModel* compared = compared_.of(law)) return compared;
-    return &gradient_;
+// The force comes at a limited rate, and the account of energy begins anew. Two changes leave the account as
+// it is. The pedal softens the contact by what a tick cuts: µJ, of a tank of 1 mJ, which is not to be filled
+// by playing the pedal. While a tool grows no account is kept anyway.
+void HapticTick::noteSuddenChange(SuddenChange why) noexcept {
+    hand_limits_.beginSuddenChange();
+    if (why != SuddenChange::kPedal && why != SuddenChange::kToolGrows) has_changed_suddenly_ = true;
 }
 
 void HapticTick::adaptTo(const DeviceCapabilities& device) noexcept {
     hand_coupling_.adaptTo(device);
-    estimate_ =
-        HandEstimate(device.handle, hand_coupling_.side().spring, config_.workspace_scale, config_.dt);
-    thesis_.setCoupling(hand_coupling_.side().thesis);
+    estimate_ = HandEstimate(device.handle, hand_coupling_.side().spring, config_.hand_space, config_.dt);
     useCoupling();
 }
 
 void HapticTick::useCoupling() noexcept {
     const HandSide& side = hand_coupling_.side();
-    gradient_.setCoupling(side.gradient, side.most_pull);
-    compared_.setCoupling(side.gradient, side.most_pull);
+    const SpoCoupling coupling{side.thesis, side.gradient, side.most_pull};
+    models_.forEach([&](SpoModel& model) { model.setCoupling(coupling); });
     hand_limits_.setDevice(side.limits, side.spring);
 }
 
 // The account begins anew whenever something else than hand and tool changes what is stored.
 void HapticTick::keepAccount(const SpoStep& step, const DeviceInput& input) noexcept {
     const bool is_felt = !place_.isLost() && !input.is_stale && input.device.isEngaged();
-    const bool says_something = is_felt && model_ == &gradient_ && !gradient_.isToolGrowing() &&
+    const bool says_something = is_felt && model_->traits().has_energy && !step.is_tool_growing &&
                                 !std::exchange(has_changed_suddenly_, false);
     if (says_something ? hand_coupling_.takeAccount(X_VT_device_, step) : hand_coupling_.passOver())
         useCoupling();
@@ -145,17 +142,14 @@ void HapticTick::chooseTool() noexcept {
     const size_t chosen = decisions_.tool;
     if (chosen == tool_) return;
     tool_ = chosen;
-    thesis_.setTool(tools_[tool_]);
-    gradient_.setTool(tools_[tool_]);
-    compared_.setTool(tools_[tool_]);
+    models_.forEach([&](SpoModel& model) { model.setTool(tools_[tool_]); });
     effects_.restart(Restart::kOtherTool);
-    has_changed_suddenly_ = true;
-    hand_limits_.beginSuddenChange();
+    noteSuddenChange(SuddenChange::kTool);
 }
 
-bool HapticTick::tick(TickIo& io) noexcept {
+const TickRecord* HapticTick::tick(TickIo& io) noexcept {
     DeviceInput input;
-    if (!io.read(input)) return false;
+    if (!io.read(input)) return nullptr;
     const RtScope scope;
     uint32_t faults = input.faults | (input.is_stale ? kFaultStaleDevice : kFaultNone);
     decide(input);
@@ -172,7 +166,7 @@ bool HapticTick::tick(TickIo& io) noexcept {
     keepWaiting(step);
     const EffectRecord& effects = effects_.finish();
     chooseSettings(step, faults);
-    TickRecord record = makeRecord(input, step);
+    TickRecord& record = record_ = makeRecord(input, step);
     record.removed_voxels = milled.removed_voxels;
     record.added_voxels = milled.added_voxels;
     record.removed = milled.removed_voxels * bone_.volume.voxelVolume();
@@ -188,9 +182,8 @@ bool HapticTick::tick(TickIo& io) noexcept {
     record.faults = faults;
     record.input = recordedInput(input, decisions_);
     latched_faults_ |= faults;
-    io.push(record);
     ++tick_;
-    return true;
+    return &record;
 }
 
 // The clock decides that; a replay has it from then.
@@ -200,7 +193,8 @@ void HapticTick::capSamples(const DeviceInput& input, double load, const SpoStep
         decisions_.most_samples = sample_cap_.most() < UINT32_MAX ? uint32_t(sample_cap_.most()) : 0;
     }
     if (decisions_.most_samples == std::exchange(most_samples_, decisions_.most_samples)) return;
-    gradient_.setAffordableSamples(most_samples_ == 0 ? SIZE_MAX : size_t(most_samples_));
+    const size_t most = most_samples_ == 0 ? SIZE_MAX : size_t(most_samples_);
+    models_.forEach([&](SpoModel& model) { model.setAffordableSamples(most); });
 }
 
 void HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept {
@@ -217,8 +211,7 @@ void HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept
     } else if (is_placed) {
         placeTool();
     } else if (place_.hasJumped()) {
-        hand_limits_.beginSuddenChange();
-        has_changed_suddenly_ = true;
+        noteSuddenChange(SuddenChange::kHandJumps);
     }
 }
 
@@ -232,12 +225,11 @@ void HapticTick::placeTool() noexcept {
     const Eigen::Vector3d step = radius * (X_VT.rotation * Eigen::Vector3d::UnitY());
     int steps = 0;
     for (; steps < kMostSteps && isInBone(X_VT, radius); ++steps) X_VT.position += step;
-    hand_limits_.beginSuddenChange();
-    has_changed_suddenly_ = true;
+    noteSuddenChange(SuddenChange::kHandJumps);
     if (steps == kMostSteps) return;  // it comes as it can
     X_VT_ = X_VT;
     model_->restart();
-    gradient_.expectOtherBone();
+    models_.forEach([](SpoModel& model) { model.expectOtherBone(); });
     effects_.restart(Restart::kOtherLaw);
 }
 
@@ -270,8 +262,9 @@ bool HapticTick::believe(const DeviceInput& input) noexcept {
     const bool is_believed = input.is_repeated ? place_.repeat(input.periods)  //
                                                : place_.take(X_VT_reading, input.periods);
     if (!is_believed) return false;
-    X_VT_device_ =
-        model_ == &gradient_ ? estimate_.take(X_VT_reading, hand_coupling_.standsAlone()) : X_VT_reading;
+    X_VT_device_ = model_->traits().wants_estimate
+                       ? estimate_.take(X_VT_reading, hand_coupling_.standsAlone())
+                       : X_VT_reading;
     return true;
 }
 
@@ -288,12 +281,13 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     start.is_pedal_down = start.may_mill && remove && !add;
     start.is_add_wanted = start.may_mill && add && !remove;
     if (start.is_pedal_down != was_pedal_down_ || start.is_add_wanted != was_add_wanted_)
-        hand_limits_.beginSuddenChange();
+        noteSuddenChange(SuddenChange::kPedal);
     was_pedal_down_ = start.is_pedal_down, was_add_wanted_ = start.is_add_wanted;
     start.tool = &tools_[tool_];
-    start.shape = model_ == &thesis_ ? MillingShape::kVoxelCentres : MillingShape::kSubVoxel;
+    start.shape =
+        model_->traits().mills_voxel_centres ? MillingShape::kVoxelCentres : MillingShape::kSubVoxel;
     start.X_VT_start = X_VT_;
-    compared_.setCutting(start.is_pedal_down);
+    model_->setCutting(start.is_pedal_down);
     effects_.begin(start);
 }
 
@@ -305,10 +299,10 @@ SpoStep HapticTick::moveAndFeel(const DeviceInput& input, uint32_t& faults) noex
     if (step.has_stalled) faults |= kFaultStalled;
     if (step.has_fewer_samples) faults |= kFaultFewerSamples;
     if (step.has_contact_overflow) faults |= kFaultContactOverflow;
-    if (model_ == &gradient_ && gradient_.isToolGrowing()) hand_limits_.beginSuddenChange();
+    if (step.is_tool_growing) noteSuddenChange(SuddenChange::kToolGrows);
     keepAccount(step, input);
     effects_.addToHand(step.wrench_hand_V);
-    step.wrench_hand_V.torque /= config_.workspace_scale;  // hand_side.h
+    step.wrench_hand_V.torque = config_.hand_space.torqueAtHand(step.wrench_hand_V.torque);
     const bool is_felt = step.is_solved && !place_.isLost();
     step.wrench_hand_V = hand_limits_.limit(
         {step.wrench_hand_V, is_felt, X_VT_device_, input.stale_factor, place_.hasJumped()});
@@ -326,10 +320,9 @@ MillingResult HapticTick::mill(uint32_t& faults) noexcept {
     bool shell_is_complete = true;
     if (history_->restoreSome(bone_, shell_is_complete)) {
         waits_for_release_ = true;
-        hand_limits_.beginSuddenChange();
-        gradient_.expectOtherBone();
+        noteSuddenChange(SuddenChange::kBone);
+        models_.forEach([](SpoModel& model) { model.expectOtherBone(); });
         effects_.restart(history_->isTargetScanned() ? Restart::kScanPutBack : Restart::kBonePutBack);
-        has_changed_suddenly_ = true;
     } else {
         milled = millWithEffects(faults);
     }

@@ -1,5 +1,5 @@
 // A tick is one cycle of the haptic loop: read → pose → contact → solve → limit → write → mill → refresh
-// shell → push telemetry. The effects of the scene act in between (effects/haptic_effect.h). The same tick
+// shell → record. The effects of the scene act in between (effects/haptic_effect.h). The same tick
 // runs behind the device link in real time, and in `simulate` without it.
 //
 // Inside there is one frame, V. What comes in is converted in acceptPose(), what goes out in write and
@@ -10,8 +10,7 @@
 #include "haptic_server/core/bone/bone_model.h"
 #include "haptic_server/core/effects/effect_host.h"
 #include "haptic_server/core/milling/milling_result.h"
-#include "haptic_server/core/spo/gradient_model.h"
-#include "haptic_server/core/spo/thesis_2012_model.h"
+#include "haptic_server/core/spo/spo_models.h"
 #include "haptic_server/core/telemetry/tick_record.h"
 #include "haptic_server/core/tick/accuracy_switch.h"
 #include "haptic_server/core/tick/affordable_shell.h"
@@ -22,7 +21,6 @@
 #include "haptic_server/core/tick/tick_config.h"
 #include "haptic_server/core/tick/tick_io.h"
 #include "haptic_server/core/tick/tool_switch.h"
-#include "haptic_server/laws/compared_laws.h"
 
 namespace bonemill {
 
@@ -46,8 +44,9 @@ class HapticTick {
     // shell follows the level of the settings in force.
     HapticTick(const TickConfig& config, const TickBone& bone, const TickChoices& choices);
 
-    // Does one tick; false when io.read() said stop. RT-safe; sets the RtScope guard around its work.
-    bool tick(TickIo& io) noexcept;
+    // Does one tick and returns what it did, good until the next one; null when io.read() said stop. RT-safe;
+    // sets the RtScope guard around its work.
+    const TickRecord* tick(TickIo& io) noexcept;
 
     // Returns the faults of all ticks so far (bits of TickFault). It is for the tick thread only.
     uint32_t latchedFaults() const noexcept { return latched_faults_; }
@@ -55,6 +54,9 @@ class HapticTick {
     Pose X_WT() const noexcept { return X_WV_ * X_VT_; }
 
   private:
+    // This changes at one stroke what the hand feels.
+    enum class SuddenChange : uint8_t { kHandJumps, kSettings, kTool, kBone, kPedal, kToolGrows };
+    void noteSuddenChange(SuddenChange why) noexcept;
     void adaptTo(const DeviceCapabilities& device) noexcept;
     void keepAccount(const SpoStep& step, const DeviceInput& input) noexcept;
     void useCoupling() noexcept;
@@ -65,7 +67,6 @@ class HapticTick {
     void decide(const DeviceInput& input) noexcept;
     void chooseSettings(const SpoStep& step, uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;
-    SpoModel* modelOf(ContactLaw law) noexcept;
     void chooseTool() noexcept;
     void beginEffects(const DeviceInput& input) noexcept;
     SpoStep moveAndFeel(const DeviceInput& input, uint32_t& faults) noexcept;
@@ -84,10 +85,8 @@ class HapticTick {
     size_t tool_;                // of tools_
     TickDecisions decisions_;    // for the tick under way
     uint32_t most_samples_ = 0;  // in force; 0: no cap
-    Thesis2012Model thesis_;
-    GradientModel gradient_;
-    ComparedLaws compared_;
-    SpoModel* model_;  // thesis_, gradient_ or one of compared_
+    SpoModels models_;
+    SpoModel* model_;  // of models_, in force
     AccuracySettings settings_;
     AffordableShell affordable_;
     SampleCap sample_cap_;
@@ -101,8 +100,9 @@ class HapticTick {
     HandPlace place_;
     uint32_t placements_ = 0;                               // of the hand, that were followed
     bool was_pedal_down_ = false, was_add_wanted_ = false;  // in the last tick
-    bool waits_for_release_ = false;     // the bone was put back: it is not milled by a pedal that was down
-    bool has_changed_suddenly_ = false;  // what the simulated side stores, by no one's work
+    bool waits_for_release_ = false;    // the bone was put back: it is not milled by a pedal that was down
+    bool has_changed_suddenly_ = true;  // what the simulated side stores, by no work, since the last account
+    TickRecord record_{};               // of the last tick
     uint64_t tick_ = 0;
     uint32_t latched_faults_ = 0;
 };

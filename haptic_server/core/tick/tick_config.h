@@ -1,26 +1,26 @@
 // A tick is told this at the start.
 #pragma once
 
+#include "common/geometry/hand_space.h"
 #include "haptic_server/core/accuracy/accuracy_settings.h"
 #include "haptic_server/core/contact/contact_configs.h"
 #include "haptic_server/core/coupling/virtual_coupling.h"
 #include "haptic_server/core/effects/effect_configs.h"
 #include "haptic_server/core/milling/timed_milling.h"
-#include "haptic_server/core/spo/gradient_config.h"
-#include "haptic_server/core/spo/spo_tool.h"
+#include "haptic_server/core/spo/spo_models.h"
 #include "haptic_server/core/tick/hand_limits.h"
 
 namespace bonemill {
 
 struct TickConfig {
-    double dt = 1e-3;              // s
-    PenaltyContactConfig contact;  // thesis_2012
-    CouplingConfig coupling;       // thesis_2012
+    double dt = 1e-3;                          // s
+    std::span<const SpoLaw> laws = ownLaws();  // that may be chosen; it outlives the making of the tick
+    PenaltyContactConfig contact;              // thesis_2012
+    CouplingConfig coupling;                   // thesis_2012
     HandLimitsConfig hand;
     GradientConfig gradient;
     EffectConfigs effects;
-    // The tool moves so many times as far as the handle, and turns with it. Couplings are those of the tool.
-    double workspace_scale = 1;
+    HandSpace hand_space;                                   // `hand` is at the hand, all else at the tool
     size_t most_milled_cells = MillingConfig{}.most_cells;  // in a tick
 };
 

@@ -1,11 +1,13 @@
-// Says where a tick's input comes from and where its output goes: all that who drives a tick must know of it.
+// The device as a tick sees it: its input comes from there, its wrench goes there, and it has the clock. All
+// else that a tick has to tell is the record that HapticTick::tick() returns.
 #pragma once
 
 #include <cstdint>
 
 #include "common/device_messages/device_messages.h"
 #include "common/geometry/pose.h"
-#include "haptic_server/core/telemetry/tick_record.h"
+#include "haptic_server/core/telemetry/device_report.h"
+#include "haptic_server/core/telemetry/tick_input.h"
 
 namespace bonemill {
 
@@ -43,8 +45,6 @@ class TickIo {
     virtual int64_t write(const Wrench& wrench_hand_W) noexcept = 0;
     // Is called at the end of the tick's work, and returns the time (ns).
     virtual int64_t now() noexcept = 0;
-    // It never blocks; what finds no room is dropped and counted.
-    virtual void push(const TickRecord& record) noexcept = 0;
 };
 
 }  // namespace bonemill

@@ -89,8 +89,8 @@ ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::os
     FixedTickConfig tick = simulation.fixedTick();
     tick.tool.model = &tool.model;
     // The truth is the wrench at the tool, whatever the hand gets of its torque.
-    tick.hand.max_torque *= tick.workspace_scale;
-    tick.workspace_scale = 1;
+    tick.hand.max_torque = tick.hand_space.torqueAtTool(tick.hand.max_torque);
+    tick.hand_space = {};
 
     BoneModel bone = layoutBone(simulation);
     TouchProbe probe(bone, tool.model);

@@ -6,8 +6,7 @@
 namespace bonemill {
 namespace {
 
-// Inputs go in and the newest record comes out. Time comes from the path; the clock only tells how long
-// a tick took.
+// Time comes from the path; the clock only tells how long a tick took.
 class PathIo final : public TickIo {
   public:
     explicit PathIo(std::span<const DeviceInput> path) : path_(path) {}
@@ -20,13 +19,10 @@ class PathIo final : public TickIo {
     }
     int64_t write(const Wrench&) noexcept override { return monotonicNowNs(); }
     int64_t now() noexcept override { return monotonicNowNs(); }
-    void push(const TickRecord& record) noexcept override { newest_ = record; }
-    const TickRecord& newest() const noexcept { return newest_; }
 
   private:
     std::span<const DeviceInput> path_;
     size_t next_ = 0;
-    TickRecord newest_{};
 };
 
 }  // namespace
@@ -44,7 +40,7 @@ std::vector<DeviceInput> inputsOf(std::span<const Pose> path_WT, double dt, uint
 void runPath(HapticTick& tick, std::span<const DeviceInput> path,
              const std::function<void(const TickRecord&)>& see) {
     PathIo io(path);
-    while (tick.tick(io)) see(io.newest());
+    while (const TickRecord* record = tick.tick(io)) see(*record);
 }
 
 std::vector<TickRecord> runPath(const FixedTickConfig& config, BoneModel& bone,

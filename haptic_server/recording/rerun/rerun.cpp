@@ -7,11 +7,10 @@
 
 namespace bonemill {
 
-// Hands one recorded tick in, and its record out.
+// Hands one recorded tick in.
 class Rerun::Io final : public TickIo {
   public:
-    Io(const JournalTick& tick, const DeviceCapabilities* device, TickRecord& record)
-        : tick_(tick), device_(device), record_(record) {}
+    Io(const JournalTick& tick, const DeviceCapabilities* device) : tick_(tick), device_(device) {}
 
     bool read(DeviceInput& input) noexcept override {
         const TickInput& in = tick_.input;
@@ -33,12 +32,10 @@ class Rerun::Io final : public TickIo {
     }
     int64_t write(const Wrench&) noexcept override { return monotonicNowNs(); }
     int64_t now() noexcept override { return monotonicNowNs(); }
-    void push(const TickRecord& record) noexcept override { record_ = record; }
 
   private:
     const JournalTick& tick_;
     const DeviceCapabilities* device_;
-    TickRecord& record_;
 };
 
 Rerun::Rerun(const Recording& recording, const Simulation& simulation, const RecordedCheckpoints& checkpoints,
@@ -104,8 +101,8 @@ const TickRecord& Rerun::step() {
     if (!is_device_told_ && !device) device = recording_.deviceBefore(next_);
     is_device_told_ = true;
     const bool was_restoring = history_.isRestoring();
-    Io io(tick, device, record_);
-    tick_->tick(io);
+    Io io(tick, device);
+    record_ = *tick_->tick(io);
     if (!history_.isRestoring()) done_order_ = bone_order_;
     record_.bone_order = done_order_;
     is_put_back_ = was_restoring;

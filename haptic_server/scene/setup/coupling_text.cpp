@@ -26,12 +26,11 @@ std::string because(const HandleDynamics& handle) {
 std::string couplingText(const TickConfig& config, const DeviceCapabilities& device) {
     const HandSide wished = handSideOf(config), said = handSideOf(config, device),
                    fitted = fittedHandSide(config, device);
-    const double scale = config.workspace_scale;
     const auto push = [&](const HandSide& side) {
-        return side.gradient.translation_stiffness * scale / kPerMillimetre;
+        return config.hand_space.forcePerWayAtHand(side.gradient.translation_stiffness) / kPerMillimetre;
     };
     const auto turn = [&](const HandSide& side) {
-        return side.gradient.rotation_stiffness / scale * kPerMillimetre;
+        return config.hand_space.torqueAtHand(side.gradient.rotation_stiffness) * kPerMillimetre;
     };
     char text[200];
     std::snprintf(text, sizeof text, "coupling %.3g of %.3g N/mm and %.3g of %.3g N·mm/rad", push(said),

@@ -8,6 +8,7 @@
 #include "common/config/scene_tools.h"
 #include "haptic_server/core/tick/hand_side.h"
 #include "haptic_server/core/tick/tick_budget.h"
+#include "haptic_server/laws/all_laws.h"
 #include "haptic_server/scene/setup/scanned_bone.h"
 #include "haptic_server/scene/setup/scene_effects.h"
 #include "haptic_server/scene/setup/scene_materials.h"
@@ -222,6 +223,7 @@ scene::Tool::Handpiece handpieceOf(const scene::Tool& tool, const TriangleSurfac
 
 TickConfig tickConfigOf(const scene::Scene& scene) {
     TickConfig config;
+    config.laws = allLaws();
     config.gradient = gradientConfigOf(scene);
     config.dt = 1 / scene.loop().rate_hz();
     config.contact = {.point_stiffness = scene.contact().point_stiffness_n_per_mm() / kMillimetre,
@@ -234,7 +236,7 @@ TickConfig tickConfigOf(const scene::Scene& scene) {
                        .static_damping = coupling.static_damping()};
     config.hand = {.max_force = coupling.max_force_n(),
                    .max_torque = coupling.max_torque_nmm() * kMillimetre};
-    scaleWorkspace(config, scene.device().workspace_scale());
+    setHandSpace(config, HandSpace(scene.device().workspace_scale()));
     config.effects = effectConfigsOf(scene);
     TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
     return config;

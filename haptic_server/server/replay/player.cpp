@@ -122,7 +122,7 @@ void Player::show(TickRecord record, bool is_new_cut) {
     record.start_ns = first_ns_ + int64_t(records_) * kRecordPeriodNs;
     ++records_;
     telemetry_.tryPush(record);
-    if (is_new_cut && !record.cut.isEmpty()) cuts_.tryPush(record.cut);
+    if (is_new_cut) tellMesher(cuts_, record.cut);
 }
 
 uint64_t Player::shown() const {

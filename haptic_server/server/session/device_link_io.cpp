@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/rt/clock.h"
+#include "haptic_server/core/telemetry/tick_record.h"
 
 namespace bonemill {
 namespace {
@@ -21,12 +22,9 @@ void sleepUntil(int64_t instant_ns) noexcept {
 
 }  // namespace
 
-DeviceLinkIo::DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link,
-                           SpscRing<TickRecord>& telemetry, SpscRing<Cut>& cuts)
+DeviceLinkIo::DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link)
     : config_(config),
       link_(link),
-      telemetry_(telemetry),
-      cuts_(cuts),
       ramp_(config.ramp),
       R_DW_(config.X_WD.rotation.conjugate()),
       pace_(config.period_ns),
@@ -117,7 +115,7 @@ bool DeviceLinkIo::takeSample() noexcept {
     }
     const Eigen::Map<const Eigen::Vector3d> p_DT(sample.p_DT);
     const Eigen::Quaterniond q_DT(sample.q_DT[0], sample.q_DT[1], sample.q_DT[2], sample.q_DT[3]);
-    X_WT_device_ = config_.X_WD * Pose{config_.workspace_scale * p_DT, q_DT.normalized()};
+    X_WT_device_ = config_.X_WD * config_.hand_space.poseAtTool({p_DT, q_DT.normalized()});
     buttons_ = sample.buttons;
     placements_ = sample.placements;
     device_ = {sample.state, sample.stop_cause, sample.fault_code, sample.flags};
@@ -168,11 +166,6 @@ int64_t DeviceLinkIo::now() noexcept {
     const int64_t now = monotonicNowNs();
     pace_.end(now);
     return now;
-}
-
-void DeviceLinkIo::push(const TickRecord& record) noexcept {
-    telemetry_.tryPush(record);
-    if (!record.cut.isEmpty()) cuts_.tryPush(record.cut);
 }
 
 }  // namespace bonemill

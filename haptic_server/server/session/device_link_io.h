@@ -1,13 +1,13 @@
 // The tick sees the device of a live session through this: samples come from shared memory and wrenches go
-// there, telemetry and cuts go into rings.
+// there.
 #pragma once
 
 #include <atomic>
 
+#include "common/geometry/hand_space.h"
 #include "common/ipc/device_link.h"
 #include "common/ipc/stale_ramp.h"
 #include "common/rt/seqlock.h"
-#include "common/rt/spsc_ring.h"
 #include "haptic_server/core/tick/tick_io.h"
 #include "haptic_server/server/session/lived_periods.h"
 #include "haptic_server/server/session/tick_pace.h"
@@ -18,7 +18,7 @@ struct DeviceLinkIoConfig {
     int64_t period_ns = 1'000'000;
     StaleRampConfig ramp;
     Pose X_WD;
-    double workspace_scale = 1;     // the tool moves so many times as far as the handle
+    HandSpace hand_space;
     bool ends_with_device = false;  // end the session when the device leaves in order
     uint32_t scene_revision =
         0;  // DeviceLink::announceScene(): samples of another scene's device do not count
@@ -27,8 +27,7 @@ struct DeviceLinkIoConfig {
 // All members but the constructor and stop() belong to the tick thread and are RT-safe; read() waits.
 class DeviceLinkIo final : public TickIo {
   public:
-    DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link, SpscRing<TickRecord>& telemetry,
-                 SpscRing<Cut>& cuts);
+    DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link);
 
     // Before the first read(): DeviceLink::announceScene() has given the scene this number.
     void beginScene(uint32_t revision) noexcept { config_.scene_revision = revision; }
@@ -40,7 +39,6 @@ class DeviceLinkIo final : public TickIo {
     bool read(DeviceInput& input) noexcept override;
     int64_t write(const Wrench& wrench_hand_W) noexcept override;
     int64_t now() noexcept override;
-    void push(const TickRecord& record) noexcept override;
 
     // Any thread may order the force to fade, as before another scene; it does not come back.
     void fadeOut() noexcept { is_fading_.store(true, std::memory_order_relaxed); }
@@ -84,8 +82,6 @@ class DeviceLinkIo final : public TickIo {
 
     DeviceLinkIoConfig config_;
     DeviceLink& link_;
-    SpscRing<TickRecord>& telemetry_;
-    SpscRing<Cut>& cuts_;
     StaleRamp ramp_;
     Eigen::Quaterniond R_DW_;
     TickPace pace_;

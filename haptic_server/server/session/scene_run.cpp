@@ -10,6 +10,7 @@
 #include "common/base/user_error.h"
 #include "common/log/log.h"
 #include "common/rt/clock.h"
+#include "common/rt/rt_guard.h"
 #include "haptic_server/recording/statistics/fault_names.h"
 #include "haptic_server/recording/statistics/final_files.h"
 #include "haptic_server/scans/nrrd/nrrd_writer.h"
@@ -46,7 +47,7 @@ DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& l
     config.ramp.stale_after_ns = nsOfMilliseconds(loop.stale_after_ms());
     config.ramp.ramp_down_ns = nsOfMilliseconds(loop.ramp_ms());
     config.X_WD = simulation.X_WD;
-    config.workspace_scale = simulation.tick.workspace_scale;
+    config.hand_space = simulation.tick.hand_space;
     return config;
 }
 
@@ -92,7 +93,7 @@ SceneRun::SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation 
       tools_(simulation_.spoTools()),
       ring_(kRingRecords),
       cuts_(kRingCuts),
-      io_(ioConfigOf(options, loaded_.scene.loop(), simulation_), parts.link, ring_, cuts_),
+      io_(ioConfigOf(options, loaded_.scene.loop(), simulation_), parts.link),
       tick_(simulation_.tick, {*simulation_.bone, &history_}, {tools_, accuracy_}),
       resumed_(std::move(resumed)),
       journal_keeper_(history_, *simulation_.bone),
@@ -197,11 +198,16 @@ void SceneRun::startTick() {
         {.request = {kTickPriority, options_.rt_core},
          .is_strict = options_.is_strict_realtime,
          .what = "the haptic loop"},
-        [this] {
-            while (tick_.tick(io_)) {
-            }
-        },
-        logRealtime);
+        [this] { runTicks(); }, logRealtime);
+}
+
+// The tick thread. A ring never blocks it: what finds no room is dropped and counted.
+void SceneRun::runTicks() noexcept {
+    while (const TickRecord* record = tick_.tick(io_)) {
+        const RtScope scope;
+        ring_.tryPush(*record);
+        tellMesher(cuts_, record->cut);
+    }
 }
 
 // A thread works until it is told to stop.

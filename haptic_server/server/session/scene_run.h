@@ -70,6 +70,7 @@ class SceneRun {
     void beginWith(const ResumedSession& resumed);
     void startJournal();
     void startTick();
+    void runTicks() noexcept;
     template <class Work>
     void loop(const std::stop_token& stop, std::chrono::microseconds period, Work work);
     template <class Work>
@@ -90,8 +91,8 @@ class SceneRun {
     BoneHistory history_;
     AccuracySwitch accuracy_;
     ToolSwitch tools_;
-    SpscRing<TickRecord> ring_;
-    SpscRing<Cut> cuts_;
+    SpscRing<TickRecord> ring_;  // from the tick to the recorder
+    SpscRing<Cut> cuts_;         // and to the mesher
     DeviceLinkIo io_;
     HapticTick tick_;
     std::optional<ResumedSession> resumed_;

@@ -22,7 +22,7 @@ TEST(Constraint, NeverPenetratesBeyondItsTolerance) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> place(-1, 1);
     const Pose start = uprightAt(kLawMiddle - Vector3d(1e-3, 0, 0) + 1.2e-3 * normal);
-    LawRun run(kConstraint, scene, start, {}, 0.8e-3);
+    LawRun run(kConstraint, scene, start, 0.8e-3);
     Pose hand = start, target = start;
     double deepest = 0;
     int touching = 0;
@@ -68,7 +68,7 @@ TEST(Constraint, TheReactionBalancesTheCoupling) {
     const ContactScene scene(cubeGeometry(41, kLawVoxel), halfSpace(kLawMiddle, {0, 0, 1}), kBurrWithShaft,
                              {.levels = {{1}}});
     const Pose start = uprightAt(kLawMiddle + Vector3d(-1e-3, 0, 1e-3));
-    LawRun run(kConstraint, scene, start, {}, 0.8e-3);
+    LawRun run(kConstraint, scene, start, 0.8e-3);
     const Pose hand{kLawMiddle + Vector3d(-1e-3, 0, 0.5e-3), expRotation({0, 0.5, 0.2})};  // the shaft down
     const SpoStep step = run.settle(hand, 400);
     const Wrench& reaction = static_cast<ConstraintLaw&>(run.model).reaction();

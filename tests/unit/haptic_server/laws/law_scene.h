@@ -1,7 +1,11 @@
 // The laws of other schools on analytic bone: a law with its tool, made a tick at a time.
 #pragma once
 
-#include "haptic_server/laws/compared_laws.h"
+#include "haptic_server/core/tick/tick_config.h"
+#include "haptic_server/laws/all_laws.h"
+#include "haptic_server/laws/constraint_law.h"
+#include "haptic_server/laws/penalty_sdf.h"
+#include "haptic_server/laws/vps.h"
 #include "tests/support/contact_scene.h"
 
 namespace bonemill::test {
@@ -18,11 +22,12 @@ inline ContactScene lawPlane(const Eigen::Vector3d& normal = Eigen::Vector3d::Un
 }
 
 struct LawRun {
-    LawRun(ContactLaw law, const ContactScene& scene, const Pose& start, const LawConfig& config = {},
-           double radius = kLawRadius)
+    LawRun(ContactLaw law, const ContactScene& scene, const Pose& start, double radius = kLawRadius)
         : tool{&scene.tool, {.radius = radius}, 50},
-          laws(config, scene.world(), {&tool, 1}, tool, 1e-3),
-          model(*laws.of(law)),
+          laws(
+              allLaws(),
+              {config.contact, config.coupling, config.gradient, scene.world(), {&tool, 1}, tool, config.dt}),
+          model(laws.of(law)),
           spo(start) {
         for (const Preset preset : kComparedLaws)
             if (presetSettings(preset).law == law) model.setAccuracy(presetSettings(preset));
@@ -39,8 +44,9 @@ struct LawRun {
         return step;
     }
 
+    TickConfig config;
     SpoTool tool;
-    ComparedLaws laws;
+    SpoModels laws;
     SpoModel& model;
     Pose spo;
 };

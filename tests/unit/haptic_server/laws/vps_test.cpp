@@ -18,7 +18,7 @@ struct PinOnPlane {
         : scene(cubeGeometry(41, kVpsVoxel),
                 [=](const Vector3d& p) { return std::max(p.z() - kTop, kTop - thickness - p.z()); },
                 {CylinderShape{{0, 0, 0}, {0, 0, 2e-3}, 1.5e-3}}, {.levels = {{1}}}),
-          run(ContactLaw::kVps, scene, at(-1e-3), {}, 1.5e-3) {}
+          run(ContactLaw::kVps, scene, at(-1e-3), 1.5e-3) {}
     Pose at(double depth) const { return uprightAt({5.06e-3, 4.93e-3, kSurfaceVoxel - depth}); }
     ContactWrench contact(double depth) { return static_cast<Vps&>(run.model).contactAt(at(depth)); }
 

@@ -35,7 +35,7 @@ TEST(DeviceSetup, DefaultsOfTheSceneAreTheDefaultsOfTheCode) {
     const DeviceSetup setup = deviceSetupOf(scene::Scene{});
     const DeviceLoopConfig loop;
     EXPECT_EQ(setup.rate_hz, 1000);
-    EXPECT_EQ(setup.workspace_scale, 1);
+    EXPECT_EQ(setup.hand_space.wayAtTool(1.0), 1);
     EXPECT_EQ(setup.loop.wrench.max_force, loop.wrench.max_force);
     EXPECT_EQ(setup.loop.wrench.max_torque, loop.wrench.max_torque);
     EXPECT_EQ(setup.loop.wrench.max_force_rate, loop.wrench.max_force_rate);

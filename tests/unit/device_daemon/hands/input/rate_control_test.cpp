@@ -49,7 +49,7 @@ TEST(Rates, ADiagonalIsNoFasterThanAnAxis) {
 }
 
 TEST(Rates, FineModeAndWorkspaceScaleSlowTheHandleDown) {
-    const RateConfig config{.fine_share = 0.2, .workspace_scale = 4};
+    const RateConfig config{.fine_share = 0.2, .hand_space = HandSpace(4)};
     const Rates rates = ratesOf({1, 0, 0, 1, 0, 0}, true, config);
     EXPECT_NEAR(rates.v_D.x(), 0.2 * config.max_speed / 4, 1e-12);
     EXPECT_NEAR(rates.w_D.x(), 0.2 * config.max_spin, 1e-12);

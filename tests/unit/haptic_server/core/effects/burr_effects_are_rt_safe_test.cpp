@@ -25,7 +25,7 @@ void expectQuiet(const std::function<void(EffectConfigs&)>& choose) {
     for (const uint32_t buttons : {0u, uint32_t(kButtonRemove), 0u}) {
         test::ScriptedIo io(test::straightPath(above, {3.3e-3, 2.8e-3, 3.5e-3}, 300, buttons));
         RtProbe probe;
-        tick.run(io);
+        io.lead(tick);
         probe.stop();
         EXPECT_EQ(probe.heapCalls(), 0u) << probe.firstCall();
         EXPECT_EQ(probe.lockCalls(), 0u) << probe.firstCall();

@@ -27,7 +27,7 @@ TEST(TissueEffectsAreRtSafe, WhileMillingThroughAllOfThem) {
     ScriptedIo io(
         straightPath(TissueBench::at({4e-3, 4e-3, 6.2e-3}), {4e-3, 4e-3, 2e-3}, 1500, kButtonRemove));
     RtProbe probe;
-    tick.run(io);
+    io.lead(tick);
     probe.stop();
     EXPECT_EQ(probe.heapCalls(), 0u) << probe.firstCall();
     EXPECT_EQ(probe.lockCalls(), 0u) << probe.firstCall();
@@ -38,7 +38,7 @@ TEST(TissueEffectsAreRtSafe, WhileMillingThroughAllOfThem) {
     history.restore();
     ScriptedIo back(straightPath(TissueBench::at({4e-3, 4e-3, 2e-3}), {4e-3, 4e-3, 2e-3}, 100, 0));
     RtProbe forgets;
-    tick.run(back);
+    back.lead(tick);
     forgets.stop();
     EXPECT_EQ(forgets.heapCalls(), 0u) << forgets.firstCall();
     EXPECT_EQ(forgets.lockCalls(), 0u) << forgets.firstCall();

@@ -23,5 +23,16 @@ TEST(Cut, IsEmptyWhereTheBoxIs) {
     }
 }
 
+TEST(Cut, TheMesherIsToldOfCutsAndOfNothingElse) {
+    SpscRing<Cut> cuts(4);
+    tellMesher(cuts, {});
+    tellMesher(cuts, cutOf({{1, 2, 3}, {4, 5, 6}}, 5));
+    Cut cut;
+    ASSERT_TRUE(cuts.tryPop(cut));
+    EXPECT_EQ(cut.start_ns, 5);
+    EXPECT_EQ(cut.voxels().max, Eigen::Vector3i(4, 5, 6));
+    EXPECT_FALSE(cuts.tryPop(cut));
+}
+
 }  // namespace
 }  // namespace bonemill

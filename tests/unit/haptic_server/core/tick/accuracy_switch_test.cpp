@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/support/led_tick.h"
 #include "tests/unit/haptic_server/core/tick/switching_bench.h"
 
 namespace bonemill {
@@ -41,10 +42,7 @@ void expectFinite(const Records& records) {
 
 Records withOnePreset(const std::vector<DeviceInput>& inputs, Preset preset) {
     SwitchingBench bench(presetSettings(preset));
-    test::ScriptedIo io(inputs);
-    bench.run(io);
-    EXPECT_EQ(io.records.size(), inputs.size());
-    return io.records;
+    return test::lead(bench.tick, inputs);
 }
 
 Records withSwitching(const std::vector<DeviceInput>& inputs) {

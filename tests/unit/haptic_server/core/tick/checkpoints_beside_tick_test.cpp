@@ -34,7 +34,7 @@ class MillingIo final : public TickIo {
     }
     int64_t write(const Wrench&) noexcept override { return 0; }
     int64_t now() noexcept override { return 0; }
-    void push(const TickRecord& record) noexcept override {
+    void take(const TickRecord& record) noexcept {
         removed += record.removed_voxels;
         ++ticks;
     }
@@ -65,7 +65,7 @@ struct Threads {
     }
     // Calls keeper(n), n = 0 .. kSaved - 1, with some ticks between; the tick goes on meanwhile.
     void run(const std::function<void(int)>& keeper) {
-        std::thread tick_thread([&] { tick->run(io); });
+        std::thread tick_thread([&] { tick->run(io, [&](const TickRecord& record) { io.take(record); }); });
         for (int n = 0; n < kSaved; ++n) {
             waitForTicks();
             keeper(n);

@@ -153,7 +153,7 @@ TEST(WorkspaceScale, TheHandGetsTheToolsForceAndItsTorqueOverTheScale) {
     const auto torqueAt = [](double scale) {
         ToolBench bench(1);
         TickConfig config = test::millingConfig();
-        config.workspace_scale = scale;
+        config.hand_space = HandSpace(scale);
         HapticTick tick(config, {bench.bone}, {bench.tools, bench.accuracy});
         return test::lead(tick, turning(20)).back();
     };

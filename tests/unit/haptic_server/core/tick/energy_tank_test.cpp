@@ -35,7 +35,7 @@ EnergyTank tankOf(double damping, double delay = 0, const EnergyTank::Felt& felt
     handle.mass = 0.1;
     handle.damping = damping;
     handle.delay = delay;
-    tank.setDevice(handle, {}, 1, felt);
+    tank.setDevice(handle, {}, {}, felt);
     return tank;
 }
 

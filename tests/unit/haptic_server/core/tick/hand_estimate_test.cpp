@@ -27,7 +27,7 @@ Pose readAt(double x) {
 }
 
 TEST(HandEstimate, NeverLeavesWhatTheReadingSays) {
-    HandEstimate estimate(kReadHandle, kReadSpring, 1, kReadPeriod);
+    HandEstimate estimate(kReadHandle, kReadSpring, {}, kReadPeriod);
     for (int n = 0; n < 3000; ++n) {
         const double x = 5e-3 * std::sin(0.02 * n) + 1e-4 * std::sin(0.7 * n);
         const Pose reading = readAt(x), pose = estimate.take(reading);
@@ -37,7 +37,7 @@ TEST(HandEstimate, NeverLeavesWhatTheReadingSays) {
 }
 
 TEST(HandEstimate, ADeviceThatFallsIsFollowedBetweenTheSteps) {
-    HandEstimate estimate(kReadHandle, kReadSpring, 1, kReadPeriod);
+    HandEstimate estimate(kReadHandle, kReadSpring, {}, kReadPeriod);
     double error = 0, raw = 0, x = 0, v = 0;
     for (int n = 0; n < 4000; ++n) {
         const double drift = 0.02;  // N against 2 N·s/m: 10 mm/s, five ticks a step
@@ -58,7 +58,7 @@ TEST(HandEstimate, TakesTheWrenchWhenItActs) {
     for (const int delay : {0, 1, 3}) {
         HandleDynamics handle = kReadHandle;
         handle.delay = delay * kReadPeriod;
-        HandEstimate estimate(handle, kReadSpring, 1, kReadPeriod);
+        HandEstimate estimate(handle, kReadSpring, {}, kReadPeriod);
         estimate.take(placedAt(0));
         estimate.sent({{1, 0, 0}, {0, 0, 0}});
         for (int n = 0; n < delay; ++n) {
@@ -70,7 +70,7 @@ TEST(HandEstimate, TakesTheWrenchWhenItActs) {
 }
 
 TEST(HandEstimate, AJumpIsBelieved) {
-    HandEstimate estimate(kReadHandle, kReadSpring, 1, kReadPeriod);
+    HandEstimate estimate(kReadHandle, kReadSpring, {}, kReadPeriod);
     estimate.take(placedAt(0));
     EXPECT_EQ(estimate.take(placedAt(0.05)).position.x(), 0.05);
 }
@@ -78,7 +78,7 @@ TEST(HandEstimate, AJumpIsBelieved) {
 TEST(HandEstimate, WithoutWordOfADeviceTheReadingComesBack) {
     HandleDynamics no_encoders = kReadHandle;
     no_encoders.encoder_step = no_encoders.encoder_angle = 0;
-    HandEstimate idle, ideal(no_encoders, kReadSpring, 1, kReadPeriod);
+    HandEstimate idle, ideal(no_encoders, kReadSpring, {}, kReadPeriod);
     for (const double x : {0.0, 1e-6, 0.3}) {
         EXPECT_EQ(idle.take(placedAt(x)).position.x(), x);
         EXPECT_EQ(ideal.take(placedAt(x)).position.x(), x);

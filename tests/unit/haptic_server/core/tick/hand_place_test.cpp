@@ -24,7 +24,7 @@ int ticksUntilBelieved(HandPlace& place, const Pose& sample, int most = 1000) {
 }
 
 TEST(HandPlace, AQuickHandIsFollowedAndDoesNotJump) {
-    HandPlace place(kBoneMiddle, 1, kPlaceDt);
+    HandPlace place(kBoneMiddle, {}, kPlaceDt);
     EXPECT_TRUE(place.isLost());
     EXPECT_TRUE(place.take(placeAt(0), 1));
     EXPECT_TRUE(place.hasJumped());
@@ -36,26 +36,26 @@ TEST(HandPlace, AQuickHandIsFollowedAndDoesNotJump) {
 }
 
 TEST(HandPlace, ASampleIsBelievedWhenAHandCouldHaveGotThere) {
-    HandPlace place(kBoneMiddle, 1, kPlaceDt);
+    HandPlace place(kBoneMiddle, {}, kPlaceDt);
     place.take(placeAt(0), 1);
     EXPECT_EQ(ticksUntilBelieved(place, placeAt(0.031)), 11);  // 3 m/s
     EXPECT_TRUE(place.hasJumped());
-    HandPlace turning(kBoneMiddle, 1, kPlaceDt);
+    HandPlace turning(kBoneMiddle, {}, kPlaceDt);
     turning.take(placeTurned(0), 1);
     EXPECT_EQ(ticksUntilBelieved(turning, placeTurned(0.5)), 9);  // 60 rad/s
     // Where the tool goes three times as far as the hand, so may a sample.
-    HandPlace scaled(kBoneMiddle, 3, kPlaceDt);
+    HandPlace scaled(kBoneMiddle, HandSpace(3), kPlaceDt);
     scaled.take(placeAt(0), 1);
     EXPECT_EQ(ticksUntilBelieved(scaled, placeAt(0.031)), 4);
     // A tick that was late says no less of the hand.
-    HandPlace late(kBoneMiddle, 1, kPlaceDt);
+    HandPlace late(kBoneMiddle, {}, kPlaceDt);
     late.take(placeAt(0), 1);
     EXPECT_TRUE(late.take(placeAt(0.031), 11));
     EXPECT_FALSE(late.hasJumped());
 }
 
 TEST(HandPlace, ALateDeviceMakesNoHandImplausible) {
-    HandPlace place(kBoneMiddle, 1, kPlaceDt);
+    HandPlace place(kBoneMiddle, {}, kPlaceDt);
     EXPECT_FALSE(place.repeat(1));
     place.take(placeAt(0), 1);
     for (int n = 0; n < 11; ++n) {
@@ -73,7 +73,7 @@ TEST(HandPlace, ALateDeviceMakesNoHandImplausible) {
 }
 
 TEST(HandPlace, NothingOutsideOfAnyWorkspaceIsEverBelieved) {
-    HandPlace place(kBoneMiddle, 1, kPlaceDt);
+    HandPlace place(kBoneMiddle, {}, kPlaceDt);
     EXPECT_GT(ticksUntilBelieved(place, placeAt(11)), 1000);
     EXPECT_TRUE(place.isLost());
     EXPECT_TRUE(place.take(placeAt(0), 1));
@@ -83,7 +83,7 @@ TEST(HandPlace, NothingOutsideOfAnyWorkspaceIsEverBelieved) {
 }
 
 TEST(HandPlace, AHandThatNobodyHeardOfForSomeTicksIsLost) {
-    HandPlace place(kBoneMiddle, 1, kPlaceDt);
+    HandPlace place(kBoneMiddle, {}, kPlaceDt);
     place.take(placeAt(0), 1);
     const int ticks = int(HandPlace::kLostAfter / kPlaceDt) - 1;
     for (int n = 0; n < ticks; ++n) {

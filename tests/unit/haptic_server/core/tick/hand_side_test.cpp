@@ -22,9 +22,9 @@ DeviceCapabilities strongDevice() {
             .max_rotation_stiffness = 1e3,
             .workspace_radius = 0.1};
 }
-HandSide sideWith(const DeviceCapabilities& device, double workspace_scale = 1) {
+HandSide sideWith(const DeviceCapabilities& device, double scale = 1) {
     TickConfig config;
-    config.workspace_scale = workspace_scale;
+    config.hand_space = HandSpace(scale);
     return handSideOf(config, device);
 }
 void expectSame(const HandSide& a, const HandSide& b) {

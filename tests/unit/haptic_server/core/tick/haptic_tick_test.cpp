@@ -256,7 +256,7 @@ TEST(HapticTick, TheRecordHoldsTheBoxOfTheMilledVoxels) {
         return all;
     };
     size_t cuts = 0;
-    for (std::vector<Density> before = densities(); tick.tick(io); before = densities()) {
+    for (std::vector<Density> before = densities(); io.step(tick); before = densities()) {
         IndexBox changed;
         auto old = before.begin();
         test::forEachVoxel(test::wholeBox(volume), [&](int i, int j, int k) {

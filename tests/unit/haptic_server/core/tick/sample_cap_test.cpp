@@ -59,7 +59,6 @@ class SlowMachine final : public TickIo {
     int64_t write(const Wrench&) noexcept override { return start_ns_; }
     // The samples of this tick will have been about as many as those of the last one.
     int64_t now() noexcept override { return start_ns_ + ns_per_sample_ * int64_t(last.candidates); }
-    void push(const TickRecord& record) noexcept override { last = record; }
 
     Pose X_WT_hand;
     TickRecord last{};
@@ -92,7 +91,7 @@ TEST(SampleCap, ATickOnASlowMachineSamplesLessFinelyAndFeelsTheSame) {
     SlowMachine quick(1), slow(1000);
     const auto run = [&](SlowMachine& machine, int ticks, double z) {
         machine.X_WT_hand = PressedSlab::at(z);
-        for (int n = 0; n < ticks; ++n) tick.tick(machine);
+        for (int n = 0; n < ticks; ++n) machine.last = *tick.tick(machine);
         return machine.last;
     };
     for (int n = 0; n <= 300; ++n) run(quick, 1, 7e-3 - 1e-6 * n);

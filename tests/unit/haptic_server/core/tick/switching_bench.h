@@ -32,15 +32,11 @@ struct SwitchingBench {
     }
     static Pose at(double z) { return {{4.05e-3, 3.95e-3, z}, Eigen::Quaterniond::Identity()}; }
 
-    void run(ScriptedIo& io) noexcept {
-        while (tick.tick(io)) {
-        }
-    }
     void runSwitching(ScriptedIo& io) noexcept {
         size_t n = 0;
         do {
             accuracy.choose(AccuracySwitch::choiceOf(presetAt(n++)));
-        } while (tick.tick(io));
+        } while (io.step(tick));
     }
     // In this order each preset follows each other one.
     static Preset presetAt(size_t tick) noexcept {

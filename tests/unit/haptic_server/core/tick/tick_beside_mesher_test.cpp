@@ -18,25 +18,6 @@
 namespace bonemill {
 namespace {
 
-// It is a ScriptedIo whose records and cuts leave through rings, as in a session.
-class RingIo final : public TickIo {
-  public:
-    RingIo(std::vector<DeviceInput> inputs, SpscRing<TickRecord>& ring, SpscRing<Cut>& cuts)
-        : script_(std::move(inputs)), ring_(ring), cuts_(cuts) {}
-    bool read(DeviceInput& input) noexcept override { return script_.read(input); }
-    int64_t write(const Wrench& wrench) noexcept override { return script_.write(wrench); }
-    int64_t now() noexcept override { return script_.now(); }
-    void push(const TickRecord& record) noexcept override {
-        ring_.tryPush(record);
-        if (!record.cut.isEmpty()) cuts_.tryPush(record.cut);
-    }
-
-  private:
-    test::ScriptedIo script_;
-    SpscRing<TickRecord>& ring_;
-    SpscRing<Cut>& cuts_;
-};
-
 void expectStreamedAsRemeshed(FixedTickConfig config) {
     BoneModel bone(test::bodyVolume(test::cubeGeometry(44, 0.125e-3),
                                     test::halfSpace({0, 0, 4e-3}, Eigen::Vector3d::UnitZ())),
@@ -46,9 +27,8 @@ void expectStreamedAsRemeshed(FixedTickConfig config) {
     FixedTick tick(config, bone);
     SpscRing<TickRecord> ring(1024);
     SpscRing<Cut> cuts(1024);
-    RingIo io(test::straightPath({{2e-3, 3e-3, 4.8e-3}, Eigen::Quaterniond::Identity()}, {4.2e-3, 3e-3, 2e-3},
-                                 150, kButtonRemove),
-              ring, cuts);
+    test::ScriptedIo io(test::straightPath({{2e-3, 3e-3, 4.8e-3}, Eigen::Quaterniond::Identity()},
+                                           {4.2e-3, 3e-3, 2e-3}, 150, kButtonRemove));
     Publisher publisher({.domain = testDomain(), .session = testSession(), .epoch = 0});
 
     MeshOutbox outbox;
@@ -71,7 +51,10 @@ void expectStreamedAsRemeshed(FixedTickConfig config) {
         publisher.publishStatus({});
     };
     std::thread tick_thread([&] {
-        tick.run(io);
+        tick.run(io, [&](const TickRecord& record) {  // as a session
+            ring.tryPush(record);
+            tellMesher(cuts, record.cut);
+        });
         is_milling = false;
     });
     std::thread mesher_thread([&] {

@@ -42,7 +42,7 @@ struct ToolBench {
         size_t n = 0;
         do {
             tools.choose(kOrder[n++ / kTicksPerTool % kOrder.size()]);
-        } while (tick.tick(io));
+        } while (io.step(tick));
     }
 
     BoneModel bone;

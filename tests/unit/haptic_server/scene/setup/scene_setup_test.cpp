@@ -66,7 +66,7 @@ TEST(TickConfigOfAScene, AScaledWorkspaceLeavesTheStiffnessInTheHand) {
         scene::Scene scene;
         scene.mutable_device()->set_workspace_scale(scale);
         const TickConfig scaled = tickConfigOf(scene), plain;
-        EXPECT_EQ(scaled.workspace_scale, scale);
+        EXPECT_EQ(scaled.hand_space.wayAtTool(1.0), scale);
         EXPECT_DOUBLE_EQ(scaled.coupling.translation_stiffness * scale, plain.coupling.translation_stiffness);
         EXPECT_DOUBLE_EQ(scaled.coupling.rotation_stiffness / scale, plain.coupling.rotation_stiffness);
         const EnergyCouplingConfig &at_tool = scaled.gradient.coupling, &in_hand = plain.gradient.coupling;

@@ -17,9 +17,7 @@ class DeviceLinkIoTest : public testing::Test {
   protected:
     DeviceLinkIoTest()
         : server_(DeviceLink::create(kSession + uint32_t(getpid()), LinkSide::kServer)),
-          daemon_(DeviceLink::create(kSession + uint32_t(getpid()), LinkSide::kDaemon)),
-          ring_(64),
-          cuts_(64) {
+          daemon_(DeviceLink::create(kSession + uint32_t(getpid()), LinkSide::kDaemon)) {
         config_.X_WD = {{0.1, 0.2, 0.3}, Eigen::Quaterniond(M_SQRT1_2, M_SQRT1_2, 0, 0)};
         config_.ramp = {.stale_after_ns = 5'000'000, .ramp_down_ns = 10'000'000, .ramp_up_ns = 10'000'000};
     }
@@ -45,14 +43,12 @@ class DeviceLinkIoTest : public testing::Test {
 
     static constexpr uint32_t kSession = 1u << 30;
     DeviceLink server_, daemon_;
-    SpscRing<TickRecord> ring_;
-    SpscRing<Cut> cuts_;
     DeviceLinkIoConfig config_;
 };
 
 TEST_F(DeviceLinkIoTest, SamplesOfAnotherScenesDeviceDoNotCount) {
     config_.scene_revision = 2;
-    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    DeviceLinkIo io(config_, server_);
     DeviceSample of_other_scene = sampleAt(0.5);
     of_other_scene.scene_revision = 1;
     DeviceSample own = sampleAt(0.01);
@@ -72,7 +68,7 @@ TEST_F(DeviceLinkIoTest, SamplesOfAnotherScenesDeviceDoNotCount) {
 
 TEST_F(DeviceLinkIoTest, ForceFadesOutWhenItIsToldTo) {
     config_.ramp.stale_after_ns = 100 * kNsPerSecond;  // a busy machine is no silence
-    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    DeviceLinkIo io(config_, server_);
     EXPECT_TRUE(io.hasFadedOut()) << "there was no force yet";
     DeviceInput input;
     const auto factor = [&] {
@@ -99,7 +95,7 @@ TEST_F(DeviceLinkIoTest, ForceFadesOutWhenItIsToldTo) {
 }
 
 TEST_F(DeviceLinkIoTest, PoseAndWrenchChangeFrames) {
-    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    DeviceLinkIo io(config_, server_);
     daemon_.writeSample(sampleAt(0.01));
     DeviceInput input;
     ASSERT_TRUE(io.read(input));
@@ -116,7 +112,7 @@ TEST_F(DeviceLinkIoTest, PoseAndWrenchChangeFrames) {
 }
 
 TEST_F(DeviceLinkIoTest, SilenceTicksOnAndBecomesStale) {
-    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    DeviceLinkIo io(config_, server_);
     daemon_.writeSample(sampleAt(0));
     DeviceInput input;
     ASSERT_TRUE(io.read(input));
@@ -141,7 +137,7 @@ TEST_F(DeviceLinkIoTest, SilenceTicksOnAndBecomesStale) {
 }
 
 TEST_F(DeviceLinkIoTest, ALateTickLivesThroughThePeriodsBeforeIt) {
-    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    DeviceLinkIo io(config_, server_);
     daemon_.writeSample(sampleAt(0));
     DeviceInput input;
     ASSERT_TRUE(io.read(input));
@@ -155,7 +151,7 @@ TEST_F(DeviceLinkIoTest, ALateTickLivesThroughThePeriodsBeforeIt) {
 
 // The device says how far it reaches; before it has, ten metres are believed.
 TEST_F(DeviceLinkIoTest, SamplesFarBeyondTheDevicesReachAreNotBelieved) {
-    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    DeviceLinkIo io(config_, server_);
     daemon_.writeSample(sampleAt(0.5));
     DeviceInput input;
     ASSERT_TRUE(io.read(input));
@@ -173,7 +169,7 @@ TEST_F(DeviceLinkIoTest, SamplesFarBeyondTheDevicesReachAreNotBelieved) {
 }
 
 TEST_F(DeviceLinkIoTest, ImplausibleSamplesAndStampsAreNotBelieved) {
-    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    DeviceLinkIo io(config_, server_);
     daemon_.writeSample(sampleAt(0.002));
     DeviceInput input;
     ASSERT_TRUE(io.read(input));
@@ -196,8 +192,8 @@ TEST_F(DeviceLinkIoTest, ImplausibleSamplesAndStampsAreNotBelieved) {
 }
 
 TEST_F(DeviceLinkIoTest, TheToolMovesAsFarAsTheScaleSaysAndTurnsWithTheHandle) {
-    config_.workspace_scale = 3;
-    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    config_.hand_space = HandSpace(3);
+    DeviceLinkIo io(config_, server_);
     DeviceSample sample = sampleAt(0.01);
     sample.q_DT[0] = sample.q_DT[3] = M_SQRT1_2;
     daemon_.writeSample(sample);
@@ -210,7 +206,7 @@ TEST_F(DeviceLinkIoTest, TheToolMovesAsFarAsTheScaleSaysAndTurnsWithTheHandle) {
 }
 
 TEST_F(DeviceLinkIoTest, TheTickHearsOfEachOtherDeviceOnce) {
-    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    DeviceLinkIo io(config_, server_);
     DeviceCapabilities shown;
     EXPECT_FALSE(io.capabilities(shown));
     const auto next = [&] {
@@ -243,7 +239,7 @@ TEST_F(DeviceLinkIoTest, TheTickHearsOfEachOtherDeviceOnce) {
 }
 
 TEST_F(DeviceLinkIoTest, TheDevicesStateComesThroughAndOrdersToResetItGoOut) {
-    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    DeviceLinkIo io(config_, server_);
     DeviceSample stopped = sampleAt(0);
     stopped.state = uint32_t(SafetyState::kProtectiveStop);
     stopped.stop_cause = uint32_t(StopCause::kDeviceFault);
@@ -270,7 +266,7 @@ TEST_F(DeviceLinkIoTest, TheDevicesStateComesThroughAndOrdersToResetItGoOut) {
 // The daemon of this test writes as fast as it can, in between garbage. What is judged is each tick's own
 // start, which no load can bring forward.
 TEST_F(DeviceLinkIoTest, AFloodOfSamplesDoesNotHurryTheTick) {
-    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    DeviceLinkIo io(config_, server_);
     std::atomic<bool> is_over{false};
     std::thread flood([&] {
         for (uint64_t n = 0; !is_over; ++n)
@@ -298,29 +294,14 @@ TEST_F(DeviceLinkIoTest, AFloodOfSamplesDoesNotHurryTheTick) {
     EXPECT_TRUE(faults & kFaultEarlySamples);
 }
 
-TEST_F(DeviceLinkIoTest, TheMesherIsToldOfCutsAndOfNothingElse) {
-    DeviceLinkIo io(config_, server_, ring_, cuts_);
-    TickRecord idle{}, milling{};
-    milling.cut = cutOf({{1, 2, 3}, {4, 5, 6}}, 5);
-    io.push(idle);
-    io.push(milling);
-    Cut cut;
-    ASSERT_TRUE(cuts_.tryPop(cut));
-    EXPECT_EQ(cut.start_ns, 5);
-    EXPECT_EQ(cut.voxels().max, Eigen::Vector3i(4, 5, 6));
-    EXPECT_FALSE(cuts_.tryPop(cut));
-    TickRecord record;
-    EXPECT_TRUE(ring_.tryPop(record) && ring_.tryPop(record));
-}
-
 TEST_F(DeviceLinkIoTest, EndsOnStopAndWithItsDevice) {
     DeviceInput input;
-    DeviceLinkIo stopped(config_, server_, ring_, cuts_);
+    DeviceLinkIo stopped(config_, server_);
     stopped.stop();
     EXPECT_FALSE(stopped.read(input));
 
     config_.ends_with_device = true;
-    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    DeviceLinkIo io(config_, server_);
     daemon_.writeSample(sampleAt(0));
     ASSERT_TRUE(io.read(input));
     DeviceSample goodbye = sampleAt(0);
