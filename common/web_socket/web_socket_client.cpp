@@ -1,6 +1,7 @@
-#include "render_client/web/connect/web_socket_client.h"
+#include "common/web_socket/web_socket_client.h"
 
 #include <openssl/evp.h>
+#include <openssl/rand.h>
 #include <openssl/sha.h>
 
 #include <algorithm>
@@ -8,14 +9,14 @@
 #include <utility>
 
 #include "common/base/user_error.h"
-#include "render_client/web/secrets/secrets.h"
 
-namespace bonemill::connect {
+namespace bonemill {
 namespace {
 
-constexpr unsigned char kContinuation = 0, kBinary = 2, kClose = 8, kPing = 9, kPong = 10, kLast = 0x80;
-constexpr size_t kMostUntaken = 64;   // messages; then the network waits
-constexpr size_t kMostAnswer = 8192;  // bytes of the handshake's answer
+constexpr unsigned char kContinuation = 0, kText = 1, kBinary = 2, kClose = 8, kPing = 9, kPong = 10,
+                        kLast = 0x80;
+constexpr size_t kMaxUntaken = 64;   // messages; then the network waits
+constexpr size_t kMaxAnswer = 8192;  // bytes of the handshake's answer
 
 std::string base64(const unsigned char* bytes, int size) {
     std::string text(size_t(4 * ((size + 2) / 3)) + 1, '\0');
@@ -37,35 +38,36 @@ std::string lowered(std::string text) {
 
 }  // namespace
 
-WebSocketClient::WebSocketClient(const TlsTarget& target, const std::string& path,
-                                 const std::string& protocol, std::chrono::milliseconds patience,
-                                 const std::string& origin)
-    : socket_(target, patience) {
-    shakeHands(target, path, protocol, origin, std::chrono::steady_clock::now() + patience);
+WebSocketClient::WebSocketClient(const WebTarget& target, const WebSocketRequest& request,
+                                 std::chrono::milliseconds patience)
+    : line_(target, patience), opcode_(request.is_text ? kText : kBinary) {
+    shakeHands(target, request, std::chrono::steady_clock::now() + patience);
 }
 
-void WebSocketClient::shakeHands(const TlsTarget& target, const std::string& path,
-                                 const std::string& protocol, const std::string& origin,
+void WebSocketClient::shakeHands(const WebTarget& target, const WebSocketRequest& request,
                                  std::chrono::steady_clock::time_point end) {
     unsigned char random[16];
-    fillRandom(random, sizeof random);
+    if (RAND_bytes(random, sizeof random) != 1) throw UserError("library: OpenSSL has no random numbers");
     const std::string key = base64(random, sizeof random);
     const bool is_v6 = target.host.find(':') != std::string::npos;
-    outgoing_ = "GET " + path + " HTTP/1.1\r\nHost: " + (is_v6 ? "[" + target.host + "]" : target.host) +
-                ":" + std::to_string(target.port) +
-                "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
-                "Sec-WebSocket-Protocol: " +
-                protocol + "\r\nSec-WebSocket-Key: " + key + "\r\n" +
-                (origin.empty() ? "" : "Origin: " + origin + "\r\n") + "\r\n";
+    const std::string host = is_v6 ? "[" + target.host + "]" : target.host;
+    const auto header = [](const char* name, const std::string& value) {
+        return value.empty() ? "" : name + (": " + value) + "\r\n";
+    };
+    outgoing_ = "GET " + request.path + " HTTP/1.1\r\n" +
+                header("Host", host + ":" + std::to_string(target.port)) +
+                "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n" +
+                header("Sec-WebSocket-Protocol", request.protocol) + header("Sec-WebSocket-Key", key) +
+                header("Origin", request.origin) + "\r\n";
     size_t head = std::string::npos;
-    while (!has_ended_ && head == std::string::npos && incoming_.size() < kMostAnswer) {
+    while (!has_ended_ && head == std::string::npos && incoming_.size() < kMaxAnswer) {
         const auto left =
             std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
         if (left.count() <= 0) break;
         wait(-1, left);
-        const long sent = socket_.write(outgoing_.data(), outgoing_.size());
+        const long sent = line_.write(outgoing_.data(), outgoing_.size());
         std::array<char, 2048> bytes;
-        const long came = socket_.read(bytes.data(), bytes.size());
+        const long came = line_.read(bytes.data(), bytes.size());
         has_ended_ = sent < 0 || came < 0;
         if (sent > 0) outgoing_.erase(0, size_t(sent));
         if (came > 0) incoming_.append(bytes.data(), size_t(came));
@@ -73,14 +75,14 @@ void WebSocketClient::shakeHands(const TlsTarget& target, const std::string& pat
     }
     const std::string answer = incoming_.substr(0, head == std::string::npos ? 0 : head + 2);
     if (!answer.starts_with("HTTP/1.1 101") || answer.find(acceptOf(key)) == std::string::npos ||
-        lowered(answer).find("sec-websocket-protocol: " + protocol) == std::string::npos)
-        throw UserError("--connect " + target.host + ":" + std::to_string(target.port) +
-                        ": no bonemill gateway is there, or it takes no more guests");
+        (!request.protocol.empty() &&
+         lowered(answer).find("sec-websocket-protocol: " + request.protocol) == std::string::npos))
+        throw UserError(target.place() + ": " + request.refusal);
     incoming_.erase(0, head + 4);
 }
 
 void WebSocketClient::send(std::string_view message) {
-    queueFrame(kBinary, message);
+    queueFrame(opcode_, message);
 }
 
 void WebSocketClient::queueFrame(unsigned char opcode, std::string_view payload) {
@@ -90,20 +92,20 @@ void WebSocketClient::queueFrame(unsigned char opcode, std::string_view payload)
     outgoing_ += char(0x80 | (length_bytes == 0 ? size : length_bytes == 2 ? 126 : 127));
     for (int n = length_bytes; n-- > 0;) outgoing_ += char(size >> (8 * n));
     unsigned char mask[4];
-    fillRandom(mask, sizeof mask);
+    if (RAND_bytes(mask, sizeof mask) != 1) has_ended_ = true;
     outgoing_.append(reinterpret_cast<const char*>(mask), sizeof mask);
     for (size_t n = 0; n < payload.size(); ++n) outgoing_ += char(payload[n] ^ char(mask[n % 4]));
 }
 
 void WebSocketClient::move() {
     for (long sent = 1; sent > 0 && !outgoing_.empty();) {
-        sent = socket_.write(outgoing_.data(), outgoing_.size());
+        sent = line_.write(outgoing_.data(), outgoing_.size());
         if (sent < 0) has_ended_ = true;
         if (sent > 0) outgoing_.erase(0, size_t(sent));
     }
     std::array<char, 65536> bytes;
-    for (long came = 1; came > 0 && !has_ended_ && messages_.size() < kMostUntaken;) {
-        came = socket_.read(bytes.data(), bytes.size());
+    for (long came = 1; came > 0 && !has_ended_ && messages_.size() < kMaxUntaken;) {
+        came = line_.read(bytes.data(), bytes.size());
         if (came < 0) has_ended_ = true;
         if (came > 0) incoming_.append(bytes.data(), size_t(came));
         while (takeFrame()) {
@@ -127,7 +129,7 @@ bool WebSocketClient::takeFrame() {
         for (size_t n = 0; n < length_bytes; ++n) size = size << 8 | byte(2 + n);
     }
     // A server masks nothing.
-    if ((byte(1) & 0x80) != 0 || size > kMostMessageBytes || partial_.size() + size > kMostMessageBytes) {
+    if ((byte(1) & 0x80) != 0 || size > kMaxMessageBytes || partial_.size() + size > kMaxMessageBytes) {
         has_ended_ = true;
         return false;
     }
@@ -141,7 +143,10 @@ bool WebSocketClient::takeFrame() {
 
 void WebSocketClient::takePayload(unsigned char opcode, bool is_last, std::string_view payload) {
     switch (opcode) {
+        case kText:
         case kBinary:
+            if (opcode != opcode_) break;
+            [[fallthrough]];
         case kContinuation:
             partial_ += payload;
             if (is_last) messages_.push_back(std::exchange(partial_, {}));
@@ -151,8 +156,9 @@ void WebSocketClient::takePayload(unsigned char opcode, bool is_last, std::strin
         case kPong:
             return;
         default:
-            has_ended_ = true;
+            break;
     }
+    has_ended_ = true;
 }
 
 bool WebSocketClient::receive(std::string& message) {
@@ -162,4 +168,4 @@ bool WebSocketClient::receive(std::string& message) {
     return true;
 }
 
-}  // namespace bonemill::connect
+}  // namespace bonemill

@@ -1,4 +1,4 @@
-#include "render_client/web/tcp/peer_address.h"
+#include "common/tcp/peer_address.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>

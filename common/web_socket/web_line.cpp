@@ -1,27 +1,26 @@
-#include "render_client/web/connect/tls_socket.h"
+#include "common/web_socket/web_line.h"
 
 #include <openssl/err.h>
 #include <openssl/ssl.h>
 #include <openssl/x509v3.h>
 #include <poll.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <csignal>
 #include <utility>
 
 #include "common/base/user_error.h"
-#include "render_client/web/secrets/secrets.h"
-#include "render_client/web/tcp/dial.h"
+#include "common/digest/sha256.h"
+#include "common/rt/clock.h"
+#include "common/tcp/dial.h"
 
-namespace bonemill::connect {
+namespace bonemill {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-std::string placeOf(const TlsTarget& target) {
-    return target.host + ":" + std::to_string(target.port);
-}
 
 int leftMs(Clock::time_point end) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count();
@@ -38,7 +37,7 @@ std::string fingerprintOf(SSL* ssl) {
     unsigned char hash[EVP_MAX_MD_SIZE];
     unsigned length = 0;
     if (!certificate || X509_digest(certificate, EVP_sha256(), hash, &length) != 1) return "";
-    return hexOf({hash, length});
+    return hexOf({reinterpret_cast<const char*>(hash), length});
 }
 
 std::string digitsOf(const std::string& fingerprint) {
@@ -51,7 +50,7 @@ std::string digitsOf(const std::string& fingerprint) {
 
 }  // namespace
 
-struct TlsSocket::State {
+struct WebLine::State {
     ~State() {
         if (ssl) {
             SSL_shutdown(ssl);
@@ -59,9 +58,9 @@ struct TlsSocket::State {
         }
         if (context) SSL_CTX_free(context);
     }
-    void shakeHands(const TlsTarget& target, Clock::time_point end);
-    void prove(const TlsTarget& target) const;
-    long moved(int result);
+    void shakeHands(const WebTarget& target, Clock::time_point end);
+    void prove(const WebTarget& target) const;
+    long moved(long result);
 
     Descriptor socket;
     SSL_CTX* context = nullptr;
@@ -69,7 +68,7 @@ struct TlsSocket::State {
     bool wants_to_write = false;  // TLS itself
 };
 
-void TlsSocket::State::shakeHands(const TlsTarget& target, Clock::time_point end) {
+void WebLine::State::shakeHands(const WebTarget& target, Clock::time_point end) {
     context = SSL_CTX_new(TLS_client_method());
     if (!context) throw UserError("library: OpenSSL gives no context");
     SSL_CTX_set_min_proto_version(context, TLS1_2_VERSION);
@@ -90,62 +89,64 @@ void TlsSocket::State::shakeHands(const TlsTarget& target, Clock::time_point end
                              : error == SSL_ERROR_WANT_WRITE ? POLLOUT
                                                              : 0;
         if (events == 0 || !waitFor(socket.get(), events, end))
-            throw UserError("--connect " + placeOf(target) + ": nobody speaks TLS there");
+            throw UserError(target.place() + ": nobody speaks TLS there");
     }
 }
 
-void TlsSocket::State::prove(const TlsTarget& target) const {
+void WebLine::State::prove(const WebTarget& target) const {
     const std::string shown = fingerprintOf(ssl), expected = digitsOf(target.fingerprint);
     if (!expected.empty() && shown != expected)
-        throw UserError("--connect " + placeOf(target) +
-                        ": has another certificate than --fingerprint says: " + shown);
+        throw UserError(target.place() + ": has another certificate than --fingerprint says: " + shown);
     if (expected.empty() && (shown.empty() || SSL_get_verify_result(ssl) != X509_V_OK))
         throw UserError(
-            "--connect " + placeOf(target) +
+            target.place() +
             ": no authority that this PC trusts knows the certificate. If the gateway itself printed "
             "this fingerprint, add --fingerprint " +
             shown);
 }
 
 // The error queue is the thread's: what is old must not be taken for new.
-long TlsSocket::State::moved(int result) {
+long WebLine::State::moved(long result) {
     if (result > 0) return result;
-    const int error = SSL_get_error(ssl, result);
+    if (!ssl) return result < 0 && (errno == EAGAIN || errno == EINTR) ? 0 : -1;
+    const int error = SSL_get_error(ssl, int(result));
     ERR_clear_error();
     wants_to_write = error == SSL_ERROR_WANT_WRITE;
     return wants_to_write || error == SSL_ERROR_WANT_READ ? 0 : -1;
 }
 
-TlsSocket::TlsSocket(const TlsTarget& target, std::chrono::milliseconds patience)
+WebLine::WebLine(const WebTarget& target, std::chrono::milliseconds patience)
     : state_(std::make_unique<State>()) {
     std::signal(SIGPIPE, SIG_IGN);  // OpenSSL writes into sockets that may be closed
     const auto end = Clock::now() + patience;
     Dialled dialled = dial(target.host, target.port, patience);
-    if (!dialled.socket) throw UserError("--connect " + placeOf(target) + ": " + dialled.problem);
+    if (!dialled.socket) throw UserError(target.place() + ": " + dialled.problem);
     state_->socket = std::move(dialled.socket);
+    if (target.is_plain) return;
     state_->shakeHands(target, end);
     state_->prove(target);
 }
 
-TlsSocket::~TlsSocket() = default;
+WebLine::~WebLine() = default;
 
-long TlsSocket::read(char* bytes, size_t most) {
-    return state_->moved(SSL_read(state_->ssl, bytes, int(most)));
+long WebLine::read(char* bytes, size_t most) {
+    SSL* const ssl = state_->ssl;
+    return state_->moved(ssl ? SSL_read(ssl, bytes, int(most)) : recv(state_->socket.get(), bytes, most, 0));
 }
 
-long TlsSocket::write(const char* bytes, size_t size) {
-    return size == 0 ? 0 : state_->moved(SSL_write(state_->ssl, bytes, int(size)));
+long WebLine::write(const char* bytes, size_t size) {
+    if (size == 0) return 0;
+    SSL* const ssl = state_->ssl;
+    return state_->moved(ssl ? SSL_write(ssl, bytes, int(size))
+                             : send(state_->socket.get(), bytes, size, MSG_NOSIGNAL));
 }
 
-void TlsSocket::wait(bool wants_to_write, int wake, std::chrono::milliseconds patience) {
-    if (SSL_pending(state_->ssl) > 0) return;
+void WebLine::wait(bool wants_to_write, int wake, std::chrono::nanoseconds patience) {
+    if (state_->ssl && SSL_pending(state_->ssl) > 0) return;
     const short out = wants_to_write || state_->wants_to_write ? POLLOUT : 0;
     pollfd looks[] = {{state_->socket.get(), short(POLLIN | out), 0}, {wake, POLLIN, 0}};
-    poll(looks, 2, int(patience.count()));
+    const timespec limit = timespecOfNs(std::max<int64_t>(patience.count(), 0));
+    ppoll(looks, 2, &limit, nullptr);
 }
 
-int TlsSocket::descriptor() const {
-    return state_->socket.get();
-}
-
-}  // namespace bonemill::connect
+}  // namespace bonemill

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
-#include "render_client/web/tcp/descriptor.h"
-#include "render_client/web/tcp/peer_address.h"
+#include "common/tcp/descriptor.h"
+#include "common/tcp/peer_address.h"
 
 namespace bonemill {
 

@@ -1,4 +1,4 @@
-#include "render_client/web/tcp/dial.h"
+#include "common/tcp/dial.h"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <cstring>
 #include <memory>
 
-#include "render_client/web/tcp/listen.h"
+#include "common/tcp/listen.h"
 
 namespace bonemill {
 namespace {

@@ -1,4 +1,4 @@
-#include "render_client/web/tcp/dial.h"
+#include "common/tcp/dial.h"
 
 #include <netdb.h>
 #include <poll.h>
@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <memory>
 
-#include "render_client/web/tcp/socket_setup.h"
+#include "common/tcp/socket_setup.h"
 
 namespace bonemill {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "render_client/web/tcp/descriptor.h"
+#include "common/tcp/descriptor.h"
 
 namespace bonemill {
 

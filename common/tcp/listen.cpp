@@ -1,4 +1,4 @@
-#include "render_client/web/tcp/listen.h"
+#include "common/tcp/listen.h"
 
 #include <netdb.h>
 #include <netinet/in.h>
@@ -11,7 +11,7 @@
 #include <memory>
 
 #include "common/base/user_error.h"
-#include "render_client/web/tcp/socket_setup.h"
+#include "common/tcp/socket_setup.h"
 
 namespace bonemill {
 
