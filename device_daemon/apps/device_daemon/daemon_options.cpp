@@ -1,4 +1,4 @@
-#include "device_daemon/apps/device_daemon/options.h"
+#include "device_daemon/apps/device_daemon/daemon_options.h"
 
 #include "common/base/user_error.h"
 #include "common/cli/command_line.h"

@@ -1,11 +1,12 @@
-#include "haptic_server/teaching/study_report/report_text.h"
+#include "haptic_server/teaching/study_report/study_report_text.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "common/text/csv_text.h"
 #include "haptic_server/teaching/study_report/number_text.h"
 #include "haptic_server/teaching/study_report/plan_text.h"
-#include "haptic_server/teaching/study_report/tables.h"
+#include "haptic_server/teaching/study_report/study_tables.h"
 #include "haptic_server/teaching/study_statistics/planning.h"
 
 namespace bonemill::study {
@@ -47,7 +48,7 @@ size_t testsIn(const std::vector<GroupComparison>& comparisons, bool is_score) {
 std::string itemsText(const StudyData& data, const std::vector<Measure>& measures, const Form& form) {
     const double threshold = data.protocol().threshold;
     std::string text = tableHead({"question", "people", "mean (SD)", "median", "least to most",
-                                  "share of " + fullText(threshold) + " or more (95 %, Wilson)"});
+                                  "share of " + numberText(threshold) + " or more (95 %, Wilson)"});
     for (const Measure& measure : measures) {
         if (measure.form != &form) continue;
         std::vector<double> values;
@@ -174,8 +175,8 @@ by the protocol; a dash says that the data do not determine one. Shares have Wil
 defined for these data (one person, no spread).
 
 What no table here can say: experts and novices who answer alike, or apart, is weak evidence of validity by itself; a
-mean above a threshold says that people were content, not that they learn. `analysis.R` recomputes this in R and goes on
-with mixed models for repeated tasks; `checklist.md` is what a report owes its readers.
+mean above a threshold says that people were content, not that they learn. `analysis.R` goes on in R with
+mixed models for repeated tasks; `checklist.md` is what a report owes its readers.
 )";
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "device_daemon/ares/emulator/options.h"
+#include "device_daemon/ares/emulator/emulator_options.h"
 
 #include "common/base/user_error.h"
 #include "common/cli/command_line.h"

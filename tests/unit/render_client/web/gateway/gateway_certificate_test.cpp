@@ -1,4 +1,4 @@
-#include "render_client/web/gateway/certificate.h"
+#include "render_client/web/gateway/gateway_certificate.h"
 
 #include <gtest/gtest.h>
 
@@ -29,11 +29,11 @@ bool says(const std::string& text, const std::string& part) {
 TEST(GatewayCertificate, IsMadeOnceAndOneOfTheUsersIsTaken) {
     const test::TemporaryFolder folder;
     const std::time_t now = std::time(nullptr);
-    const Certificate made = selfMadeCertificate(folder.path(), now);
+    const GatewayCertificate made = selfMadeCertificate(folder.path(), now);
     EXPECT_TRUE(made.is_self_made);
     EXPECT_EQ(made.fingerprint.size(), 64u);
     EXPECT_EQ(selfMadeCertificate(folder.path(), now).fingerprint, made.fingerprint);
-    const Certificate given = certificateOf(made.certificate, made.key, now);
+    const GatewayCertificate given = certificateOf(made.certificate, made.key, now);
     EXPECT_FALSE(given.is_self_made);
     EXPECT_EQ(given.fingerprint, made.fingerprint);
 }
@@ -41,7 +41,7 @@ TEST(GatewayCertificate, IsMadeOnceAndOneOfTheUsersIsTaken) {
 TEST(GatewayCertificate, ThatGuestsWouldRefuseStopsTheStart) {
     const test::TemporaryFolder folder;
     const std::time_t now = std::time(nullptr);
-    const Certificate made = selfMadeCertificate(folder.path(), now);
+    const GatewayCertificate made = selfMadeCertificate(folder.path(), now);
     const auto refusal = [&](std::time_t when) {
         return whyNot([&] { certificateOf(made.certificate, made.key, when); });
     };
@@ -55,8 +55,8 @@ TEST(GatewayCertificate, ThatGuestsWouldRefuseStopsTheStart) {
 TEST(GatewayCertificate, AnotherOnesKeyAndWhatIsNoneAreNamed) {
     const test::TemporaryFolder folder;
     const std::time_t now = std::time(nullptr);
-    const Certificate made = selfMadeCertificate(folder.path() / "one", now);
-    const Certificate other = selfMadeCertificate(folder.path() / "other", now);
+    const GatewayCertificate made = selfMadeCertificate(folder.path() / "one", now);
+    const GatewayCertificate other = selfMadeCertificate(folder.path() / "other", now);
     const auto refusal = [&](const std::filesystem::path& certificate, const std::filesystem::path& key) {
         return whyNot([&] { certificateOf(certificate, key, now); });
     };

@@ -1,4 +1,4 @@
-#include "haptic_server/teaching/attempt_report/report_text.h"
+#include "haptic_server/teaching/attempt_report/report_words.h"
 
 #include <gtest/gtest.h>
 

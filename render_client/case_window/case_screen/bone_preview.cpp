@@ -1,4 +1,4 @@
-#include "render_client/case_window/case_screen/bone_painter.h"
+#include "render_client/case_window/case_screen/bone_preview.h"
 
 #include <algorithm>
 

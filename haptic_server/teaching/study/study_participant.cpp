@@ -1,4 +1,4 @@
-#include "haptic_server/teaching/study/participant.h"
+#include "haptic_server/teaching/study/study_participant.h"
 
 #include <sys/random.h>
 

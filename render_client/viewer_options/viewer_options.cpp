@@ -1,4 +1,4 @@
-#include "render_client/viewer_options/options.h"
+#include "render_client/viewer_options/viewer_options.h"
 
 #include <pwd.h>
 #include <unistd.h>

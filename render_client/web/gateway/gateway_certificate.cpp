@@ -1,4 +1,4 @@
-#include "render_client/web/gateway/certificate.h"
+#include "render_client/web/gateway/gateway_certificate.h"
 
 #include <openssl/bio.h>
 #include <openssl/evp.h>
@@ -67,7 +67,7 @@ X509Ptr signedBy(EVP_PKEY* key) {
     return certificate;
 }
 
-void make(const Certificate& place) {
+void make(const GatewayCertificate& place) {
     const KeyPtr key(EVP_EC_gen("P-256"), EVP_PKEY_free);
     if (!key) throw UserError("library: OpenSSL makes no key");
     const X509Ptr certificate = signedBy(key.get());
@@ -79,7 +79,7 @@ void make(const Certificate& place) {
                      pemOf([&](BIO* memory) { return PEM_write_bio_X509(memory, certificate.get()); }));
 }
 
-std::string fingerprintOf(const bonemill::Certificate& certificate) {
+std::string fingerprintOf(const Certificate& certificate) {
     std::array<unsigned char, EVP_MAX_MD_SIZE> hash{};
     unsigned length = 0;
     if (X509_digest(certificate.get(), EVP_sha256(), hash.data(), &length) != 1)
@@ -88,8 +88,8 @@ std::string fingerprintOf(const bonemill::Certificate& certificate) {
 }
 
 // What is wrong here guests would be told, and could not mend.
-Certificate checked(Certificate place, std::time_t now, const std::string& remedy) {
-    const auto shown = bonemill::Certificate::read(place.certificate);
+GatewayCertificate checked(GatewayCertificate place, std::time_t now, const std::string& remedy) {
+    const auto shown = Certificate::read(place.certificate);
     if (!shown.hasKey(place.key))
         throw UserError(place.key.string() + ": is not the key of " + place.certificate.string() + "; " +
                         remedy);
@@ -100,13 +100,13 @@ Certificate checked(Certificate place, std::time_t now, const std::string& remed
 
 }  // namespace
 
-Certificate certificateOf(const std::filesystem::path& certificate, const std::filesystem::path& key,
-                          std::time_t now) {
+GatewayCertificate certificateOf(const std::filesystem::path& certificate, const std::filesystem::path& key,
+                                 std::time_t now) {
     return checked({certificate, key, "", false}, now, "give the gateway another --certificate and --key");
 }
 
-Certificate selfMadeCertificate(const std::filesystem::path& folder, std::time_t now) {
-    const Certificate place{folder / "gateway-certificate.pem", folder / "gateway-key.pem", "", true};
+GatewayCertificate selfMadeCertificate(const std::filesystem::path& folder, std::time_t now) {
+    const GatewayCertificate place{folder / "gateway-certificate.pem", folder / "gateway-key.pem", "", true};
     if (!std::filesystem::exists(place.certificate) || !std::filesystem::exists(place.key)) make(place);
     return checked(place, now, "delete it, and the gateway makes another one");
 }

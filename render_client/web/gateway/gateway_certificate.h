@@ -7,7 +7,7 @@
 
 namespace bonemill::gateway {
 
-struct Certificate {
+struct GatewayCertificate {
     std::filesystem::path certificate;  // PEM
     std::filesystem::path key;          // PEM
     std::string fingerprint;            // SHA-256 of the certificate's DER, 64 hexadecimal digits
@@ -16,10 +16,11 @@ struct Certificate {
 
 // Throws UserError for files that are no certificate and its key, and for one that is not valid at that unix
 // time.
-Certificate certificateOf(const std::filesystem::path& certificate, const std::filesystem::path& key,
-                          std::time_t now = std::time(nullptr));
+GatewayCertificate certificateOf(const std::filesystem::path& certificate, const std::filesystem::path& key,
+                                 std::time_t now = std::time(nullptr));
 // Returns the one in this folder, which is made (EC P-256, ten years) where there is none. The key is
 // readable for the user alone. Throws UserError, likewise.
-Certificate selfMadeCertificate(const std::filesystem::path& folder, std::time_t now = std::time(nullptr));
+GatewayCertificate selfMadeCertificate(const std::filesystem::path& folder,
+                                       std::time_t now = std::time(nullptr));
 
 }  // namespace bonemill::gateway

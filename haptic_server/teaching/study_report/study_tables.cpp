@@ -1,41 +1,21 @@
-#include "haptic_server/teaching/study_report/tables.h"
+#include "haptic_server/teaching/study_report/study_tables.h"
 
 #include <algorithm>
 
 #include "common/text/csv_text.h"
-#include "haptic_server/teaching/study_report/number_text.h"
 #include "haptic_server/teaching/study_statistics/planning.h"
 
 namespace bonemill::study {
 namespace {
 
-// Makes one line of a table.
-class Line {
-  public:
-    Line& operator<<(const std::string& text) { return field(csvText(text)); }
-    Line& operator<<(const char* text) { return *this << std::string(text); }
-    Line& operator<<(double value) { return field(fullText(value)); }
-    Line& operator<<(size_t value) { return field(std::to_string(value)); }
-    Line& operator<<(const Interval& interval) { return *this << interval.low << interval.high; }
-    Line& nothing() { return field(""); }
-    std::string end() const { return text_ + "\n"; }
+CsvLine& operator<<(CsvLine& line, const Interval& interval) {
+    return line << interval.low << interval.high;
+}
 
-  private:
-    Line& field(const std::string& text) {
-        if (!is_empty_) text_ += ',';
-        is_empty_ = false;
-        text_ += text;
-        return *this;
-    }
-
-    std::string text_;
-    bool is_empty_ = true;
-};
-
-Line lineOf(const StudyData& data, const FilledForm& filled) {
+CsvLine lineOf(const StudyData& data, const FilledForm& filled) {
     const Session& session = filled.session;
     const Participant& person = data.people[filled.person];
-    Line line;
+    CsvLine line;
     line << session.uuid << person.pseudonym << person.group << session.period << session.condition
          << session.task << session.attempt << filled.form->id;
     return line;
@@ -49,7 +29,7 @@ TableFile answersTable(const StudyData& data) {
         for (const Block& block : filled.form->blocks)
             for (const Item& item : block.items) {
                 if (!filled.answers.isAnswered(item.id)) continue;
-                Line line = lineOf(data, filled);
+                CsvLine line = lineOf(data, filled);
                 line << filled.form->version << block.id << item.id << size_t(item.is_rating);
                 const auto found = filled.answers.values.find(item.id);
                 const bool is_given = found != filled.answers.values.end();
@@ -83,7 +63,7 @@ TableFile sessionsTable(const StudyData& data) {
         for (const Session& session : person.sessions) {
             const auto found = data.runs.find(session.uuid);
             const RunRecord run = found == data.runs.end() ? RunRecord() : found->second;
-            Line line;
+            CsvLine line;
             line << session.uuid << person.pseudonym << person.group << size_t(person.has_withdrawn)
                  << session.period << session.condition << session.task << session.attempt << run.scene
                  << run.scene_sha256 << run.programs << run.recording;
@@ -94,7 +74,7 @@ TableFile sessionsTable(const StudyData& data) {
     return {"sessions.csv", text};
 }
 
-Line& operator<<(Line& line, const Summary& summary) {
+CsvLine& operator<<(CsvLine& line, const Summary& summary) {
     return line << summary.n << summary.mean << summary.sd << summary.median << summary.least << summary.most;
 }
 
@@ -110,7 +90,7 @@ TableFile itemsTable(const StudyData& data, const std::vector<Measure>& measures
                 for (const auto& [person, mean] : measure.byPerson()) values.push_back(mean);
             else
                 values = ofGroup(data, measure, group);
-            Line line;
+            CsvLine line;
             line << measure.form->id << measure.block << measure.id << size_t(measure.is_score)
                  << (i == 0 ? "all" : group);
             line << summarise(values);
@@ -132,7 +112,7 @@ TableFile groupsTable(const std::vector<GroupComparison>& comparisons) {
         "difference_low,difference_high,welch_t,welch_df,welch_p,welch_holm_p,u,mann_whitney_p,is_exact,"
         "mann_whitney_holm_p,hedges_g,g_low,g_high,cliffs_delta,delta_low,delta_high,auc,auc_low,auc_high\n";
     for (const GroupComparison& one : comparisons) {
-        Line line;
+        CsvLine line;
         line << one.measure->form->id << one.measure->id << one.first << one.second;
         line << one.of_first;
         line << one.of_second;
@@ -150,11 +130,11 @@ TableFile conditionsTable(const std::vector<ConditionComparison>& comparisons) {
         "paired_p,"
         "paired_holm_p,pratt_w,pratt_p,is_exact,pratt_holm_p,d_of_differences\n";
     for (const ConditionComparison& one : comparisons)
-        text += (Line() << one.measure->form->id << one.measure->id << one.first << one.second
-                        << one.of_first.n << one.of_first.mean << one.of_first.sd << one.of_second.mean
-                        << one.of_second.sd << one.paired.difference << one.paired.interval << one.paired.t
-                        << one.paired.df << one.paired.p << one.holm_paired << one.pratt.statistic
-                        << one.pratt.p << size_t(one.pratt.is_exact) << one.holm_pratt << one.d)
+        text += (CsvLine() << one.measure->form->id << one.measure->id << one.first << one.second
+                           << one.of_first.n << one.of_first.mean << one.of_first.sd << one.of_second.mean
+                           << one.of_second.sd << one.paired.difference << one.paired.interval << one.paired.t
+                           << one.paired.df << one.paired.p << one.holm_paired << one.pratt.statistic
+                           << one.pratt.p << size_t(one.pratt.is_exact) << one.holm_pratt << one.d)
                     .end();
     return {"condition_comparisons.csv", text};
 }
@@ -162,7 +142,8 @@ TableFile conditionsTable(const std::vector<ConditionComparison>& comparisons) {
 TableFile alphaTable(const StudyData& data, const std::vector<Measure>& measures) {
     std::string text = "form,block,people,items,alpha\n";
     for (const Alpha& alpha : alphasOf(data, measures))
-        text += (Line() << alpha.form->id << alpha.block << alpha.people << alpha.items << alpha.alpha).end();
+        text +=
+            (CsvLine() << alpha.form->id << alpha.block << alpha.people << alpha.items << alpha.alpha).end();
     return {"alpha.csv", text};
 }
 

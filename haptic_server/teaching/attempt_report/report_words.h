@@ -1,0 +1,22 @@
+// Numbers and words as reports write them. The functions are pure; any thread may call them.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace bonemill {
+
+// Text as HTML and SVG may hold it, in elements and in quoted attributes. What is no UTF-8, or a control
+// character, becomes "?".
+std::string escaped(std::string_view text);
+// Three significant digits, without an exponent where that is short: 0.0123, 4.5, 120.
+std::string roundedText(double value);
+// The number with its unit as people write it: "4.5 mm³", "12 %", "48 °C".
+std::string valueText(double value, std::string_view unit);
+// 1:02.5 for 62.5 s.
+std::string clockText(double t_s);
+// For attributes of SVG: two decimals at most.
+std::string coordinate(double value);
+std::string base64(std::string_view bytes);
+
+}  // namespace bonemill
