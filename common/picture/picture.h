@@ -1,9 +1,13 @@
-// It is an RGB picture in memory, and writes its PNG file.
+// An RGB picture in memory, and pictures as PNG. A picture belongs to one thread at a time; the functions are
+// for any thread, and not RT-safe.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace bonemill {
@@ -30,7 +34,16 @@ class Picture {
     std::vector<uint8_t> rgb_;
 };
 
+// The bytes of a PNG file; empty if it cannot be made.
+std::string pngOf(const Picture& picture);
 // Whoever reads `path` sees the old file or the whole new one. Throws UserError that names the path.
 void writePng(const Picture& picture, const std::filesystem::path& path);
+
+struct RgbaPixels {
+    int width = 0, height = 0;
+    std::vector<uint8_t> rgba;  // rows from the top
+};
+// Nothing if it is no PNG, or has a side of more than `max_side` pixels.
+std::optional<RgbaPixels> pixelsOfPng(std::string_view png, uint32_t max_side);
 
 }  // namespace bonemill
