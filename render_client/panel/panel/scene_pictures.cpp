@@ -9,7 +9,7 @@ namespace {
 constexpr uint32_t kMaxSide = 512;  // pixels
 
 ScenePicture decoded(const std::string& png) {
-    ScenePicture picture{.png = png};
+    ScenePicture picture{.png = png, .pixels = {}};
     if (auto pixels = pixelsOfPng(png, kMaxSide)) picture.pixels = std::move(*pixels);
     return picture;
 }
