@@ -81,9 +81,9 @@ std::string attemptLine(const topics::Attempt& attempt, const std::string& scene
         csvText(orNone(verdict.has_passed(), joined(verdict.failed_gates()))),
         ifAny(verdict.has_score_percent(), verdict.score_percent()),
         csvText(verdict.results())};
-    std::string line = cells[0];
-    for (size_t n = 1; n < std::min(columns, cells.size()); ++n) line += ',' + cells[n];
-    return line;
+    CsvLine line;
+    for (size_t n = 0; n < std::min(columns, cells.size()); ++n) line.field(cells[n]);
+    return line.text();
 }
 
 bool isAttemptOf(const std::string& line, const std::string& trainee) {

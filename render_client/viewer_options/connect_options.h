@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "render_client/web/connect/tls_socket.h"
+#include "common/web_socket/web_line.h"
 
 namespace CLI {
 class App;
@@ -16,7 +16,7 @@ class Option;
 namespace bonemill {
 
 struct ConnectOptions {
-    connect::TlsTarget target;
+    WebTarget target;
     std::string token;
 };
 

@@ -4,12 +4,13 @@
 //
 //   axis_torque_plot --out DIR
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
 #include "common/base/units.h"
+#include "common/process/gnuplot.h"
+#include "common/process/run_program.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"
 #include "tests/support/typical_effects.h"
@@ -96,7 +97,8 @@ int writeAll(const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder);
     writeCsv(folder / "axis_torque.csv", run(false), run(true));
     std::ofstream(folder / "axis_torque.gp") << kScript;
-    return std::system(("cd '" + folder.string() + "' && gnuplot axis_torque.gp").c_str()) == 0 ? 0 : 1;
+    runGnuplot(folder / "axis_torque.gp");
+    return 0;
 }
 
 }  // namespace
@@ -107,5 +109,5 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "usage: axis_torque_plot --out DIR\n");
         return 2;
     }
-    return bonemill::test::writeAll(argv[2]);
+    return bonemill::runProgram([&] { return bonemill::test::writeAll(argv[2]); });
 }

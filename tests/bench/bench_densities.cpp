@@ -1,5 +1,3 @@
-#include "tests/bench/bench_densities.h"
-
 #include <time.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include "common/density_codec/density_codec.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "haptic_server/surface/density_stream/density_source.h"
+#include "tests/bench/bench_commands.h"
 #include "tests/bench/bench_output.h"
 #include "tests/support/places.h"
 

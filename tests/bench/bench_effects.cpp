@@ -1,11 +1,10 @@
-#include "tests/bench/bench_effects.h"
-
 #include <cmath>
 #include <cstdio>
 
 #include "common/base/units.h"
 #include "haptic_server/lab/offline/effect_cost.h"
 #include "haptic_server/scene/setup/scene_setup.h"
+#include "tests/bench/bench_commands.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/half_block.h"
 #include "tests/support/every_effect_scene.h"

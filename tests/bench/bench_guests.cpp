@@ -1,5 +1,3 @@
-#include "tests/bench/bench_guests.h"
-
 #include <signal.h>
 #include <stdlib.h>
 
@@ -13,6 +11,7 @@
 #include "common/base/user_error.h"
 #include "common/rt/clock.h"
 #include "render_client/web/secrets/secrets.h"
+#include "tests/bench/bench_commands.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/processor_time.h"
 #include "tests/support/dds_session.h"

@@ -1,8 +1,6 @@
 // Machines differ threefold, so what counts is the ratio to the corridor's ticks of the same round: all cases
 // in turn, each figure and ratio the median of the rounds. Times are the processor's, so that another program
 // on the core does not count.
-#include "tests/bench/bench_heavy.h"
-
 #include <time.h>
 
 #include <cstdio>
@@ -16,6 +14,7 @@
 #include "haptic_server/recording/statistics/fault_names.h"
 #include "haptic_server/recording/statistics/tick_times.h"
 #include "haptic_server/scene/setup/scene_setup.h"
+#include "tests/bench/bench_commands.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/half_block.h"
 #include "tests/support/every_effect_scene.h"

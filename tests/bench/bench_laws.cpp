@@ -5,8 +5,6 @@
 // normal in per cent of what a rigid tool on the exact face would be felt with; the force along the face,
 // root mean square, in per cent of the normal one (false friction); the spread of the normal force; the
 // largest step from tick to tick; and the times of whole ticks.
-#include "tests/bench/bench_laws.h"
-
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -18,6 +16,7 @@
 #include "haptic_server/laws/all_laws.h"
 #include "haptic_server/recording/statistics/tick_times.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
+#include "tests/bench/bench_commands.h"
 #include "tests/bench/bench_output.h"
 #include "tests/support/contact_scene.h"
 

@@ -1,5 +1,3 @@
-#include "tests/bench/bench_load.h"
-
 #include <cstdio>
 #include <memory>
 
@@ -9,6 +7,7 @@
 #include "haptic_server/scans/import/import_volume.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
 #include "haptic_server/surface/mesh/mesher.h"
+#include "tests/bench/bench_commands.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/leaf_cells.h"
 #include "tests/support/scripted_io.h"

@@ -1,5 +1,3 @@
-#include "tests/bench/bench_loop.h"
-
 #include <unistd.h>
 
 #include <cmath>
@@ -11,6 +9,7 @@
 #include "haptic_server/core/tick/fixed_tick.h"
 #include "haptic_server/recording/statistics/fault_names.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
+#include "tests/bench/bench_commands.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/corridor_run.h"
 #include "tests/bench/leaf_cells.h"

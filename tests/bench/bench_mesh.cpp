@@ -1,5 +1,3 @@
-#include "tests/bench/bench_mesh.h"
-
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -13,6 +11,7 @@
 #include "haptic_server/scans/densify/densify.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "haptic_server/surface/mesh/mesher.h"
+#include "tests/bench/bench_commands.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/leaf_cells.h"
 #include "tests/support/places.h"

@@ -3,8 +3,6 @@
 //
 // Prints p50/p99/p99.9/max in µs and the ratio of the medians to the thesis' own setting (s = 3, octree depth
 // 3), all settings in turn in the same process, several rounds: quote a figure only if the rounds agree.
-#include "tests/bench/bench_presets.h"
-
 #include <cstdio>
 #include <vector>
 
@@ -15,6 +13,7 @@
 #include "haptic_server/laws/all_laws.h"
 #include "haptic_server/scans/densify/densify.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
+#include "tests/bench/bench_commands.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/typical_effects.h"
 

@@ -1,5 +1,3 @@
-#include "tests/bench/bench_remesh.h"
-
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +10,7 @@
 #include "haptic_server/recording/statistics/fault_names.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
 #include "haptic_server/surface/mesh/mesh_rounds.h"
+#include "tests/bench/bench_commands.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/corridor_run.h"
 

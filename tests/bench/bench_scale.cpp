@@ -1,11 +1,11 @@
-#include "tests/bench/bench_scale.h"
-
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 
 #include "common/base/units.h"
-#include "haptic_server/lab/accuracy_report/plot.h"
+#include "common/process/gnuplot.h"
 #include "haptic_server/recording/statistics/bone_files.h"
+#include "tests/bench/bench_commands.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/bench_tick.h"
 
@@ -32,6 +32,9 @@ void addRow(Table& table, const std::string& name, const nlohmann::json& figures
 
 void plot(const nlohmann::json& json, const std::string& picture) {
     const std::string data = picture + ".dat";
+    const auto nameOf = [](const std::string& path) {
+        return std::filesystem::path(path).filename().string();
+    };
     std::ofstream file(data);
     for (const auto& row : json["edge"])
         file << row["voxels_per_edge"] << ' ' << row["tick_us"]["p50"] << ' ' << row["tick_us"]["p99"]
@@ -43,15 +46,15 @@ void plot(const nlohmann::json& json, const std::string& picture) {
     file.close();
     const std::string script = picture + ".gnuplot";
     std::ofstream(script)
-        << "set terminal pngcairo size 1200,500 font 'sans,11'; set output '" << picture
+        << "set terminal pngcairo size 1200,500 font 'sans,11'; set output '" << nameOf(picture)
         << "'; set multiplot layout 1,2; set logscale xy; set grid; set key top left; set ylabel 'us'; set "
            "yrange [1:*];"
            "set xlabel 'voxels per edge, at equal voxels and burr'; set xtics (128,256,512,1024);"
            "plot '"
-        << data << "' i 0 u 1:2 w lp t 'tick p50', '' i 0 u 1:3 w lp t 'tick p99';"
+        << nameOf(data) << "' i 0 u 1:2 w lp t 'tick p50', '' i 0 u 1:3 w lp t 'tick p99';"
         << "set xlabel 'burr radius, mm'; set xtics (0.5,1,1.5,2,3,4);"
            "plot '"
-        << data << "' i 1 u 1:2 w lp t 'force p50', '' i 1 u 1:3 w lp t 'milling p50', "
+        << nameOf(data) << "' i 1 u 1:2 w lp t 'force p50', '' i 1 u 1:3 w lp t 'milling p50', "
         << "'' i 1 u 1:4 w lp t 'tick p99', 10*x**2 w l dt 2 t 'quadratic', 2*x**3 w l dt 3 t 'cubic'\n";
     runGnuplot(script);
     std::remove(script.c_str());

@@ -1,5 +1,3 @@
-#include "tests/bench/bench_stream.h"
-
 #include <signal.h>
 
 #include <algorithm>
@@ -18,6 +16,7 @@
 #include "haptic_server/scans/import/import_volume.h"
 #include "haptic_server/surface/mesh/mesher.h"
 #include "render_client/link/subscribe/scene_subscriber.h"
+#include "tests/bench/bench_commands.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/leaf_cells.h"
 #include "tests/bench/processor_time.h"

@@ -9,6 +9,7 @@
 #include "haptic_server/core/tick/tick_budget.h"
 #include "haptic_server/recording/statistics/fault_names.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
+#include "tests/bench/bench_commands.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/half_block.h"
 #include "tests/bench/leaf_cells.h"

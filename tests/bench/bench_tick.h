@@ -1,7 +1,5 @@
-// `haptic_bench tick` measures whole ticks over a flat half-filled block.
+// Whole ticks over a flat half-filled block.
 #pragma once
-
-#include <CLI/CLI.hpp>
 
 #include "haptic_server/core/accuracy/accuracy_settings.h"
 #include "tests/bench/tick_figures.h"
@@ -18,7 +16,5 @@ struct TickCase {
 };
 
 TickFigures measureTicks(const TickCase& tick_case);
-
-void addTickCommand(CLI::App& app);
 
 }  // namespace bonemill::bench

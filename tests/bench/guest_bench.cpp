@@ -15,10 +15,10 @@
 #include "common/cli/command_line.h"
 #include "common/mesh_codec/mesh_codec.h"
 #include "common/process/run_program.h"
+#include "common/tcp/listen.h"
+#include "common/web_socket/web_socket_client.h"
 #include "proto/gateway.pb.h"
 #include "render_client/link/subscribe/remote_session.h"
-#include "render_client/web/connect/web_socket_client.h"
-#include "render_client/web/tcp/listen.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/processor_time.h"
 
@@ -32,7 +32,7 @@ constexpr std::chrono::seconds kAnnounceEvery{1};
 constexpr double kKib = 1024, kBitsOfByte = 8;
 
 struct BenchWish {
-    connect::TlsTarget target{.host = "127.0.0.1", .port = 8443, .fingerprint = {}};
+    WebTarget target{.host = "127.0.0.1", .port = 8443, .fingerprint = {}};
     std::string tokens;
     uint32_t guests = 1, seconds = 10, patience_s = 120;
     std::vector<int> pids;
@@ -40,8 +40,8 @@ struct BenchWish {
 
 class BenchGuest {
   public:
-    BenchGuest(const connect::TlsTarget& target, const std::string& token)
-        : socket_(target, "/session", "bonemill.v1", kToCome) {
+    BenchGuest(const WebTarget& target, const std::string& token)
+        : socket_(target, {.path = "/session", .protocol = "bonemill.v1"}, kToCome) {
         gateway::FromGuest frame;
         frame.mutable_hello()->set_token(token);
         frame.mutable_hello()->set_version(gateway::kProtocolVersion);
@@ -107,7 +107,7 @@ class BenchGuest {
         if (node_bytes_ != before) node_frame_bytes_ += bytes.size() - others;
     }
 
-    connect::WebSocketClient socket_;
+    WebSocketClient socket_;
     uint64_t received_ = 0, node_bytes_ = 0, node_frame_bytes_ = 0, triangles_ = 0, tool_bytes_ = 0,
              frames_ = 0, wants_nodes_ = 0;
     std::unordered_set<uint64_t> nodes_;

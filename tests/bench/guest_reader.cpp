@@ -30,7 +30,7 @@ nlohmann::json ms(const LatencyHistogram& times) {
 
 class Reader {
   public:
-    explicit Reader(const connect::TlsTarget& target, const std::string& token)
+    explicit Reader(const WebTarget& target, const std::string& token)
         : start_ns_(monotonicNowNs()),
           session_(std::make_shared<connect::GatewaySession>(target, token, std::chrono::seconds(30))),
           subscriber_(

@@ -4,19 +4,7 @@
 #include <cstdio>
 
 #include "common/base/user_error.h"
-#include "tests/bench/bench_densities.h"
-#include "tests/bench/bench_effects.h"
-#include "tests/bench/bench_guests.h"
-#include "tests/bench/bench_heavy.h"
-#include "tests/bench/bench_laws.h"
-#include "tests/bench/bench_load.h"
-#include "tests/bench/bench_loop.h"
-#include "tests/bench/bench_mesh.h"
-#include "tests/bench/bench_presets.h"
-#include "tests/bench/bench_remesh.h"
-#include "tests/bench/bench_scale.h"
-#include "tests/bench/bench_stream.h"
-#include "tests/bench/bench_tick.h"
+#include "tests/bench/bench_commands.h"
 
 int main(int argc, char** argv) {
     using namespace bonemill;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
+
+#include "common/base/user_error.h"
+#include "common/process/gnuplot.h"
 
 namespace bonemill::test {
 namespace {
@@ -127,8 +129,11 @@ bool writeGrid(const std::filesystem::path& folder, const std::vector<GridRow>& 
     csv.close();
     script.close();
     if (!csv || !script) return false;
-    const std::string command = "cd '" + folder.string() + "' && gnuplot stability_grid.gp";
-    if (std::system(command.c_str()) != 0) std::printf("no picture: gnuplot did not run\n");
+    try {
+        runGnuplot(folder / "stability_grid.gp");
+    } catch (const UserError& error) {
+        std::printf("%s\n", error.what());
+    }
     return true;
 }
 

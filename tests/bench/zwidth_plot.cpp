@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <set>
+
+#include "common/base/user_error.h"
+#include "common/process/gnuplot.h"
 
 namespace bonemill::test {
 namespace {
@@ -84,8 +86,11 @@ bool writeZwidth(const std::filesystem::path& folder, const std::vector<ZwidthRo
     csv.close();
     script.close();
     if (!csv || !script) return false;
-    const std::string command = "cd '" + folder.string() + "' && gnuplot zwidth.gp";
-    if (std::system(command.c_str()) != 0) std::printf("no picture: gnuplot did not run\n");
+    try {
+        runGnuplot(folder / "zwidth.gp");
+    } catch (const UserError& error) {
+        std::printf("%s\n", error.what());
+    }
     return true;
 }
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "render_client/look/offscreen/picture.h"
+#include "common/picture/picture.h"
 
 namespace bonemill::test {
 

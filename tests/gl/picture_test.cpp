@@ -1,4 +1,4 @@
-#include "render_client/look/offscreen/picture.h"
+#include "common/picture/picture.h"
 
 #include <gtest/gtest.h>
 

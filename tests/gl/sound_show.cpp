@@ -4,12 +4,13 @@
 #include <cmath>
 #include <complex>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <vector>
 
+#include "common/process/gnuplot.h"
+#include "common/process/run_program.h"
 #include "render_client/sound/milling_synth.h"
 #include "render_client/sound/wav_file.h"
 
@@ -64,11 +65,11 @@ void writeSpectrogram(const std::vector<float>& samples, const std::filesystem::
     }
 }
 
-int plot(const std::filesystem::path& folder) {
+void plot(const std::filesystem::path& folder) {
     std::ofstream script(folder / "milling_sound.gp");
-    script << "set terminal pngcairo size 1100,520 font 'DejaVu Sans,11'\nset output '"
-           << (folder / "milling_sound.png").string()
-           << "'\nset xlabel 'time (s)'\nset ylabel 'frequency (Hz)'\nset cblabel 'dB of full scale'\n"
+    script << "set terminal pngcairo size 1100,520 font 'DejaVu Sans,11'\nset output "
+              "'milling_sound.png'\nset xlabel 'time (s)'\nset ylabel 'frequency (Hz)'\nset cblabel 'dB of "
+              "full scale'\n"
               "set xrange [0:11.9]\nset yrange [0:6000]\nset cbrange [-90:-15]\n"
               "set palette defined (0 '#10141c', 0.35 '#1f4e79', 0.65 '#d9822b', 1 '#fff3c4')\n"
               "set label 1 'run-up' at 0.2,5700 tc rgb 'white' front\nset label 2 'idle' at 1.8,5700 tc rgb "
@@ -77,10 +78,9 @@ int plot(const std::filesystem::path& folder) {
               "set label 4 'heavy contact' at 5.9,5700 tc rgb 'white' front\n"
               "set label 5 'stall' at 8.9,5700 tc rgb 'white' front\nset label 6 'free again' at 10.3,5700 "
               "tc rgb 'white' front\n"
-              "plot '"
-           << (folder / "milling_sound.dat").string() << "' using 1:2:3 with image notitle\n";
+              "plot 'milling_sound.dat' using 1:2:3 with image notitle\n";
     script.close();
-    return std::system(("gnuplot " + (folder / "milling_sound.gp").string()).c_str());
+    runGnuplot(folder / "milling_sound.gp");
 }
 
 }  // namespace
@@ -93,11 +93,14 @@ int main(int argc, char** argv) {
         return 2;
     }
     const std::filesystem::path folder = argv[1];
-    std::filesystem::create_directories(folder);
-    const std::vector<float> samples = play();
-    WavFile wav(folder / "milling_sound.wav", MillingSynth::kSampleRate);
-    wav.write(samples);
-    wav.finish();
-    writeSpectrogram(samples, folder / "milling_sound.dat");
-    return plot(folder) == 0 ? 0 : 1;
+    return runProgram([&] {
+        std::filesystem::create_directories(folder);
+        const std::vector<float> samples = play();
+        WavFile wav(folder / "milling_sound.wav", MillingSynth::kSampleRate);
+        wav.write(samples);
+        wav.finish();
+        writeSpectrogram(samples, folder / "milling_sound.dat");
+        plot(folder);
+        return 0;
+    });
 }

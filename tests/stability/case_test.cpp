@@ -28,11 +28,16 @@ Expectation expectationOf(const StabilityCase& stability_case, const Variant& va
     return variant.name == baselineVariant().name ? Expectation::kBaselineFails : Expectation::kKnownLimit;
 }
 
+// Where the report goes; null: none is wanted.
+const char* reportPath() {
+    return std::getenv("BONEMILL_STABILITY_REPORT");
+}
+
 void appendToReport(const std::string& line) {
-    const char* path = std::getenv("BONEMILL_STABILITY_REPORT");
-    if (!path) return;
-    std::ofstream file(path, std::ios::app);
+    if (!reportPath()) return;
+    std::ofstream file(reportPath(), std::ios::app);
     file << line + "\n" << std::flush;  // one write per line: tests may run side by side
+    EXPECT_TRUE(file.good()) << reportPath() << " cannot be written";
 }
 
 // NaN is beyond every bound.
@@ -94,6 +99,7 @@ TEST_P(OtherLawFails, Figure) {
 }
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Reported);  // without a report to write
 TEST_P(Reported, Figure) {
+    ASSERT_TRUE(reportPath()) << "name the report: BONEMILL_STABILITY_REPORT=FILE";
     measureAndReport();
 }
 // A limit that is known must not get worse: no more than three in ten settings buzz, no figure is twice

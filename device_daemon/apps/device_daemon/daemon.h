@@ -8,7 +8,7 @@
 #include "common/rt/stop_signals.h"
 #include "device_daemon/apps/device_daemon/child_program.h"
 #include "device_daemon/apps/device_daemon/daemon_memory.h"
-#include "device_daemon/apps/device_daemon/options.h"
+#include "device_daemon/apps/device_daemon/daemon_options.h"
 #include "device_daemon/apps/device_daemon/scene_follower.h"
 #include "device_daemon/control/device_loop/device_loop.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "device_daemon/apps/device_daemon/child_program.h"
-#include "device_daemon/apps/device_daemon/options.h"
+#include "device_daemon/apps/device_daemon/daemon_options.h"
 #include "device_daemon/apps/device_daemon/scene_follower.h"
 #include "device_daemon/control/haptic_device/haptic_device.h"
 

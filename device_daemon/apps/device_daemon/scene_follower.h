@@ -8,7 +8,7 @@
 
 #include "common/ipc/device_link.h"
 #include "common/rt/stop_signals.h"
-#include "device_daemon/apps/device_daemon/options.h"
+#include "device_daemon/apps/device_daemon/daemon_options.h"
 #include "device_daemon/device_setup/device_setup.h"
 
 namespace bonemill {

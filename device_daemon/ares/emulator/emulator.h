@@ -7,9 +7,9 @@
 #include "common/process/hand_order.h"
 #include "common/rt/stop_signals.h"
 #include "device_daemon/ares/emulator/emulated_controller.h"
+#include "device_daemon/ares/emulator/emulator_options.h"
 #include "device_daemon/ares/emulator/emulator_statistics.h"
 #include "device_daemon/ares/emulator/faulty_wire.h"
-#include "device_daemon/ares/emulator/options.h"
 #include "device_daemon/ares/emulator/scenario.h"
 #include "device_daemon/ares/wire/udp_socket.h"
 

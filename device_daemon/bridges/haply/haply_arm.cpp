@@ -1,5 +1,6 @@
 #include "device_daemon/bridges/haply/haply_arm.h"
 
+#include <chrono>
 #include <cstdlib>
 
 #include "common/base/units.h"
@@ -12,6 +13,8 @@
 namespace bonemill::bridge {
 namespace {
 
+constexpr std::chrono::seconds kConnectTime{3};
+constexpr int64_t kSendNs = 20 * kNsPerMillisecond;
 constexpr int64_t kInventoryNs = 2 * kNsPerSecond;
 constexpr int64_t kAnswerNs = 5 * kNsPerMillisecond;     // so long a period waits
 constexpr int64_t kAskAgainNs = 10 * kNsPerMillisecond;  // then the answer is not coming
@@ -41,9 +44,10 @@ ArmDescription HaplyArm::open(const Tell& tell) {
 
 void HaplyArm::connect() {
     try {
-        socket_.emplace(haply_.host, haply_.port);
+        socket_.emplace(WebTarget{.host = haply_.host, .port = haply_.port, .is_plain = true},
+                        WebSocketRequest{.is_text = true, .refusal = "it opens none"}, kConnectTime);
     } catch (const UserError& error) {
-        throw UserError(std::string("library: ") + error.what() +
+        throw UserError(std::string("library: no WebSocket at ") + error.what() +
                         ". Install Haply's Inverse Service and see that it runs (systemctl status "
                         "haply-inverse-service), or name its port with --service-port.");
     }
@@ -53,8 +57,7 @@ void HaplyArm::connect() {
 
 // The service begins with a list of all that it has.
 void HaplyArm::takeInventory() {
-    if (!socket_->receive(message_, monotonicNowNs() + kInventoryNs) ||
-        !takeMessage(message_, options_.device, state_))
+    if (!receive(monotonicNowNs() + kInventoryNs) || !takeMessage(message_, options_.device, state_))
         throw UserError("library: the service sends no list of its devices; is port " +
                         std::to_string(haply_.port) + " its simulation channel?");
     if (!state_.is_there)
@@ -92,16 +95,40 @@ void HaplyArm::run(ArmPeriod& period) noexcept {
 bool HaplyArm::exchange(const ArmOrder& order) {
     const int64_t now_ns = monotonicNowNs();
     if (unanswered_since_ns_ == 0 || now_ns - unanswered_since_ns_ > kAskAgainNs) {
-        if (!socket_->send(nextMessage(order))) return false;
+        if (!send(nextMessage(order))) return false;
         unanswered_since_ns_ = now_ns;
     }
     bool is_understood = false;
     // Of answers that came late, the newest counts.
-    for (int64_t deadline_ns = now_ns + kAnswerNs; socket_->receive(message_, deadline_ns); deadline_ns = 0) {
+    for (int64_t deadline_ns = now_ns + kAnswerNs; receive(deadline_ns); deadline_ns = 0) {
         unanswered_since_ns_ = 0;
         is_understood = takeMessage(message_, options_.device, state_);
     }
     return is_understood;
+}
+
+// Puts a message into the socket; false if that has ended, or did not take it within a moment.
+bool HaplyArm::send(const std::string& message) {
+    if (!socket_->hasUnsent()) socket_->send(message);
+    const int64_t deadline_ns = monotonicNowNs() + kSendNs;
+    for (socket_->move(); socket_->hasUnsent() && !socket_->hasEnded(); socket_->move()) {
+        const int64_t left_ns = deadline_ns - monotonicNowNs();
+        if (left_ns <= 0) return false;
+        socket_->wait(-1, std::chrono::nanoseconds(left_ns));
+    }
+    return !socket_->hasEnded();
+}
+
+// Waits for a whole message until the deadline (CLOCK_MONOTONIC ns).
+bool HaplyArm::receive(int64_t deadline_ns) {
+    socket_->move();
+    while (!socket_->receive(message_)) {
+        const int64_t left_ns = deadline_ns - monotonicNowNs();
+        if (left_ns <= 0 || socket_->hasEnded()) return false;
+        socket_->wait(-1, std::chrono::nanoseconds(left_ns));
+        socket_->move();
+    }
+    return true;
 }
 
 std::string HaplyArm::nextMessage(const ArmOrder& order) {
@@ -135,7 +162,7 @@ ArmReading HaplyArm::read(bool has_answered) const noexcept {
 // The service lets go of an arm that is not commanded.
 void HaplyArm::release() noexcept {
     if (!socket_) return;
-    if (has_driven_) socket_->send(forceMessage(state_, dialect_, Eigen::Vector3d::Zero()));
+    if (has_driven_) send(forceMessage(state_, dialect_, Eigen::Vector3d::Zero()));
     socket_.reset();
 }
 

@@ -9,11 +9,11 @@
 #include <string>
 
 #include "common/rt/realtime_thread.h"
+#include "common/web_socket/web_socket_client.h"
 #include "device_daemon/bridges/bridge/arm.h"
 #include "device_daemon/bridges/bridge/bridge_options.h"
 #include "device_daemon/bridges/haply/haply_messages.h"
 #include "device_daemon/bridges/haply/haply_options.h"
-#include "device_daemon/bridges/haply/web_socket.h"
 
 namespace bonemill::bridge {
 
@@ -35,6 +35,8 @@ class HaplyArm : public Arm {
     // The rest is the loop's thread.
     void run(ArmPeriod& period) noexcept;
     bool exchange(const ArmOrder& order);
+    bool send(const std::string& message);
+    bool receive(int64_t deadline_ns);
     std::string nextMessage(const ArmOrder& order);
     ArmReading read(bool has_answered) const noexcept;
     void release() noexcept;
@@ -43,7 +45,7 @@ class HaplyArm : public Arm {
     const HaplyOptions haply_;
     HaplyDialect dialect_;
     Tell tell_;
-    std::optional<WebSocket> socket_;
+    std::optional<WebSocketClient> socket_;
     HaplyState state_;
 
     std::atomic<bool> shall_end_{false};

@@ -1,10 +1,10 @@
 #include "haptic_server/assessment/product/deviation_picture.h"
 
-#include <png.h>
-
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "common/picture/picture.h"
 
 namespace bonemill {
 namespace {
@@ -47,21 +47,14 @@ class Canvas {
             }
     }
     std::string png() const {
-        std::vector<uint8_t> rows;
-        for (int j = size_.y() - 1; j >= 0; --j)  // the picture's first row is the highest
+        Picture picture(size_.x(), size_.y());
+        for (int j = 0; j < size_.y(); ++j) {
+            uint8_t* byte = picture.row(size_.y() - 1 - j);  // the picture's first row is the highest
             for (int i = 0; i < size_.x(); ++i)
                 for (const double part : colour_[size_t(i) + size_t(size_.x()) * size_t(j)])
-                    rows.push_back(uint8_t(std::lround(part)));
-        png_image header{};
-        header.version = PNG_IMAGE_VERSION;
-        header.width = png_uint_32(size_.x());
-        header.height = png_uint_32(size_.y());
-        header.format = PNG_FORMAT_RGB;
-        png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(header);
-        std::string file(bytes, '\0');
-        if (!png_image_write_to_memory(&header, file.data(), &bytes, 0, rows.data(), 0, nullptr)) return {};
-        file.resize(bytes);
-        return file;
+                    *byte++ = uint8_t(std::lround(part));
+        }
+        return pngOf(picture);
     }
 
   private:

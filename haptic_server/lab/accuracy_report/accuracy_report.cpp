@@ -8,6 +8,7 @@
 
 #include "common/base/user_error.h"
 #include "common/config/scene_tools.h"
+#include "common/process/gnuplot.h"
 #include "haptic_server/lab/accuracy_report/plot.h"
 #include "haptic_server/lab/accuracy_report/sweep_settings.h"
 #include "haptic_server/scene/setup/scene_setup.h"
@@ -150,7 +151,7 @@ std::string accuracyReport(const AccuracyReportOptions& options, std::ostream& p
     writeTextFile(out / "patch.csv", patchCsv(data));
     writeTextFile(out / "accuracy.json", accuracyJson(data));
     writeTextFile(out / "report.md", reportText(data));
-    writeTextFile(out / "pareto.gnuplot", paretoScript(data, out / "pareto.png"));
+    writeTextFile(out / "pareto.gnuplot", paretoScript(data, "pareto.png"));
     progress << "measured in " << int(secondsSince(start)) << " s" << std::endl;
     runGnuplot(out / "pareto.gnuplot");
     std::string summary;

@@ -1,23 +1,15 @@
 #include "haptic_server/lab/accuracy_report/plot.h"
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <sstream>
 
-#include "common/base/user_error.h"
 #include "haptic_server/lab/accuracy_report/label_layout.h"
 
 namespace bonemill {
 namespace {
 
 constexpr double kSmallestError = 1e-3;  // %, for the logarithm
-constexpr int kCommandNotFound = 127;
 
 std::string quoted(const std::string& text) {
     std::string out = "\"";
@@ -150,25 +142,6 @@ std::string paretoScript(const ReportData& data, const std::filesystem::path& pn
            "difference\", \\\n"
            " $in_force using 1:2 with points pt 6 ps 3 lw 2 lc rgb \"#202020\" title \"in force in the "
            "scene\"\n";
-}
-
-void runGnuplot(const std::filesystem::path& script) {
-    std::string program = "gnuplot", argument = script.string();
-    char* const arguments[] = {program.data(), argument.data(), nullptr};
-    pid_t child = 0;
-    const int spawn_error = posix_spawnp(&child, "gnuplot", nullptr, nullptr, arguments, environ);
-    const std::string advice =
-        "; the picture is missing, the figures are written (Debian: apt install gnuplot-nox)";
-    if (spawn_error)
-        throw UserError(std::string("gnuplot cannot be run (") + std::strerror(spawn_error) + ')' + advice);
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
-    if (WIFEXITED(status) && WEXITSTATUS(status) == kCommandNotFound)
-        throw UserError("gnuplot cannot be run" + advice);
-    throw UserError("gnuplot failed on " + script.string() +
-                    "; the picture is missing, the figures are written");
 }
 
 }  // namespace bonemill

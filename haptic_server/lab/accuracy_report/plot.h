@@ -5,10 +5,7 @@
 
 namespace bonemill {
 
-// This is a whole gnuplot script that writes `png`.
+// This is a whole gnuplot script that writes `png`, a path from where it runs.
 std::string paretoScript(const ReportData& data, const std::filesystem::path& png);
-
-// Runs gnuplot on a script file as a child process. Throws UserError if there is no gnuplot or it fails.
-void runGnuplot(const std::filesystem::path& script);
 
 }  // namespace bonemill

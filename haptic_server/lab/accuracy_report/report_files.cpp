@@ -10,6 +10,7 @@
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
+#include "common/text/csv_text.h"
 #include "haptic_server/lab/accuracy_report/pareto.h"
 #include "haptic_server/recording/statistics/fault_names.h"
 
@@ -79,9 +80,9 @@ std::string cellOf(const Columns& value) {
 std::string csvOf(const std::vector<Columns>& rows) {
     std::string csv;
     const auto addLine = [&](const Columns& row, auto&& cell) {
-        const char* separator = "";
-        for (const auto& [name, value] : row.items()) csv += separator + cell(name, value), separator = ",";
-        csv += '\n';
+        CsvLine line;
+        for (const auto& [name, value] : row.items()) line.field(cell(name, value));
+        csv += line.end();
     };
     if (rows.empty()) return csv;
     addLine(rows.front(), [](const std::string& name, const Columns&) { return name; });

@@ -2,13 +2,13 @@
 
 #include <spdlog/spdlog.h>
 
-#include <charconv>
 #include <cstdio>
 #include <memory>
 
 #include "common/base/user_error.h"
 #include "common/files/whole_file.h"
 #include "common/rt/clock.h"
+#include "common/text/csv_text.h"
 #include "haptic_server/scene/trajectory/recorded_row.h"
 
 namespace bonemill {
@@ -16,9 +16,7 @@ namespace {
 
 template <class Number>
 void append(std::string& line, Number value) {
-    char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-    line.append(text, end).push_back(',');
+    line += numberText(value) + ',';
 }
 
 std::string lineOf(const JournalTick& tick) {

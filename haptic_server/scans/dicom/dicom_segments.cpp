@@ -15,7 +15,6 @@
 #include "common/base/user_error.h"
 #include "haptic_server/scans/confined/file_being_read.h"
 #include "haptic_server/scans/confined/import_limits.h"
-#include "haptic_server/scans/confined/memory_cap.h"
 #include "haptic_server/scans/dicom/dicom_groups.h"
 #include "haptic_server/scans/dicom/lab_color.h"
 #include "haptic_server/scans/dicom/segment_grid.h"
@@ -76,9 +75,6 @@ class SegmentationReader {
   public:
     explicit SegmentationReader(const std::filesystem::path& file) : file_(file) {
         noteFileBeingRead(file);
-        std::error_code error;
-        constexpr uint64_t kTables = uint64_t(1) << 30;  // masks are packed a thousand times
-        const MemoryCap cap(kTables + 8 * std::filesystem::file_size(file, error));
         reader_.SetFileName(file.c_str());
         if (!reader_.Read()) refuseFile(file_, "the DICOM library cannot read it");
     }

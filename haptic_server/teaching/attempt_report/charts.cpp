@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptic_server/teaching/attempt_report/report_text.h"
+#include "haptic_server/teaching/attempt_report/report_words.h"
 
 namespace bonemill {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "common/base/units.h"
-#include "haptic_server/teaching/attempt_report/report_text.h"
+#include "haptic_server/teaching/attempt_report/report_words.h"
 
 namespace bonemill {
 

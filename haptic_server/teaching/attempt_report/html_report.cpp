@@ -6,7 +6,7 @@
 #include "haptic_server/assessment/measures/moments.h"
 #include "haptic_server/teaching/attempt_report/charts.h"
 #include "haptic_server/teaching/attempt_report/report_style.h"
-#include "haptic_server/teaching/attempt_report/report_text.h"
+#include "haptic_server/teaching/attempt_report/report_words.h"
 
 namespace bonemill {
 namespace {

@@ -1,8 +1,9 @@
 #include "haptic_server/teaching/attempt_report/xapi.h"
 
-#include <cinttypes>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+
+#include "common/digest/name_uuid.h"
 
 namespace bonemill {
 namespace {
@@ -10,21 +11,9 @@ namespace {
 // Names that are nobody's on the network (RFC 2606): identifiers, not addresses.
 constexpr const char* kRoot = "https://bonemill.invalid/";
 
-uint64_t fnv1a(const std::string& text, uint64_t hash) {
-    for (const char c : text) hash = (hash ^ uint8_t(c)) * 0x100000001b3;
-    return hash;
-}
-
-// In the form of a name-based UUID (version 5); the hash is our own.
 std::string idOf(const AttemptResult& result) {
-    const std::string name =
-        result.pseudonym + '\n' + result.scene_hash + '\n' + std::to_string(result.start_unix_ns);
-    const uint64_t high = fnv1a(name, 0xcbf29ce484222325), low = fnv1a(name, high);
-    char text[40];
-    std::snprintf(text, sizeof text, "%08" PRIx64 "-%04" PRIx64 "-5%03" PRIx64 "-%04" PRIx64 "-%012" PRIx64,
-                  high >> 32, high >> 16 & 0xffff, high & 0xfff, (low >> 48 & 0x3fff) | 0x8000,
-                  low & 0xffffffffffff);
-    return text;
+    return uuidOfName(kUrlNames, std::string(kRoot) + "attempts/" + result.pseudonym + '\n' +
+                                     result.scene_hash + '\n' + std::to_string(result.start_unix_ns));
 }
 
 std::string durationText(double seconds) {

@@ -9,8 +9,8 @@
 namespace bonemill {
 
 // The verb is passed or failed where the task has gates, else completed; a score is there where the teacher
-// gave weights. The statement's id is made from whose attempt at what it is and when, so that the same
-// attempt told twice is one.
+// gave weights. The statement's id is a UUID of whose attempt at what it is and when (version 5), so that the
+// same attempt told twice is one.
 std::string xapiStatement(const AttemptResult& result);
 
 }  // namespace bonemill

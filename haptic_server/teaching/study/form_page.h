@@ -2,7 +2,7 @@
 // `study import` takes. Pure; any thread may call it.
 #pragma once
 
-#include "haptic_server/teaching/study/participant.h"
+#include "haptic_server/teaching/study/study_participant.h"
 
 namespace bonemill::study {
 

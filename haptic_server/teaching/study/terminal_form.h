@@ -4,7 +4,7 @@
 #include <functional>
 #include <iosfwd>
 
-#include "haptic_server/teaching/study/participant.h"
+#include "haptic_server/teaching/study/study_participant.h"
 
 namespace bonemill::study {
 

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <set>
 
+#include "common/text/csv_text.h"
 #include "haptic_server/teaching/study_report/number_text.h"
-#include "haptic_server/teaching/study_report/report_text.h"
+#include "haptic_server/teaching/study_report/study_report_text.h"
 
 namespace bonemill::study {
 namespace {
@@ -56,7 +57,7 @@ std::string attemptsOf(const Protocol& protocol) {
     std::set<std::string> attempts;
     for (const Task& task : protocol.tasks)
         attempts.insert(cellText(task.id) + ": " + std::to_string(task.attempts) +
-                        (task.seconds > 0 ? " of at most " + fullText(task.seconds) + " s" : ""));
+                        (task.seconds > 0 ? " of at most " + numberText(task.seconds) + " s" : ""));
     return joined(attempts);
 }
 

@@ -23,11 +23,11 @@ GroupComparison compared(const StudyData& data, const Measure& measure, const st
     comparison.rank = mannWhitney(a, b);
     comparison.g = hedgesG(a, b);
     comparison.auc = aucOf(a, b);
-    comparison.delta = cliffsDelta(a, b);
+    comparison.delta = cliffsDelta(comparison.auc);
     comparison.of_g = bootstrapInterval(a, b, hedgesG, seed);
     comparison.of_auc = bootstrapInterval(a, b, aucOf, seed);
     // Delta is a straight line of AUC, and so is its interval.
-    comparison.of_delta = {2 * comparison.of_auc.low - 1, 2 * comparison.of_auc.high - 1};
+    comparison.of_delta = {cliffsDelta(comparison.of_auc.low), cliffsDelta(comparison.of_auc.high)};
     return comparison;
 }
 

@@ -1,8 +1,6 @@
-// Figures as a report shows them. Pure; any thread may call them. What is not known is a dash, in tables for
-// machines an empty field.
+// Figures as a report shows them. Pure; any thread may call them. What is not known is a dash.
 #pragma once
 
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -31,13 +29,6 @@ inline std::string intervalText(const Interval& interval, int digits) {
 
 inline std::string percentText(double share) {
     return fixedText(100 * share, 0) + " %";
-}
-
-// All digits, for other programs.
-inline std::string fullText(double value) {
-    if (std::isnan(value)) return "";
-    char text[32];
-    return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 }  // namespace bonemill::study

@@ -3,8 +3,8 @@
 #include "common/files/private_file.h"
 #include "haptic_server/teaching/study/shipped_files.h"
 #include "haptic_server/teaching/study_report/checklist.h"
-#include "haptic_server/teaching/study_report/report_text.h"
-#include "haptic_server/teaching/study_report/tables.h"
+#include "haptic_server/teaching/study_report/study_report_text.h"
+#include "haptic_server/teaching/study_report/study_tables.h"
 
 namespace bonemill::study {
 

@@ -64,10 +64,6 @@ double aucOf(Sample a, Sample b) {
     return higher / double(a.size() * b.size());
 }
 
-double cliffsDelta(Sample a, Sample b) {
-    return 2 * aucOf(a, b) - 1;
-}
-
 Interval bcaInterval(std::vector<double> replicates, double observed, Sample influence, double level) {
     double below = 0;
     for (const double value : replicates) below += value < observed ? 1 : value == observed ? 0.5 : 0;

@@ -18,8 +18,10 @@ double hedgesG(Sample a, Sample b);
 // The chance that one of the first group answers higher than one of the second, ties counted half: U / (n1
 // n2).
 double aucOf(Sample a, Sample b);
-// 2 AUC - 1: from -1, all of the first lower, to 1.
-double cliffsDelta(Sample a, Sample b);
+// Of an AUC: from -1, all of the first lower, to 1.
+inline double cliffsDelta(double auc) {
+    return 2 * auc - 1;
+}
 
 // The bias-corrected and accelerated interval (Efron 1987) from bootstrap replicates of a statistic.
 // `influence` says how far each observation draws the statistic, in any common unit. Replicates equal to the

@@ -1,7 +1,7 @@
 // render_client --connect: the viewer becomes a gateway's guest.
 #pragma once
 
-#include "render_client/viewer_options/options.h"
+#include "render_client/viewer_options/viewer_options.h"
 
 namespace bonemill {
 

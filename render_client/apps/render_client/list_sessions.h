@@ -1,7 +1,7 @@
 // render_client --list: which sessions are there?
 #pragma once
 
-#include "render_client/viewer_options/options.h"
+#include "render_client/viewer_options/viewer_options.h"
 
 namespace bonemill {
 

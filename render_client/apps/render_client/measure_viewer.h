@@ -2,7 +2,7 @@
 // by the processor, or in a window by what draws there.
 #pragma once
 
-#include "render_client/viewer_options/options.h"
+#include "render_client/viewer_options/viewer_options.h"
 
 namespace bonemill {
 

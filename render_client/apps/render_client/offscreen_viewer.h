@@ -1,7 +1,7 @@
 // The viewer without a display writes pictures into a folder, and one JSON line per picture to stdout.
 #pragma once
 
-#include "render_client/viewer_options/options.h"
+#include "render_client/viewer_options/viewer_options.h"
 
 namespace bonemill {
 

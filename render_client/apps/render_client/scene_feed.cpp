@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "render_client/apps/render_client/stop_signal.h"
-#include "render_client/viewer_options/options.h"
+#include "render_client/viewer_options/viewer_options.h"
 
 namespace bonemill {
 void SceneFeed::update() {

@@ -1,7 +1,7 @@
 // Sends one command for scripts: no picture, one line on stdout.
 #pragma once
 
-#include "render_client/viewer_options/options.h"
+#include "render_client/viewer_options/viewer_options.h"
 
 namespace bonemill {
 

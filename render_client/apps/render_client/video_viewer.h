@@ -1,7 +1,7 @@
 // The viewer without a display makes a video of what it sees, and prints one JSON line about it to stdout.
 #pragma once
 
-#include "render_client/viewer_options/options.h"
+#include "render_client/viewer_options/viewer_options.h"
 
 namespace bonemill {
 

@@ -1,7 +1,7 @@
 // Shows the viewer in a window.
 #pragma once
 
-#include "render_client/viewer_options/options.h"
+#include "render_client/viewer_options/viewer_options.h"
 
 namespace bonemill {
 

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "render_client/case_window/case_desk/scan_slice.h"
-#include "render_client/case_window/case_screen/bone_painter.h"
+#include "render_client/case_window/case_screen/bone_preview.h"
 #include "render_client/case_window/case_screen/case_screen.h"
 #include "render_client/panel/imgui/imgui_painter.h"
 

@@ -15,15 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "proto/topics.pb.h"
 #include "render_client/link/subscribe/command_outbox.h"
-#include "render_client/link/subscribe/hearing.h"
-#include "render_client/link/subscribe/payloads.h"
-#include "render_client/link/subscribe/scene_model.h"
-#include "render_client/link/subscribe/server_choice.h"
-#include "render_client/link/subscribe/server_numbers.h"
+#include "render_client/link/subscribe/session_ear.h"
 #include "render_client/link/subscribe/session_link.h"
-#include "render_client/link/subscribe/viewer_list.h"
 
 namespace bonemill {
 
@@ -40,7 +34,7 @@ struct SubscriberOptions {
     std::shared_ptr<RemoteSession> remote = {};
 };
 
-class SceneSubscriber {
+class SceneSubscriber : private SessionSink {
   public:
     static constexpr size_t kAllNodes = std::numeric_limits<size_t>::max();
 
@@ -57,7 +51,7 @@ class SceneSubscriber {
     const std::optional<topics::SceneInfo>& sceneInfo() const noexcept { return scene_info_; }
     // What its effects count since the state before, they count here since the poll() before.
     const std::optional<topics::ToolState>& toolState() const noexcept { return tool_state_; }
-    const std::optional<topics::Status>& status() const noexcept { return status_; }
+    const std::optional<topics::Status>& status() const noexcept { return ear_.status(); }
     // A server that shows another scene tells it anew. The pictures of its scenes come by and by.
     const std::optional<topics::Lesson>& lesson() const noexcept { return lesson_; }
 
@@ -72,17 +66,17 @@ class SceneSubscriber {
 
     // Returns true when every node of the newest status is here, and no other. It is false in the short while
     // between a changed node and the status that counts it.
-    bool isComplete() const;
+    bool isComplete() const { return ear_.isComplete(); }
     // Returns true when a server of this session was there at the last poll(): it was matched, and something
     // came from it within kServerTimeout.
-    bool hasServer() const;
-    static constexpr std::chrono::seconds kServerTimeout{3};
+    bool hasServer() const { return ear_.hasServer(); }
+    static constexpr std::chrono::seconds kServerTimeout = SessionEar::kServerTimeout;
     // Returns true when the server that was heard last took its leave: it went while it was still heard. One
     // that crashed, or that the network lost, falls silent first.
-    bool hasEnded() const { return has_ended_; }
+    bool hasEnded() const { return ear_.hasEnded(); }
     // Returns what another server of this session calls its scene, while there is one: of two, the one that
     // was here first is shown for as long as it lives.
-    std::optional<std::string> otherServer() const;
+    std::optional<std::string> otherServer() const { return ear_.otherServer(); }
 
     // Queues a command (sender, role and sequence are filled in) and returns its sequence; poll() sends it.
     uint32_t sendCommand(topics::Command command);
@@ -102,54 +96,36 @@ class SceneSubscriber {
         if (link_) link_->hand.letGo(epoch());
     }
     // Returns the other viewers of the session, heard within ViewerList::kTimeout, by sender.
-    std::vector<topics::Viewer> viewers() const { return viewers_.viewers(); }
+    std::vector<topics::Viewer> viewers() const { return ear_.viewers().viewers(); }
 
     // Brings the densities that the store wants into it: after each poll(). The viewers of a store that wants
     // none pay nothing.
     void followDensities(DensityStore& densities);
     const DensityFeed& densityFeed() const noexcept { return link_->density_feed; }
 
-    uint64_t epoch() const noexcept { return model_.epoch(); }
-    const NodeDigest& digest() const noexcept { return model_.digest(); }
-    uint64_t malformedSamples() const noexcept { return malformed_count_; }
+    uint64_t epoch() const noexcept { return ear_.model().epoch(); }
+    const NodeDigest& digest() const noexcept { return ear_.model().digest(); }
+    uint64_t malformedSamples() const noexcept { return ear_.malformedSamples(); }
     // While it misses what a server tells without a pause it joins the domain anew, with a fresh participant:
     // a reader that became deaf hears again. Returns how often it did.
     uint64_t rejoinings() const noexcept { return rejoinings_; }
 
   private:
-    void takeAll(size_t max_nodes);
-    void takeStatus();
-    void takeLesson();
-    void takePictures();
+    void beginRun() override;
+    void hear(const topics::Status& status) override { outbox_.acknowledge(status); }
+    void hear(topics::SceneInfo&& info) override { scene_info_ = std::move(info); }
+    void hear(topics::Lesson&& lesson) override;
+    void hear(topics::ScenePicture&& picture, uint32_t scene) override;
+    void hear(StructureSurface&& structure, const dds::StructureMeshSample& sample) override;
+    void hear(topics::ToolState&& state) override { tool_state_ = std::move(state); }
+    void hear(std::optional<topics::Remark>&& remark, uint32_t place) override;
+    void sendCommands();
     void showPictures();
-    void takeSceneInfo();
-    void takeNodes(size_t max_nodes);
-    void takeStructures();
-    void takeToolState();
-    void takeRemarks();
-    void takeViewers();
-    // Returns whether a message of this epoch from this writer, as `reader` knows it, is our server's.
-    template <class Sample>
-    bool accept(uint64_t epoch, const Inlet<Sample>& reader, uint64_t writer);
-    void beginRun();
-    void noteTime();
-    void noteNothingToHear();
-    bool isServerAlive() const;
-    void readAnewIfDue();
     void rejoinIfDeaf();
-    void join();
-    bool isHeard() const;
-    void noteEnd();
-    void dropMalformed(const std::string& what);
 
     SubscriberOptions options_;
-    SceneModel model_;
-    ServerChoice choice_;
-    uint64_t status_writer_ = 0;  // of our server; 0: not known yet
-    std::string other_scene_;     // what another server of the session shows
     std::optional<topics::SceneInfo> scene_info_;
     std::optional<topics::ToolState> tool_state_;
-    std::optional<topics::Status> status_;
     std::optional<topics::Lesson> lesson_;
     std::map<uint32_t, topics::ScenePicture> pictures_;  // of its scenes, by number
     std::map<uint32_t, topics::Remark> remarks_;
@@ -157,19 +133,12 @@ class SceneSubscriber {
     std::map<uint32_t, StructureSurface> structures_;
     uint64_t structure_changes_ = 0;
     size_t structure_triangles_ = 0;
-    std::optional<std::chrono::steady_clock::time_point> last_heard_;
-    bool has_ended_ = false;
-    bool is_matched_ = false;  // with a server's writer, at the last poll()
-    ViewerList viewers_;
-    ServerNumbers server_numbers_;
-    std::optional<std::chrono::steady_clock::time_point> read_anew_;
-    Hearing hearing_;
     uint64_t rejoinings_ = 0;
     uint32_t next_wish_ = 1;  // HandSpeaker
-    uint64_t malformed_count_ = 0;
     CommandOutbox outbox_;
 
     std::unique_ptr<SessionLink> link_;  // none while joining anew fails
+    SessionEar ear_;                     // on the link
 };
 
 }  // namespace bonemill

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/picture/picture.h"
 #include "render_client/look/gl/gl_api.h"
-#include "render_client/look/offscreen/picture.h"
 
 namespace bonemill {
 

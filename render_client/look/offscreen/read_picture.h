@@ -2,8 +2,8 @@
 // must be current.
 #pragma once
 
+#include "common/picture/picture.h"
 #include "render_client/look/gl/gl_api.h"
-#include "render_client/look/offscreen/picture.h"
 
 namespace bonemill {
 

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "common/files/whole_file.h"
-#include "render_client/look/offscreen/picture.h"
+#include "common/picture/picture.h"
 
 namespace bonemill {
 

@@ -13,8 +13,8 @@ void PanelPainter::uploadPictures(const Panel& panel) {
         GlTexture& texture = pictures_.try_emplace(picture.number, gl_).first->second;
         gl_.BindTexture(GL_TEXTURE_2D, texture.name());
         gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-        gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, picture.width, picture.height, 0, GL_RGBA,
-                       GL_UNSIGNED_BYTE, picture.rgba.data());
+        gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, picture.pixels.width, picture.pixels.height, 0, GL_RGBA,
+                       GL_UNSIGNED_BYTE, picture.pixels.rgba.data());
         for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
             gl_.TexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
         for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})

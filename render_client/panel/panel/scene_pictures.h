@@ -1,11 +1,10 @@
 // The pictures of the scenes that can be chosen, decoded from PNG once. It belongs to the render thread.
 #pragma once
 
-#include <cstdint>
 #include <map>
 #include <string>
-#include <vector>
 
+#include "common/picture/picture.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {
@@ -13,8 +12,7 @@ namespace bonemill {
 struct ScenePicture {
     std::string png;  // that it was decoded from
     int number = 0;   // the panel's picture of this number; 0: there is none
-    int width = 0, height = 0;
-    std::vector<uint8_t> rgba;  // rows from the top
+    RgbaPixels pixels;
 };
 
 class ScenePictures {

@@ -29,7 +29,7 @@ uint64_t epochOfNode(const std::string& payload) {
 
 }  // namespace
 
-GatewaySession::GatewaySession(TlsTarget target, std::string token, std::chrono::milliseconds patience)
+GatewaySession::GatewaySession(WebTarget target, std::string token, std::chrono::milliseconds patience)
     : target_(std::move(target)),
       patience_(patience),
       wake_file_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
@@ -79,7 +79,7 @@ void GatewaySession::keepConnected() {
             connectAndServe();
         } catch (const UserError& error) {
             const std::lock_guard lock(mutex_);
-            problem_ = error.what();
+            problem_ = std::string("--connect ") + error.what();
         }
         socket_.reset();
         if (connection_ != before) pause = kFirstPause;
@@ -95,7 +95,10 @@ void GatewaySession::sleepUntilStopOr(Clock::time_point end) {
 }
 
 void GatewaySession::connectAndServe() {
-    socket_ = std::make_unique<WebSocketClient>(target_, "/session", "bonemill.v1", patience_);
+    const WebSocketRequest request{.path = "/session",
+                                   .protocol = "bonemill.v1",
+                                   .refusal = "no bonemill gateway is there, or it takes no more guests"};
+    socket_ = std::make_unique<WebSocketClient>(target_, request, patience_);
     received_ = 0;
     socket_->send(hello());
     serve();

@@ -14,8 +14,8 @@
 #include <string>
 #include <thread>
 
+#include "common/web_socket/web_socket_client.h"
 #include "render_client/link/subscribe/remote_session.h"
-#include "render_client/web/connect/web_socket_client.h"
 
 namespace bonemill::connect {
 
@@ -23,7 +23,7 @@ class GatewaySession : public RemoteSession {
   public:
     // Waits for the Welcome. Throws UserError: nobody is there, it is somebody else, or this token is
     // refused.
-    GatewaySession(TlsTarget target, std::string token, std::chrono::milliseconds patience);
+    GatewaySession(WebTarget target, std::string token, std::chrono::milliseconds patience);
     ~GatewaySession() override;
 
     // As whom the gateway took this viewer first.
@@ -58,7 +58,7 @@ class GatewaySession : public RemoteSession {
     void advance();
     void sort(gateway::Sample& sample);
 
-    const TlsTarget target_;
+    const WebTarget target_;
     const std::chrono::milliseconds patience_;
     int wake_file_;
 

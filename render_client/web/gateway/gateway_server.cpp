@@ -15,11 +15,11 @@
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
+#include "common/tcp/listen.h"
 #include "render_client/web/gateway/gateway.h"
 #include "render_client/web/gateway/http_answer.h"
 #include "render_client/web/gateway/relayed_guests.h"
 #include "render_client/web/gateway/static_pages.h"
-#include "render_client/web/tcp/listen.h"
 
 namespace bonemill::gateway {
 namespace {
@@ -87,7 +87,7 @@ struct GatewayServer::Port {
     int write(lws* connection, GuestConnection& place);
     void step();
 
-    Certificate certificate;
+    GatewayCertificate certificate;
     StaticPages pages;
     Gateway gateway;
     struct Arrival {
@@ -325,7 +325,7 @@ uint16_t GatewayServer::port() const {
     return uint16_t(lws_get_vhost_listen_port(port_->vhost));
 }
 
-const Certificate& GatewayServer::certificate() const {
+const GatewayCertificate& GatewayServer::certificate() const {
     return port_->certificate;
 }
 

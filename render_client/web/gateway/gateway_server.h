@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "render_client/web/gateway/certificate.h"
+#include "render_client/web/gateway/gateway_certificate.h"
 #include "render_client/web/gateway/gateway_options.h"
 
 namespace bonemill::gateway {
@@ -23,7 +23,7 @@ class GatewayServer {
     void serveUntil(const std::function<bool()>& stop);
 
     uint16_t port() const;
-    const Certificate& certificate() const;
+    const GatewayCertificate& certificate() const;
     bool hasPage() const;
 
   private:

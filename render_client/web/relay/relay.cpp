@@ -11,8 +11,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "common/tcp/listen.h"
 #include "render_client/web/secrets/secrets.h"
-#include "render_client/web/tcp/listen.h"
 
 namespace bonemill {
 

@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "common/log/log_limit.h"
+#include "common/tcp/descriptor.h"
+#include "common/tcp/peer_address.h"
 #include "render_client/web/relay/relay_greeting.h"
 #include "render_client/web/relay/relay_options.h"
-#include "render_client/web/tcp/descriptor.h"
-#include "render_client/web/tcp/peer_address.h"
 
 namespace bonemill {
 

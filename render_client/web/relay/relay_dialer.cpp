@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "render_client/web/tcp/dial.h"
+#include "common/tcp/dial.h"
 
 namespace bonemill {
 namespace {

@@ -10,10 +10,10 @@
 #include <string>
 #include <thread>
 
+#include "common/tcp/descriptor.h"
+#include "common/tcp/peer_address.h"
 #include "render_client/web/relay/relay_greeting.h"
 #include "render_client/web/relay/relay_options.h"
-#include "render_client/web/tcp/descriptor.h"
-#include "render_client/web/tcp/peer_address.h"
 
 namespace bonemill {
 

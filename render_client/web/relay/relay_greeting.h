@@ -17,7 +17,7 @@
 #include <string>
 #include <string_view>
 
-#include "render_client/web/tcp/peer_address.h"
+#include "common/tcp/peer_address.h"
 
 namespace bonemill {
 

@@ -14,10 +14,10 @@
 
 #include "common/dds/node_digest.h"
 #include "common/mesh_codec/mesh_codec.h"
+#include "common/web_socket/web_socket_client.h"
 #include "haptic_server/server/publish/publisher.h"
 #include "proto/gateway.pb.h"
 #include "render_client/link/subscribe/remote_session.h"
-#include "render_client/web/connect/web_socket_client.h"
 #include "render_client/web/gateway/gateway.h"
 #include "render_client/web/gateway/gateway_server.h"
 #include "render_client/web/gateway/guest.h"
@@ -72,10 +72,8 @@ class RunningGateway {
         test::writeFile(folder_ / "guests.new", guests);
         std::filesystem::rename(folder_ / "guests.new", folder_ / "guests");
     }
-    connect::TlsTarget target() const {
-        return {"127.0.0.1", server_->port(), server_->certificate().fingerprint};
-    }
-    operator connect::TlsTarget() const { return target(); }
+    WebTarget target() const { return {"127.0.0.1", server_->port(), server_->certificate().fingerprint}; }
+    operator WebTarget() const { return target(); }
     std::string filesContent() const {
         return test::readFile(folder_ / "guests") + test::readFile(folder_ / "guests.seats");
     }
@@ -89,10 +87,10 @@ class RunningGateway {
 };
 
 struct TestGuest {
-    explicit TestGuest(const connect::TlsTarget& target, const std::string& origin = {})
-        : socket(target, "/session", "bonemill.v1", std::chrono::seconds(5), origin) {}
-    TestGuest(const connect::TlsTarget& target, const std::string& token, bool acknowledges)
-        : TestGuest(target) {
+    explicit TestGuest(const WebTarget& target, const std::string& origin = {})
+        : socket(target, {.path = "/session", .protocol = "bonemill.v1", .origin = origin},
+                 std::chrono::seconds(5)) {}
+    TestGuest(const WebTarget& target, const std::string& token, bool acknowledges) : TestGuest(target) {
         this->acknowledges = acknowledges;
         hello(token);
     }
@@ -203,7 +201,7 @@ struct TestGuest {
         uint64_t content;
         uint32_t revision;
     };
-    connect::WebSocketClient socket;
+    WebSocketClient socket;
     bool acknowledges = true;
     uint64_t epoch = 0, received = 0;
     size_t frames = 0, largest_frame = 0;

@@ -11,7 +11,7 @@
 #include <random>
 #include <thread>
 
-#include "render_client/web/tcp/dial.h"
+#include "common/tcp/dial.h"
 #include "tests/integration/gateway/gateway_guest.h"
 #include "tests/support/mutated_bytes.h"
 
@@ -66,7 +66,7 @@ class Stranger {
     const std::string& heard() const { return heard_; }
 
   private:
-    connect::TlsSocket socket_;
+    WebLine socket_;
     std::string heard_;
     bool has_ended_ = false;
 };

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "common/base/user_error.h"
-#include "render_client/web/tcp/listen.h"
+#include "common/tcp/listen.h"
 #include "tests/integration/gateway/gateway_guest.h"
 
 namespace bonemill::gateway {
@@ -16,7 +16,7 @@ namespace {
 const std::string kGuestToken = "00112233445566778899aabbccddeeff";
 
 std::string answerTo(const RunningGateway& gateway, const std::string& request) {
-    connect::TlsSocket socket(gateway.target(), std::chrono::seconds(5));
+    WebLine socket(gateway.target(), std::chrono::seconds(5));
     socket.write(request.data(), request.size());
     std::string answer;
     for (int looks = 0; looks < 100; ++looks) {
@@ -82,12 +82,12 @@ TEST(GatewayPort, OpensASessionOnlyForItsOwnPageAndForViewers) {
 
 TEST(GatewayPort, AnotherCertificateIsRefusedWithItsFingerprint) {
     const RunningGateway gateway("");
-    connect::TlsTarget target = gateway.target();
+    WebTarget target = gateway.target();
     const std::string fingerprint = target.fingerprint;
     for (const char* wrong : {"", "00"}) {
         target.fingerprint = wrong;
         try {
-            connect::TlsSocket socket(target, std::chrono::seconds(5));
+            WebLine socket(target, std::chrono::seconds(5));
             ADD_FAILURE() << "'" << wrong << "' was accepted";
         } catch (const UserError& error) {
             EXPECT_NE(std::string(error.what()).find(fingerprint), std::string::npos) << error.what();

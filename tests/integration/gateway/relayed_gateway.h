@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "render_client/web/connect/tls_socket.h"
+#include "common/web_socket/web_line.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
@@ -68,9 +68,9 @@ class RelayedGateway {
         return program.errSoFar().find(words) != std::string::npos;
     }
 
-    connect::TlsTarget at(uint16_t port) const { return {"127.0.0.1", port, fingerprint_}; }
-    connect::TlsTarget throughRelay() const { return at(relay_port_); }
-    connect::TlsTarget direct() const { return at(own_port_); }
+    WebTarget at(uint16_t port) const { return {"127.0.0.1", port, fingerprint_}; }
+    WebTarget throughRelay() const { return at(relay_port_); }
+    WebTarget direct() const { return at(own_port_); }
     uint16_t relayPort() const { return relay_port_; }
     test::Process& relay() { return *relay_; }
     test::Process& gatewayProgram() { return *gateway_; }

@@ -18,7 +18,7 @@ struct RemoteViewer {
     std::map<uint32_t, uint32_t> nodes;  // leaves and revisions
     std::vector<CommandOutcome> outcomes;
 
-    RemoteViewer(const connect::TlsTarget& target, const std::string& token)
+    RemoteViewer(const WebTarget& target, const std::string& token)
         : session(std::make_shared<connect::GatewaySession>(target, token, std::chrono::seconds(5))),
           subscriber(
               {.name = session->welcome().name(), .role = session->welcome().role(), .remote = session}) {}

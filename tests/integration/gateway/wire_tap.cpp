@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "render_client/web/tcp/listen.h"
+#include "common/tcp/listen.h"
 
 namespace bonemill::test {
 namespace {

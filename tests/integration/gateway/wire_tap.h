@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "render_client/web/tcp/descriptor.h"
+#include "common/tcp/descriptor.h"
 
 namespace bonemill::test {
 

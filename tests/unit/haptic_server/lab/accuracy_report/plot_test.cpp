@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "common/base/user_error.h"
+#include "common/process/gnuplot.h"
 #include "tests/unit/haptic_server/lab/accuracy_report/report_data.h"
 
 namespace bonemill {
@@ -26,7 +27,7 @@ TEST_F(Plot, ScriptGivesAPng) {
     ReportData data = test::smallReport();
     data.scene = "a \"scene\" with_marks $1";
     data.budget_us = 60;
-    writeTextFile(folder_ / "p.gnuplot", paretoScript(data, folder_ / "p.png"));
+    writeTextFile(folder_ / "p.gnuplot", paretoScript(data, "p.png"));
     runGnuplot(folder_ / "p.gnuplot");
     std::ifstream png(folder_ / "p.png", std::ios::binary);
     char head[8] = {};

@@ -186,7 +186,6 @@ TEST_F(DeviceLinkIoTest, ImplausibleSamplesAndStampsAreNotBelieved) {
         odd.stamp_ns = stamp;
         daemon_.writeSample(odd);
         ASSERT_TRUE(io.read(input));
-        EXPECT_GE(input.wakeup_latency_ns, 0);
         EXPECT_LT(input.wakeup_latency_ns, 10 * kNsPerSecond);
     }
 }

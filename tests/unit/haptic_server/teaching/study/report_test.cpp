@@ -7,8 +7,8 @@
 #include "haptic_server/teaching/study_report/checklist.h"
 #include "haptic_server/teaching/study_report/comparisons.h"
 #include "haptic_server/teaching/study_report/plan_text.h"
-#include "haptic_server/teaching/study_report/report_text.h"
-#include "haptic_server/teaching/study_report/tables.h"
+#include "haptic_server/teaching/study_report/study_report_text.h"
+#include "haptic_server/teaching/study_report/study_tables.h"
 #include "tests/unit/haptic_server/teaching/study/study_rig.h"
 
 namespace bonemill::study {

@@ -4,7 +4,7 @@
 #include <sys/stat.h>
 
 #include "common/base/user_error.h"
-#include "render_client/viewer_options/options.h"
+#include "render_client/viewer_options/viewer_options.h"
 #include "tests/support/process.h"
 
 namespace bonemill {

@@ -1,11 +1,10 @@
-#include "render_client/viewer_options/options.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
 #include "common/base/user_error.h"
+#include "render_client/viewer_options/viewer_options.h"
 
 namespace bonemill {
 namespace {

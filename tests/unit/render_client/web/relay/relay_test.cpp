@@ -13,9 +13,9 @@
 #include <thread>
 
 #include "common/base/user_error.h"
+#include "common/tcp/dial.h"
+#include "common/tcp/listen.h"
 #include "render_client/web/relay/relay_dialer.h"
-#include "render_client/web/tcp/dial.h"
-#include "render_client/web/tcp/listen.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bonemill {

@@ -1,0 +1,62 @@
+#include "common/tcp/listen.h"
+
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <memory>
+
+#include "common/base/user_error.h"
+#include "common/tcp/socket_setup.h"
+
+namespace bonemill {
+
+Descriptor listenOn(const std::string& address, uint16_t port) {
+    addrinfo wish{}, *found = nullptr;
+    wish.ai_socktype = SOCK_STREAM;
+    wish.ai_flags = AI_PASSIVE | AI_NUMERICHOST;
+    if (getaddrinfo(address.c_str(), std::to_string(port).c_str(), &wish, &found) != 0)
+        throw UserError(address + ": this is no address of a network; 0.0.0.0 stands for all");
+    const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> addresses(found, &freeaddrinfo);
+    Descriptor made(socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    const int on = 1;
+    setsockopt(made.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+    if (!made || bind(made.get(), found->ai_addr, found->ai_addrlen) != 0 ||
+        listen(made.get(), SOMAXCONN) != 0)
+        throw UserError("cannot listen on " + address + " port " + std::to_string(port) + ": " +
+                        std::strerror(errno));
+    return made;
+}
+
+uint16_t portOf(int socket) {
+    sockaddr_storage address{};
+    socklen_t size = sizeof address;
+    if (getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size) != 0) return 0;
+    return ntohs(address.ss_family == AF_INET6 ? reinterpret_cast<const sockaddr_in6&>(address).sin6_port
+                                               : reinterpret_cast<const sockaddr_in&>(address).sin_port);
+}
+
+Descriptor acceptFrom(int listener, PeerAddress& from) {
+    sockaddr_storage address{};
+    socklen_t size = sizeof address;
+    Descriptor socket(
+        accept4(listener, reinterpret_cast<sockaddr*>(&address), &size, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    if (!socket) return socket;
+    setUpLine(socket.get());
+    from = peerAddressOf(address);
+    return socket;
+}
+
+size_t allowDescriptors(size_t count) {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= count) return count;
+    const rlim_t before = limit.rlim_cur;
+    limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, count);
+    return setrlimit(RLIMIT_NOFILE, &limit) == 0 ? limit.rlim_cur : before;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,171 @@
+#include "common/web_socket/web_socket_client.h"
+
+#include <openssl/evp.h>
+#include <openssl/rand.h>
+#include <openssl/sha.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "common/base/user_error.h"
+
+namespace bonemill {
+namespace {
+
+constexpr unsigned char kContinuation = 0, kText = 1, kBinary = 2, kClose = 8, kPing = 9, kPong = 10,
+                        kLast = 0x80;
+constexpr size_t kMaxUntaken = 64;   // messages; then the network waits
+constexpr size_t kMaxAnswer = 8192;  // bytes of the handshake's answer
+
+std::string base64(const unsigned char* bytes, int size) {
+    std::string text(size_t(4 * ((size + 2) / 3)) + 1, '\0');
+    text.resize(size_t(EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), bytes, size)));
+    return text;
+}
+
+std::string acceptOf(const std::string& key) {
+    const std::string text = key + "258EAFA5-E914-47DA-95CA-C5AB0DC85B11";  // RFC 6455, 1.3
+    unsigned char hash[SHA_DIGEST_LENGTH];
+    SHA1(reinterpret_cast<const unsigned char*>(text.data()), text.size(), hash);
+    return base64(hash, sizeof hash);
+}
+
+std::string lowered(std::string text) {
+    for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+}  // namespace
+
+WebSocketClient::WebSocketClient(const WebTarget& target, const WebSocketRequest& request,
+                                 std::chrono::milliseconds patience)
+    : line_(target, patience), opcode_(request.is_text ? kText : kBinary) {
+    shakeHands(target, request, std::chrono::steady_clock::now() + patience);
+}
+
+void WebSocketClient::shakeHands(const WebTarget& target, const WebSocketRequest& request,
+                                 std::chrono::steady_clock::time_point end) {
+    unsigned char random[16];
+    if (RAND_bytes(random, sizeof random) != 1) throw UserError("library: OpenSSL has no random numbers");
+    const std::string key = base64(random, sizeof random);
+    const bool is_v6 = target.host.find(':') != std::string::npos;
+    const std::string host = is_v6 ? "[" + target.host + "]" : target.host;
+    const auto header = [](const char* name, const std::string& value) {
+        return value.empty() ? "" : name + (": " + value) + "\r\n";
+    };
+    outgoing_ = "GET " + request.path + " HTTP/1.1\r\n" +
+                header("Host", host + ":" + std::to_string(target.port)) +
+                "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n" +
+                header("Sec-WebSocket-Protocol", request.protocol) + header("Sec-WebSocket-Key", key) +
+                header("Origin", request.origin) + "\r\n";
+    size_t head = std::string::npos;
+    while (!has_ended_ && head == std::string::npos && incoming_.size() < kMaxAnswer) {
+        const auto left =
+            std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+        if (left.count() <= 0) break;
+        wait(-1, left);
+        const long sent = line_.write(outgoing_.data(), outgoing_.size());
+        std::array<char, 2048> bytes;
+        const long came = line_.read(bytes.data(), bytes.size());
+        has_ended_ = sent < 0 || came < 0;
+        if (sent > 0) outgoing_.erase(0, size_t(sent));
+        if (came > 0) incoming_.append(bytes.data(), size_t(came));
+        head = incoming_.find("\r\n\r\n");
+    }
+    const std::string answer = incoming_.substr(0, head == std::string::npos ? 0 : head + 2);
+    if (!answer.starts_with("HTTP/1.1 101") || answer.find(acceptOf(key)) == std::string::npos ||
+        (!request.protocol.empty() &&
+         lowered(answer).find("sec-websocket-protocol: " + request.protocol) == std::string::npos))
+        throw UserError(target.place() + ": " + request.refusal);
+    incoming_.erase(0, head + 4);
+}
+
+void WebSocketClient::send(std::string_view message) {
+    queueFrame(opcode_, message);
+}
+
+void WebSocketClient::queueFrame(unsigned char opcode, std::string_view payload) {
+    outgoing_ += char(kLast | opcode);
+    const uint64_t size = payload.size();
+    const int length_bytes = size < 126 ? 0 : size < 65536 ? 2 : 8;
+    outgoing_ += char(0x80 | (length_bytes == 0 ? size : length_bytes == 2 ? 126 : 127));
+    for (int n = length_bytes; n-- > 0;) outgoing_ += char(size >> (8 * n));
+    unsigned char mask[4];
+    if (RAND_bytes(mask, sizeof mask) != 1) has_ended_ = true;
+    outgoing_.append(reinterpret_cast<const char*>(mask), sizeof mask);
+    for (size_t n = 0; n < payload.size(); ++n) outgoing_ += char(payload[n] ^ char(mask[n % 4]));
+}
+
+void WebSocketClient::move() {
+    for (long sent = 1; sent > 0 && !outgoing_.empty();) {
+        sent = line_.write(outgoing_.data(), outgoing_.size());
+        if (sent < 0) has_ended_ = true;
+        if (sent > 0) outgoing_.erase(0, size_t(sent));
+    }
+    std::array<char, 65536> bytes;
+    for (long came = 1; came > 0 && !has_ended_ && messages_.size() < kMaxUntaken;) {
+        came = line_.read(bytes.data(), bytes.size());
+        if (came < 0) has_ended_ = true;
+        if (came > 0) incoming_.append(bytes.data(), size_t(came));
+        while (takeFrame()) {
+        }
+        incoming_.erase(0, std::exchange(taken_, 0));
+    }
+}
+
+// Returns false when no whole frame is there.
+bool WebSocketClient::takeFrame() {
+    const auto byte = [this](size_t n) {
+        return uint64_t(static_cast<unsigned char>(incoming_[taken_ + n]));
+    };
+    const size_t there = incoming_.size() - taken_;
+    if (there < 2) return false;
+    uint64_t size = byte(1) & 0x7f;
+    const size_t length_bytes = size == 126 ? 2 : size == 127 ? 8 : 0;
+    if (there < 2 + length_bytes) return false;
+    if (length_bytes > 0) {
+        size = 0;
+        for (size_t n = 0; n < length_bytes; ++n) size = size << 8 | byte(2 + n);
+    }
+    // A server masks nothing.
+    if ((byte(1) & 0x80) != 0 || size > kMaxMessageBytes || partial_.size() + size > kMaxMessageBytes) {
+        has_ended_ = true;
+        return false;
+    }
+    if (there < 2 + length_bytes + size) return false;
+    const auto first = static_cast<unsigned char>(byte(0));
+    const std::string_view payload(incoming_.data() + taken_ + 2 + length_bytes, size_t(size));
+    taken_ += 2 + length_bytes + size_t(size);
+    takePayload(first & 0x0f, (first & kLast) != 0, payload);
+    return !has_ended_;
+}
+
+void WebSocketClient::takePayload(unsigned char opcode, bool is_last, std::string_view payload) {
+    switch (opcode) {
+        case kText:
+        case kBinary:
+            if (opcode != opcode_) break;
+            [[fallthrough]];
+        case kContinuation:
+            partial_ += payload;
+            if (is_last) messages_.push_back(std::exchange(partial_, {}));
+            return;
+        case kPing:
+            return queueFrame(kPong, payload.substr(0, 125));
+        case kPong:
+            return;
+        default:
+            break;
+    }
+    has_ended_ = true;
+}
+
+bool WebSocketClient::receive(std::string& message) {
+    if (messages_.empty()) return false;
+    message = std::move(messages_.front());
+    messages_.pop_front();
+    return true;
+}
+
+}  // namespace bonemill
