@@ -10,7 +10,7 @@
 #include "common/base/user_error.h"
 #include "common/log/log.h"
 #include "common/rt/clock.h"
-#include "haptic_server/recording/statistics/fault_names.h"
+#include "haptic_server/core/telemetry/fault_names.h"
 #include "haptic_server/recording/statistics/final_files.h"
 #include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "haptic_server/scene/setup/coupling_text.h"
