@@ -42,11 +42,10 @@ std::vector<uint64_t> dimsOf(const NrrdFields& fields) {
     return dims;
 }
 
-// World axes are LPS; other spaces of the patient have some of them the other way round.
+// World axes are LPS; RAS has two of them the other way round.
 Eigen::Vector3d signsOf(const std::string& space) {
-    const bool is_right = space == "ras" || space == "right-anterior-superior";
-    const bool is_anterior = is_right || space == "las" || space == "left-anterior-superior";
-    return {is_right ? -1.0 : 1.0, is_anterior ? -1.0 : 1.0, 1.0};
+    const bool is_ras = space == "ras" || space == "right-anterior-superior";
+    return is_ras ? Eigen::Vector3d(-1, -1, 1) : Eigen::Vector3d::Ones();
 }
 
 FileFrame frameOf(const NrrdHeader& header, const std::vector<uint64_t>& dims,
@@ -166,6 +165,10 @@ void requirePlain(const NrrdHeader& header, const std::filesystem::path& path) {
         refuse(path, "its voxels do not follow its header in the same file");
     if (header.encoding != "raw" && header.encoding != "gzip" && header.encoding != "gz")
         refuse(path, "its encoding is " + header.encoding);
+    // ITK turns the wrong axis of LAS round; no build shall place a patient otherwise than another.
+    if (header.fields.space == "las" || header.fields.space == "left-anterior-superior")
+        throw UserError(path.string() + ": its space is " + header.fields.space +
+                        "; write it as left-posterior-superior");
     if (numbersIn(header.fields.sizes).size() != 3) refuse(path, "it has other than three axes");
 }
 

@@ -34,7 +34,8 @@ TEST(PlainNrrd, EveryStorageSpaceAndHandedness) {
         for (const bool is_big_endian : {false, true})
             for (const bool is_left_handed : {false, true})
                 for (const char* const space :
-                     {"left-posterior-superior", "right-anterior-superior", "LAS", "scanner-xyz"}) {
+                     {"left-posterior-superior", "right-anterior-superior", "scanner-xyz"}) {
+                    SCOPED_TRACE(space);
                     SampleVolume sample;
                     sample.directions << 0, 0, 1, 1, 0, 0, 0, is_left_handed ? -1 : 1, 0;
                     writeNrrdFile(folder / "a.nrrd", sample, {is_compressed, is_big_endian, false}, space);
@@ -96,6 +97,8 @@ TEST(PlainNrrd, WhatItDoesNotTakeIsSaidInOneLine) {
     refuses({"a.nrrd", "BONEMILL_WITH_SCANS"});
     writeSegNrrd(folder / "a.nrrd", {.layers = 2, .label = [](const Eigen::Vector3i&, int) { return 0; }});
     refuses({"a.nrrd", "three axes", "BONEMILL_WITH_SCANS"});
+    writeNrrdFile(folder / "a.nrrd", SampleVolume(), {}, "LAS");
+    refuses({"a.nrrd", "left-posterior-superior"});
     writeNrrdFile(folder / "a.nrrd", SampleVolume(), {});
     const std::string bytes = readBytes(folder / "a.nrrd");
     writeBytes(folder / "a.nrrd", bytes.substr(0, bytes.size() - 1));
