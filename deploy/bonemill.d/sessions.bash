@@ -42,13 +42,14 @@ list_sessions() {
     done
 }
 
-# Prints "PID NAME SESSION OWNER" of every server and daemon of this PC, whoever started it.
+# Prints "PID NAME SESSION OWNER" of every server, replay and daemon of this PC, whoever started it.
 running_programs() {
     local folder name words number i
     for folder in /proc/[0-9]*; do
         { read -r name; } 2>/dev/null <"$folder/comm" || continue
-        [[ $name == haptic_server || $name == device_daemon ]] || continue
+        [[ $name == haptic_server || $name == device_daemon || $name == bonemill_lab ]] || continue
         { mapfile -d '' -t words; } 2>/dev/null <"$folder/cmdline" || continue
+        [[ $name != bonemill_lab || " ${words[*]} " == *" replay "* ]] || continue
         number=1
         for i in "${!words[@]}"; do
             [[ ${words[i]} != --session ]] || number=${words[i + 1]:-}

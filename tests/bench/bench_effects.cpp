@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "common/base/units.h"
-#include "haptic_server/lab/offline/effect_cost.h"
+#include "haptic_server/lab/describe/effect_cost.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/bench/bench_commands.h"
 #include "tests/bench/bench_output.h"

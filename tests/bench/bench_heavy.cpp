@@ -11,7 +11,7 @@
 #include "device_daemon/ares/emulator/scenario.h"
 #include "haptic_server/core/bone/bone_history.h"
 #include "haptic_server/core/tick/fixed_tick.h"
-#include "haptic_server/recording/statistics/fault_names.h"
+#include "haptic_server/core/telemetry/fault_names.h"
 #include "haptic_server/recording/statistics/tick_times.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/bench/bench_commands.h"

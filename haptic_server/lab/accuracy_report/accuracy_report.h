@@ -1,4 +1,4 @@
-// `haptic_server accuracy-report` measures how exact each accuracy setting is in a scene, and how long its
+// `bonemill_lab accuracy-report` measures how exact each accuracy setting is in a scene, and how long its
 // ticks take here. docs/research/accuracy.md says what the figures mean.
 #pragma once
 

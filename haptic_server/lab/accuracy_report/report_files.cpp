@@ -12,7 +12,7 @@
 #include "common/base/user_error.h"
 #include "common/text/csv_text.h"
 #include "haptic_server/lab/accuracy_report/pareto.h"
-#include "haptic_server/recording/statistics/fault_names.h"
+#include "haptic_server/core/telemetry/fault_names.h"
 
 namespace bonemill {
 namespace {

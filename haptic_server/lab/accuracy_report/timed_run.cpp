@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "haptic_server/lab/offline/run_path.h"
+#include "haptic_server/lab/simulate/run_path.h"
 
 namespace bonemill {
 

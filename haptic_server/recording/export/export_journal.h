@@ -1,4 +1,4 @@
-// `haptic_server session export`: a recorded session as files for other programs. What its ticks came to is
+// `bonemill_lab session export`: a recorded session as files for other programs. What its ticks came to is
 // had by running them again (docs/teach/replay.md).
 #pragma once
 

@@ -1,4 +1,4 @@
-// `haptic_server session verify` runs the ticks of a journal again and holds them against what it says of
+// `bonemill_lab session verify` runs the ticks of a journal again and holds them against what it says of
 // them: hashes of every second, a check of every tick, the bone's states.
 #pragma once
 

@@ -11,7 +11,7 @@
 #include "common/base/user_error.h"
 #include "common/rt/clock.h"
 #include "common/text/hex_text.h"
-#include "haptic_server/recording/statistics/fault_names.h"
+#include "haptic_server/core/telemetry/fault_names.h"
 
 namespace bonemill {
 namespace {

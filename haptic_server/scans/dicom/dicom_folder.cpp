@@ -13,7 +13,7 @@
 #include "haptic_server/scans/dicom/dicom_segments.h"
 #include "haptic_server/scans/dicom/series_table.h"
 #include "haptic_server/scans/pixels/itk_image_file.h"
-#include "haptic_server/scans/pixels/physical_frame.h"
+#include "haptic_server/scans/frame/physical_frame.h"
 
 namespace bonemill {
 namespace {

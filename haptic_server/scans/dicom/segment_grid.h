@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "haptic_server/scans/dicom/dicom_place.h"
-#include "haptic_server/scans/pixels/physical_frame.h"
+#include "haptic_server/scans/frame/physical_frame.h"
 
 namespace bonemill {
 

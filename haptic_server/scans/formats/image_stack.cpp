@@ -11,7 +11,7 @@
 #include "haptic_server/scans/confined/import_limits.h"
 #include "haptic_server/scans/confined/memory_cap.h"
 #include "haptic_server/scans/pixels/itk_image_file.h"
-#include "haptic_server/scans/pixels/physical_frame.h"
+#include "haptic_server/scans/frame/physical_frame.h"
 
 namespace bonemill {
 namespace {

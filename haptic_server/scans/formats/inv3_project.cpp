@@ -13,7 +13,7 @@
 
 #include "common/base/user_error.h"
 #include "haptic_server/scans/confined/import_limits.h"
-#include "haptic_server/scans/pixels/physical_frame.h"
+#include "haptic_server/scans/frame/physical_frame.h"
 
 namespace bonemill {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "haptic_server/scans/pixels/physical_frame.h"
+#include "haptic_server/scans/frame/physical_frame.h"
 
 namespace bonemill {
 

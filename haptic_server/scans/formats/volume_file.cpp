@@ -11,7 +11,7 @@
 #include "haptic_server/scans/formats/stored_bytes.h"
 #include "haptic_server/scans/nrrd/nrrd_header.h"
 #include "haptic_server/scans/pixels/itk_image_file.h"
-#include "haptic_server/scans/pixels/physical_frame.h"
+#include "haptic_server/scans/frame/physical_frame.h"
 
 namespace bonemill {
 namespace {

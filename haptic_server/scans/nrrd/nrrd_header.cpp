@@ -110,8 +110,20 @@ struct Units {
     std::string of_space, of_axes;
 };
 
+void keepField(const std::string& name, const std::string& value, NrrdFields& fields) {
+    if (name == "type") fields.type = value;
+    if (name == "endian") fields.endian = fieldName(value);
+    if (name == "space") fields.space = fieldName(value);
+    if (name == "sizes") fields.sizes = value;
+    if (name == "spacedirections") fields.space_directions = value;
+    if (name == "spaceorigin") fields.space_origin = value;
+    if (name == "spacings") fields.spacings = value;
+    if (name == "lineskip" || name == "byteskip") fields.has_skip = fields.has_skip || value != "0";
+}
+
 void takeField(const std::string& name, const std::string& value, const std::filesystem::path& path,
                NrrdHeader& header, Units& units) {
+    keepField(name, value, header.fields);
     if (name == "space") header.has_patient_space = isPatientSpace(value);
     if (name == "encoding") header.encoding = fieldName(value);
     if (name == "datafile") header.data_file = value;

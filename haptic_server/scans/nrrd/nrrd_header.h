@@ -1,4 +1,5 @@
-// Our own reading of a NRRD header adds this to ITK's: units, where the data are, and our exact geometry.
+// Our own reading of a NRRD header: what ITK does not tell of it (units, where the data are, our exact
+// geometry), and what a reader without ITK needs (scans/import/plain_nrrd.h).
 #pragma once
 
 #include <cstdint>
@@ -11,6 +12,13 @@
 
 namespace bonemill {
 
+// As the file says it, unchecked; absent fields are empty.
+struct NrrdFields {
+    std::string type, endian, space;
+    std::string sizes, space_directions, space_origin, spacings;
+    bool has_skip = false;  // data begin later than right behind the header
+};
+
 struct NrrdHeader {
     uint64_t bytes = 0;                            // length of the header; attached data begin here
     std::string encoding;                          // "raw", "gzip", "ascii", ...
@@ -20,6 +28,7 @@ struct NrrdHeader {
     bool has_patient_space = false;                // its "space" names the patient's sides
     std::optional<VolumeGeometry> exact_geometry;  // from nrrd_writer.h
     NrrdSegments segments;                         // of a label map
+    NrrdFields fields;
 };
 
 // Reads at most 1 MiB. Throws UserError when it is no NRRD file, or its units or directions are not lengths,

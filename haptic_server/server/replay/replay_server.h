@@ -1,4 +1,4 @@
-// Shows a recorded session as a live one, to any number of viewers: `haptic_server replay`
+// Shows a recorded session as a live one, to any number of viewers: `bonemill_lab replay`
 // (docs/teach/replay.md).
 #pragma once
 

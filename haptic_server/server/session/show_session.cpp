@@ -11,7 +11,7 @@
 #include "common/commands/order_text.h"
 #include "common/config/scene_geometry.h"
 #include "common/rt/clock.h"
-#include "haptic_server/recording/statistics/fault_names.h"
+#include "haptic_server/core/telemetry/fault_names.h"
 #include "haptic_server/scene/setup/scene_materials.h"
 #include "haptic_server/server/session/shown_device.h"
 #include "haptic_server/server/session/shown_zones.h"

@@ -116,7 +116,7 @@ std::string timeLineOf(const AttemptResult& result, double begin_s) {
     const std::string replay =
         result.journal.empty()
             ? ""
-            : " · " + element("code", "haptic_server replay " + escaped(result.journal) + " --at …");
+            : " · " + element("code", "bonemill_lab replay " + escaped(result.journal) + " --at …");
     const std::string line = timeLineSvg(result.assessment, worst, begin_s);
     if (line.empty() && worst.empty()) return "";
     return element("section", element("h2", "The attempt, and its worst moments" + replay) + line +

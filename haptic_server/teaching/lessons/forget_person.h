@@ -1,4 +1,4 @@
-// `haptic_server session forget`: deletes what a class' folder holds of one person. It waits for the disk.
+// `bonemill_lab session forget`: deletes what a class' folder holds of one person. It waits for the disk.
 #pragma once
 
 #include <ostream>

@@ -25,7 +25,7 @@ constexpr std::chrono::milliseconds kLeastFrame{15};  // where the display does 
 struct WindowOptions {
     CaseRequest request;
     std::string tools_folder;
-    std::string command = "haptic_server make-case";
+    std::string command = "bonemill_lab make-case";
     int width = 1400, height = 900;  // pixels
 };
 

@@ -44,7 +44,7 @@ class BonemillRig {
             putProgram(program, kStandIn);
     }
     void useRealPrograms() const {
-        for (const char* program : {"haptic_server", "device_daemon", "render_client"})
+        for (const char* program : {"bonemill_lab", "haptic_server", "device_daemon", "render_client"})
             std::filesystem::create_symlink(binDir() + "/" + program, programFile(program));
     }
     void putProgram(const std::string& name, const std::string& script) const {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "common/base/units.h"
-#include "haptic_server/lab/offline/run_path.h"
+#include "haptic_server/lab/simulate/run_path.h"
 #include "haptic_server/recording/statistics/state_hash.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/support/every_effect_scene.h"

@@ -7,9 +7,9 @@
 
 #include "common/base/units.h"
 #include "haptic_server/cases/phantom/tooth_phantom.h"
-#include "haptic_server/lab/offline/run_path.h"
+#include "haptic_server/core/telemetry/fault_names.h"
+#include "haptic_server/lab/simulate/run_path.h"
 #include "haptic_server/recording/statistics/bone_files.h"
-#include "haptic_server/recording/statistics/fault_names.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/support/places.h"

@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "common/base/units.h"
-#include "haptic_server/lab/offline/run_path.h"
-#include "haptic_server/lab/offline/task_run.h"
+#include "haptic_server/lab/simulate/run_path.h"
+#include "haptic_server/lab/simulate/task_run.h"
 #include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"

@@ -29,7 +29,7 @@ class Replay : public testing::Test {
     Replay() : session_(test::recordSession(folder_.path())) {}
 
     std::vector<std::string> server(const std::vector<std::string>& more = {}) const {
-        std::vector<std::string> arguments{"haptic_server", "replay", session_.journal};
+        std::vector<std::string> arguments{"bonemill_lab", "replay", session_.journal};
         return with(std::move(arguments), more);
     }
     std::vector<std::string> client(const std::vector<std::string>& more) const {
@@ -137,7 +137,7 @@ TEST_F(Replay, WhatCannotBeReplayedIsRefusedInOneLine) {
          {std::pair<std::string, std::string>{folder_ / "missing.mcap", "missing.mcap"},
           {session_.scene, "no journal"}}) {
         const test::Finished finished =
-            test::run({"haptic_server", "replay", file, "--session", std::to_string(testSession())});
+            test::run({"bonemill_lab", "replay", file, "--session", std::to_string(testSession())});
         EXPECT_EQ(finished.exit_code, 2);
         EXPECT_NE(finished.err.find(word), std::string::npos) << finished.err;
     }
@@ -149,12 +149,12 @@ TEST_F(Replay, WhatCannotBeReplayedIsRefusedInOneLine) {
 
 TEST_F(Replay, FilesAreExportedByTheProgram) {
     const test::Finished finished =
-        test::run({"haptic_server", "session", "export", session_.journal, "--h5", folder_ / "s.h5", "--csv",
+        test::run({"bonemill_lab", "session", "export", session_.journal, "--h5", folder_ / "s.h5", "--csv",
                    folder_ / "s.csv", "--traj", folder_ / "t.csv"});
     EXPECT_EQ(finished.exit_code, 0) << finished.err;
     for (const char* name : {"s.h5", "s.csv", "t.csv"})
         EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
-    const test::Finished nothing = test::run({"haptic_server", "session", "export", session_.journal});
+    const test::Finished nothing = test::run({"bonemill_lab", "session", "export", session_.journal});
     EXPECT_EQ(nothing.exit_code, 2);
     EXPECT_NE(nothing.err.find("--h5"), std::string::npos) << nothing.err;
 }

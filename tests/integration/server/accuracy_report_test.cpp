@@ -1,4 +1,4 @@
-// Runs `haptic_server accuracy-report` from outside, on a tiny scene.
+// Runs `bonemill_lab accuracy-report` from outside, on a tiny scene.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ class AccuracyReport : public testing::Test {
                   "name: \"tiny\" volume { path: \"ball.nrrd\" } loop { rate_hz: 250 }");
     }
     std::vector<std::string> arguments(const std::string& out) {
-        return {"haptic_server",         "accuracy-report", "--scene",
+        return {"bonemill_lab",          "accuracy-report", "--scene",
                 folder_ / "s.textproto", "--out",           folder_ / out};
     }
     bool isThere(const std::string& file) { return std::filesystem::exists(folder_ / file); }
@@ -85,7 +85,7 @@ TEST_F(AccuracyReport, WritesAllFilesAndProposesWithinTheBudget) {
 
 TEST_F(AccuracyReport, WithoutGnuplotTheFiguresAreWrittenAllTheSame) {
     std::vector<std::string> call = arguments("out");
-    call[0] = test::binDir() + "/haptic_server";
+    call[0] = test::binDir() + "/bonemill_lab";
     call.insert(call.begin(), {"/usr/bin/env", "PATH=" + folder_.path().string()});
     const Finished finished = run(call);
     EXPECT_EQ(finished.exit_code, 2);
@@ -115,7 +115,7 @@ TEST_F(AccuracyReport, BadInputIsOneClearLine) {
         call.insert(call.end(), {"--budget-us", budget});
         expectRefused(call, "--budget-us");
     }
-    expectRefused({"haptic_server", "accuracy-report", "--scene", folder_ / "s.textproto"}, "--out");
+    expectRefused({"bonemill_lab", "accuracy-report", "--scene", folder_ / "s.textproto"}, "--out");
     EXPECT_FALSE(isThere("out"));
 }
 

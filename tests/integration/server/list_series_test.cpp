@@ -33,7 +33,7 @@ class ListSeriesCommand : public testing::Test {
 };
 
 TEST_F(ListSeriesCommand, PrintsATableAndARecommendation) {
-    const test::Finished listed = test::run({"haptic_server", "list-series", scan()});
+    const test::Finished listed = test::run({"bonemill_lab", "list-series", scan()});
     EXPECT_EQ(listed.exit_code, 0) << listed.err;
     for (const char* words : {"acquisition", "24x24", "0.5 x 0.5 x 0.5",
                               "recommended for bone: series 1.2.3.4, acquisition 1: CT, slices 0.5 mm apart"})
@@ -43,19 +43,37 @@ TEST_F(ListSeriesCommand, PrintsATableAndARecommendation) {
 TEST_F(ListSeriesCommand, RefusesWhatHoldsNone) {
     std::filesystem::create_directory(folder_ / "empty");
     for (const std::string& path : {folder_ / "empty", folder_ / "nowhere"}) {
-        const test::Finished refused = test::run({"haptic_server", "list-series", path});
+        const test::Finished refused = test::run({"bonemill_lab", "list-series", path});
         EXPECT_EQ(refused.exit_code, 2);
         EXPECT_NE(refused.err.find(path), std::string::npos) << refused.err;
     }
 }
 
+TEST_F(ListSeriesCommand, HapticServerBecomesBonemillLab) {
+    const std::string line = "haptic_server: list-series is a command of bonemill_lab, which does it now\n";
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"list-series", scan()},
+                                                  {"--log-level", "warn", "list-series", scan()},
+                                                  {"list-series", folder_ / "nowhere"},
+                                                  {"list-series", "--help"},
+                                                  {"list-series"}}) {
+        std::vector<std::string> call = words;
+        call.insert(call.begin(), "bonemill_lab");
+        const test::Finished lab = test::run(call);
+        call[0] = "haptic_server";
+        const test::Finished server = test::run(call);
+        EXPECT_EQ(server.exit_code, lab.exit_code) << words.back();
+        EXPECT_EQ(server.out, lab.out) << words.back();
+        EXPECT_EQ(server.err, line + lab.err) << words.back();
+    }
+}
+
 TEST_F(ListSeriesCommand, AnAcquisitionBecomesACase) {
     const test::Finished made =
-        test::run({"haptic_server", "make-case", scan(), "--acquisition", "2", "--out", folder_ / "case"});
+        test::run({"bonemill_lab", "make-case", scan(), "--acquisition", "2", "--out", folder_ / "case"});
     ASSERT_EQ(made.exit_code, 0) << made.err;
     EXPECT_NE(made.out.find("series 1.2.3.4, acquisition 2"), std::string::npos) << made.out;
     const test::Finished refused =
-        test::run({"haptic_server", "make-case", scan(), "--acquisition", "3", "--out", folder_ / "other"});
+        test::run({"bonemill_lab", "make-case", scan(), "--acquisition", "3", "--out", folder_ / "other"});
     EXPECT_EQ(refused.exit_code, 2);
     EXPECT_NE(refused.err.find("holds no acquisition 3"), std::string::npos) << refused.err;
 }

@@ -93,7 +93,7 @@ class Recording : public testing::Test {
         return newest;
     }
     static Finished verify(const std::string& journal) {
-        return run({"haptic_server", "session", "verify", journal});
+        return run({"bonemill_lab", "session", "verify", journal});
     }
     static void expectSameBits(const std::string& journal, uint64_t ticks) {
         const Finished verdict = verify(journal);
@@ -342,7 +342,7 @@ TEST_F(Recording, NoneIsLeftWhereItIsRefused) {
 TEST_F(Recording, AFullDiskIsSaidAndHarmsNothing) {
     writeBlockScene(test::kByTime);
     std::vector<std::string> words = server();
-    words[0] = test::binDir() + "/haptic_server";
+    words[0] = test::binDir() + "/bonemill_lab";
     words.insert(words.begin(), {"/usr/bin/prlimit", "--fsize=150000"});
     Process live(words), hand(daemon());
     ASSERT_TRUE(isLive()) << live.errSoFar();

@@ -1,4 +1,4 @@
-#include "haptic_server/lab/offline/assess_journal.h"
+#include "haptic_server/lab/assess/assess_journal.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include "common/base/user_error.h"
 #include "common/text/hex_text.h"
-#include "haptic_server/lab/offline/simulate.h"
+#include "haptic_server/lab/simulate/simulate.h"
 #include "tests/support/recorded_session.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/haptic_server/recording/export/h5_reader.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "common/device_messages/device_messages.h"
+#include "haptic_server/core/telemetry/fault_names.h"
 #include "haptic_server/core/telemetry/tick_record.h"
-#include "haptic_server/recording/statistics/fault_names.h"
 #include "render_client/look/hud/fault_words.h"
 #include "tests/support/hud_rows.h"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "haptic_server/lab/offline/effect_cost.h"
+#include "haptic_server/lab/describe/effect_cost.h"
 #include "proto/scene.pb.h"
 
 namespace bonemill {

@@ -1,10 +1,10 @@
-#include "haptic_server/lab/offline/effect_cost.h"
+#include "haptic_server/lab/describe/effect_cost.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "haptic_server/core/bone/bone_history.h"
-#include "haptic_server/lab/offline/run_path.h"
+#include "haptic_server/lab/simulate/run_path.h"
 
 namespace bonemill {
 namespace {

@@ -1,4 +1,4 @@
-#include "haptic_server/lab/offline/simulate.h"
+#include "haptic_server/lab/simulate/simulate.h"
 
 #include <spdlog/spdlog.h>
 
@@ -13,10 +13,10 @@
 #include "common/rt/clock.h"
 #include "common/text/hex_text.h"
 #include "haptic_server/core/tick/haptic_tick.h"
-#include "haptic_server/lab/offline/run_path.h"
-#include "haptic_server/lab/offline/task_run.h"
-#include "haptic_server/lab/offline/write_assessment.h"
-#include "haptic_server/recording/statistics/fault_names.h"
+#include "haptic_server/lab/simulate/run_path.h"
+#include "haptic_server/lab/simulate/task_run.h"
+#include "haptic_server/lab/simulate/write_assessment.h"
+#include "haptic_server/core/telemetry/fault_names.h"
 #include "haptic_server/recording/statistics/final_files.h"
 #include "haptic_server/recording/statistics/run_statistics.h"
 #include "haptic_server/recording/statistics/state_hash.h"

@@ -1,4 +1,4 @@
-#include "haptic_server/recording/statistics/fault_names.h"
+#include "haptic_server/core/telemetry/fault_names.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "haptic_server/lab/offline/describe_scene.h"
+#include "haptic_server/lab/describe/describe_scene.h"
 
 #include <algorithm>
 #include <sstream>
@@ -7,10 +7,10 @@
 #include "common/config/scene_geometry.h"
 #include "common/config/scene_handle.h"
 #include "common/config/scene_table.h"
-#include "haptic_server/lab/offline/describe_effects.h"
-#include "haptic_server/lab/offline/describe_task.h"
-#include "haptic_server/lab/offline/effect_cost.h"
-#include "haptic_server/lab/offline/run_path.h"
+#include "haptic_server/lab/describe/describe_effects.h"
+#include "haptic_server/lab/describe/describe_task.h"
+#include "haptic_server/lab/describe/effect_cost.h"
+#include "haptic_server/lab/simulate/run_path.h"
 #include "haptic_server/recording/statistics/tick_times.h"
 #include "haptic_server/scans/analysis/bone_box.h"
 #include "haptic_server/scene/setup/coupling_text.h"

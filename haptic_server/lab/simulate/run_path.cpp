@@ -1,4 +1,4 @@
-#include "haptic_server/lab/offline/run_path.h"
+#include "haptic_server/lab/simulate/run_path.h"
 
 #include "common/rt/clock.h"
 #include "haptic_server/core/tick/fixed_tick.h"

@@ -1,4 +1,4 @@
-#include "haptic_server/lab/offline/describe_effects.h"
+#include "haptic_server/lab/describe/describe_effects.h"
 
 #include <google/protobuf/text_format.h>
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/config/scene_file.h"
-#include "haptic_server/lab/offline/task_run.h"
+#include "haptic_server/lab/simulate/task_run.h"
 #include "haptic_server/recording/statistics/final_files.h"
 
 namespace bonemill {

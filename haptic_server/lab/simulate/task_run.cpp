@@ -1,4 +1,4 @@
-#include "haptic_server/lab/offline/task_run.h"
+#include "haptic_server/lab/simulate/task_run.h"
 
 #include <spdlog/spdlog.h>
 

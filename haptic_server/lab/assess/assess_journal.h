@@ -1,4 +1,4 @@
-// `haptic_server session assess`: measures and judges the attempts of a recorded session anew, by running its
+// `bonemill_lab session assess`: measures and judges the attempts of a recorded session anew, by running its
 // ticks again: with today's definitions, and the task that the recorded scene has. Normal threads.
 #pragma once
 

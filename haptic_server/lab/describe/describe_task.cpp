@@ -1,4 +1,4 @@
-#include "haptic_server/lab/offline/describe_task.h"
+#include "haptic_server/lab/describe/describe_task.h"
 
 #include "common/base/units.h"
 #include "haptic_server/assessment/product/zone_tally.h"

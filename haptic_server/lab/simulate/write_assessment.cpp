@@ -1,4 +1,4 @@
-#include "haptic_server/lab/offline/write_assessment.h"
+#include "haptic_server/lab/simulate/write_assessment.h"
 
 #include <chrono>
 #include <exception>

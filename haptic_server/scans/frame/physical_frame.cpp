@@ -1,4 +1,4 @@
-#include "haptic_server/scans/pixels/physical_frame.h"
+#include "haptic_server/scans/frame/physical_frame.h"
 
 #include <Eigen/SVD>
 #include <cmath>

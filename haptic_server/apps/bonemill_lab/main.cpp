@@ -1,0 +1,189 @@
+// bonemill_lab does what is done with files before and after a session: cases of scans, what is to be known
+// of recordings, and how exact a scene's accuracy settings are here.
+#include <sys/stat.h>
+
+#include <functional>
+#include <iostream>
+#include <string>
+
+#include "common/cli/command_line.h"
+#include "common/cli/number_range.h"
+#include "common/cli/version.h"
+#include "common/dds/network_cli.h"
+#include "common/log/log.h"
+#include "common/process/run_program.h"
+#include "haptic_server/cases/casework/case_options.h"
+#include "haptic_server/cases/casework/make_case.h"
+#include "haptic_server/lab/accuracy_report/accuracy_report.h"
+#include "haptic_server/lab/assess/assess_journal.h"
+#include "haptic_server/recording/export/export_journal.h"
+#include "haptic_server/recording/rerun/verify_journal.h"
+#include "haptic_server/scans/import/import_program.h"
+#include "haptic_server/server/replay/player.h"
+#include "haptic_server/server/replay/replay_server.h"
+#include "haptic_server/teaching/lessons/forget_person.h"
+
+namespace bonemill {
+namespace {
+
+void addAssessOptions(CLI::App& app, AssessOptions& assess) {
+    app.add_option("journal", assess.journal, "the recorded session (.mcap)")->required();
+    app.add_option("--out", assess.out, "folder for results and reports")->required()->type_name("DIR");
+}
+
+void addForgetOptions(CLI::App& app, ForgetOptions& forget) {
+    app.add_option("pseudonym", forget.pseudonym, "whose data it is, as in the class table")->required();
+    app.add_option("--in", forget.folder, "folder of the class table")->required()->type_name("DIR");
+    app.add_option("--recordings", forget.recordings,
+                   "folder of the recordings; default: that of the class table")
+        ->type_name("DIR");
+}
+
+void addReplayOptions(CLI::App& app, ReplayOptions& replay) {
+    app.add_option("journal", replay.journal, "the recorded session (.mcap)")->required();
+    app.add_option("--session", replay.session, "session number under which it is shown");
+    app.add_option("--domain", replay.domain, "DDS domain, 0 to 230");
+    dds::addNetworkOptions(app, replay.network);
+    app.add_option("--at", replay.at_s, "begin at this moment, s")->check(within(0, kMostSeconds));
+    app.add_option("--speed", replay.speed, "so many times as fast as it was")
+        ->check(within(Player::kSlowest, Player::kFastest))
+        ->capture_default_str();
+    app.add_flag("--paused", replay.is_paused, "wait until a viewer lets it go on");
+    app.add_option("--stream-mbit-per-s", replay.stream_mbit_per_s,
+                   "node meshes take this much of the network at most")
+        ->check(within(0.1, 10000))
+        ->capture_default_str();
+    app.add_flag("--instructor-only", replay.instructor_only, "only instructors lead the replay");
+}
+
+void addExportOptions(CLI::App& app, ExportOptions& files) {
+    app.add_option("journal", files.journal, "the recorded session (.mcap)")->required();
+    app.add_option("--h5", files.h5, "write everything as HDF5, with units (docs/teach/replay.md)");
+    app.add_option("--csv", files.csv, "write one CSV line per tick, as --trace does");
+    app.add_option("--traj", files.traj, "write what went in, for simulate --trajectory");
+    app.add_option("--tool-path", files.tool_path,
+                   "write the tool's way in an attempt, for a scene's assessment.expert_path");
+    app.add_option("--attempt", files.attempt, "of --tool-path: its number, from 1; 0: the last one")
+        ->check(within(0, 100000));
+}
+
+void addReportOptions(CLI::App& app, AccuracyReportOptions& report) {
+    app.add_option("--scene", report.scene, "scene file (.textproto)")->required();
+    app.add_option("--out", report.out,
+                   "folder for report.md, accuracy.csv, accuracy.json, patch.csv, pareto.png")
+        ->required();
+    app.add_option("--budget-us", report.budget_us,
+                   "propose the most accurate setting whose ticks (p99.9) fit this many microseconds")
+        ->check(within(1e-3, 1e6));
+}
+
+int verify(const std::string& journal) {
+    const JournalVerdict verdict = verifyJournal(journal, versionText());
+    std::cout << journal << ": " << verdict.text() << std::flush;
+    return verdict.isProven() ? 0 : 1;
+}
+
+int printSeries(const std::string& folder) {
+    for (const std::string& line : listSeries(folder)) std::cout << line << '\n';
+    std::cout << std::flush;
+    return 0;
+}
+
+// What a session leaves, and a case, say of people: they are their user's alone.
+void keepFilesPrivate() {
+    umask(S_IRWXG | S_IRWXO);
+}
+
+struct Options {
+    std::string log_level = "info";
+    AccuracyReportOptions report;
+    ReplayOptions replay;
+    CaseRequest request;
+    std::string series_folder;
+    ForgetOptions forget;
+    AssessOptions assess;
+    std::string journal;
+    ExportOptions files;
+};
+
+// What the called subcommand does; returns the exit code.
+using Run = std::function<int()>;
+
+CLI::App& add(CLI::App& above, const std::string& name, const std::string& about, Run& chosen,
+              const Run& run) {
+    CLI::App* const command = above.add_subcommand(name, about);
+    command->callback([&chosen, run] { chosen = run; });
+    return *command;
+}
+
+void addFileCommands(CLI::App& app, Options& options, Run& chosen) {
+    addReportOptions(
+        add(app, "accuracy-report",
+            "measure errors and tick times of the accuracy settings in a scene, on this machine", chosen,
+            [&] {
+                std::cout << accuracyReport(options.report, std::cerr) << std::flush;
+                return 0;
+            }),
+        options.report);
+    addReplayOptions(add(app, "replay", "show a recorded session again, as a live one (docs/teach/replay.md)",
+                         chosen, [&] { return runReplay(options.replay); }),
+                     options.replay);
+    addCaseOptions(add(app, "make-case", "make a training case of a scan (docs/teach/cases.md)", chosen,
+                       [&] {
+                           keepFilesPrivate();
+                           makeCase(options.request, versionText(), std::cout);
+                           return 0;
+                       }),
+                   options.request);
+    add(app, "list-series", "print which DICOM series a folder holds, and which is the best for bone", chosen,
+        [&] { return printSeries(options.series_folder); })
+        .add_option("FOLDER", options.series_folder, "folder of DICOM files")
+        ->required();
+}
+
+void addSessionCommands(CLI::App& session, Options& options, Run& chosen) {
+    session.require_subcommand(1);
+    addForgetOptions(
+        add(session, "forget", "delete what a class' folder holds of one person, and say what was deleted",
+            chosen, [&] { return forgetPerson(options.forget, std::cout); }),
+        options.forget);
+    addAssessOptions(add(session, "assess",
+                         "measure and judge the attempts of a recording anew (docs/teach/assessment.md)",
+                         chosen, [&] { return assessJournal(options.assess, std::cout); }),
+                     options.assess);
+    add(session, "verify", "run a recording again and compare every bit", chosen,
+        [&] { return verify(options.journal); })
+        .add_option("JOURNAL", options.journal, "recording (.mcap)")
+        ->required();
+    addExportOptions(add(session, "export", "write a recorded session as files for other programs", chosen,
+                         [&] {
+                             exportJournal(options.files);
+                             return 0;
+                         }),
+                     options.files);
+}
+
+int runLab(int argc, char** argv) {
+    runReaderIfCalled(argc, argv);
+    setReaderProgram("/proc/self/exe");
+    CLI::App app("What is done with files before and after a session", "bonemill_lab");
+    app.require_subcommand(1);
+    Options options;
+    options.replay.version = versionText();
+    Run chosen;
+    addLogLevelOption(app, options.log_level);
+    addFileCommands(app, options, chosen);
+    CLI::App* const session = app.add_subcommand("session", "what can be done with what sessions have left");
+    addSessionCommands(*session, options, chosen);
+    if (!parseCommandLine(app, argc, argv, "bonemill_lab")) return 0;
+    setUpLog("bonemill_lab", options.log_level);
+    if (session->parsed()) keepFilesPrivate();
+    return chosen();
+}
+
+}  // namespace
+}  // namespace bonemill
+
+int main(int argc, char** argv) {
+    return bonemill::runProgram([&] { return bonemill::runLab(argc, argv); });
+}

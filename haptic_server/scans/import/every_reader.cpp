@@ -1,0 +1,85 @@
+// The readers of a build with BONEMILL_WITH_SCANS: all formats.
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <string_view>
+
+#include "common/base/user_error.h"
+#include "common/text/printed_text.h"
+#include "haptic_server/scans/dicom/dicom_folder.h"
+#include "haptic_server/scans/formats/image_stack.h"
+#include "haptic_server/scans/formats/inv3_project.h"
+#include "haptic_server/scans/formats/surface_volume.h"
+#include "haptic_server/scans/formats/volume_file.h"
+#include "haptic_server/scans/import/readers.h"
+
+namespace bonemill {
+namespace {
+
+std::string lowerCase(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
+}
+
+bool endsWith(const std::string& text, const std::string& ending) {
+    return text.size() >= ending.size() &&
+           text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+bool isSurface(const std::string& name) {
+    return endsWith(name, ".stl") || endsWith(name, ".ply");
+}
+
+bool isFolder(const std::filesystem::path& path) {
+    std::error_code error;
+    return std::filesystem::is_directory(path, error);
+}
+
+bool isZip(const std::filesystem::path& path) {
+    char head[4] = {};
+    std::ifstream(path, std::ios::binary).read(head, sizeof head);
+    return std::string_view(head, sizeof head) == std::string_view("PK\3\4", 4);
+}
+
+void refuseZip(const std::filesystem::path& path, const std::string& name) {
+    if (endsWith(name, ".zip") || isZip(path))
+        throw UserError(path.string() + ": is a zip archive; unpack it first: unzip " +
+                        quoted(path.string()) + " -d DIR, and give DIR");
+}
+
+}  // namespace
+
+RawVolume readVolume(const std::filesystem::path& path, const ImportOptions& options) {
+    const DicomWish wish{options.series_uid, options.acquisition, {}};
+    const bool is_folder = isFolder(path);
+    if (is_folder && isImageStack(path)) return importImageStack(path, options.spacing_mm);
+    const std::string name = lowerCase(path.filename().string());
+    if (!is_folder && (endsWith(name, ".nrrd") || endsWith(name, ".nhdr")))
+        return importNrrd(path, options.spacing_mm);
+    if (!is_folder && (endsWith(name, ".mha") || endsWith(name, ".mhd")))
+        return importMetaImage(path, options.spacing_mm);
+    if (options.spacing_mm)
+        throw UserError(path.string() +
+                        ": says the voxels' size itself, or has none; leave volume.spacing_mm out");
+    if (is_folder) return importDicomFolder(path, wish);
+    if (endsWith(name, ".nii") || endsWith(name, ".nii.gz")) return importNifti(path);
+    if (endsWith(name, ".inv3")) return importInv3(path);
+    refuseZip(path, name);
+    if (isDicomDirectory(path)) return importDicomDirectory(path, wish);
+    if (endsWith(name, ".dcm") || isDicom(path)) return importDicomFile(path, wish);
+    if (isSurface(name)) return importSurface(path, options.surface_voxel_mm, options.surface_value);
+    throw UserError(
+        path.string() +
+        ": is of no known type; give a folder with a DICOM series or PNG or TIFF images, or a file "
+        ".nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd, .inv3, .dcm, .stl or .ply");
+}
+
+std::vector<std::string> readSeries(const std::filesystem::path& path) {
+    if (!isFolder(path)) refuseZip(path, lowerCase(path.filename().string()));
+    if (!isFolder(path) && !isDicomDirectory(path) && !isDicom(path))
+        throw UserError(path.string() + ": is no DICOM file; give a folder with DICOM series");
+    return listDicomSeries(path);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,23 @@
+// The readers of a build without BONEMILL_WITH_SCANS: NRRD.
+#include "common/base/user_error.h"
+#include "haptic_server/scans/import/plain_nrrd.h"
+#include "haptic_server/scans/import/readers.h"
+
+namespace bonemill {
+
+RawVolume readVolume(const std::filesystem::path& path, const ImportOptions& options) {
+    if (path.extension() == ".nrrd" && !std::filesystem::is_directory(path))
+        return readPlainNrrd(path, options.spacing_mm);
+    throw UserError(
+        path.string() +
+        ": this program was built without the readers of scans (BONEMILL_WITH_SCANS=OFF) and reads "
+        ".nrrd files only; take one of all components, or save the volume as .nrrd");
+}
+
+std::vector<std::string> readSeries(const std::filesystem::path& path) {
+    throw UserError(path.string() +
+                    ": this program was built without the readers of scans (BONEMILL_WITH_SCANS=OFF), DICOM "
+                    "among them; take one of all components");
+}
+
+}  // namespace bonemill

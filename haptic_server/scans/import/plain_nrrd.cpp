@@ -1,0 +1,207 @@
+#include "haptic_server/scans/import/plain_nrrd.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <sstream>
+#include <vector>
+
+#include "common/base/user_error.h"
+#include "haptic_server/scans/confined/import_limits.h"
+#include "haptic_server/scans/frame/physical_frame.h"
+#include "haptic_server/scans/nrrd/nrrd_header.h"
+
+namespace bonemill {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "bytes are swapped for files that are big endian");
+
+std::vector<double> numbersIn(std::string text) {
+    for (char& c : text)
+        if (c == '(' || c == ',' || c == ')') c = ' ';
+    std::istringstream words(text);
+    std::vector<double> numbers;
+    for (std::string word; words >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
+    return numbers;
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+    throw UserError(path.string() + ": " + why +
+                    ", which needs a program with the readers of scans (BONEMILL_WITH_SCANS)");
+}
+
+std::vector<uint64_t> dimsOf(const NrrdFields& fields) {
+    std::vector<uint64_t> dims;
+    for (const double n : numbersIn(fields.sizes)) dims.push_back(n >= 1 ? uint64_t(n) : 0);
+    return dims;
+}
+
+// World axes are LPS; RAS has two of them the other way round.
+Eigen::Vector3d signsOf(const std::string& space) {
+    const bool is_ras = space == "ras" || space == "right-anterior-superior";
+    return is_ras ? Eigen::Vector3d(-1, -1, 1) : Eigen::Vector3d::Ones();
+}
+
+FileFrame frameOf(const NrrdHeader& header, const std::vector<uint64_t>& dims,
+                  const std::filesystem::path& path) {
+    const NrrdFields& fields = header.fields;
+    FileFrame frame{Eigen::Vector3i(int(dims[0]), int(dims[1]), int(dims[2])), Eigen::Vector3d::Ones(),
+                    Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
+    const Eigen::Vector3d signs = signsOf(fields.space);
+    if (const auto numbers = numbersIn(fields.space_directions); numbers.size() == 9) {
+        for (int a = 0; a < 3; ++a) {
+            const Eigen::Vector3d step = Eigen::Vector3d(&numbers[size_t(3 * a)]).cwiseProduct(signs);
+            frame.spacing_mm[a] = step.norm();
+            frame.directions.col(a) = step / frame.spacing_mm[a];
+        }
+    } else if (!fields.space_directions.empty()) {
+        refuse(path, "its space directions are not those of three axes");
+    } else if (const auto spacings = numbersIn(fields.spacings); spacings.size() == 3) {
+        frame.spacing_mm = Eigen::Vector3d(spacings.data());
+    }
+    if (const auto origin = numbersIn(fields.space_origin); origin.size() == 3)
+        frame.origin_mm = Eigen::Vector3d(origin.data()).cwiseProduct(signs);
+    frame.spacing_mm *= header.mm_per_unit;
+    frame.origin_mm *= header.mm_per_unit;
+    return frame;
+}
+
+// The voxels of an open file, unpacked where they are packed.
+class VoxelBytes {
+  public:
+    VoxelBytes(const std::filesystem::path& path, const NrrdHeader& header)
+        : path_(path), is_packed_(header.encoding != "raw"), file_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+        if (file_ < 0 || lseek(file_, off_t(header.bytes), SEEK_SET) < 0)
+            throw UserError(path.string() + ": cannot be read; check the path and who may read it");
+        if (is_packed_) packed_ = gzdopen(file_, "rb");
+    }
+    ~VoxelBytes() {
+        if (packed_)
+            gzclose(packed_);
+        else if (file_ >= 0)
+            close(file_);
+    }
+    VoxelBytes(const VoxelBytes&) = delete;
+    VoxelBytes& operator=(const VoxelBytes&) = delete;
+
+    void read(void* bytes, size_t count) {
+        char* next = static_cast<char*>(bytes);
+        for (const char* const end = next + count; next < end;) {
+            const size_t most = std::min(size_t(end - next), size_t(1) << 20);
+            const ssize_t done = packed_ ? gzread(packed_, next, unsigned(most)) : ::read(file_, next, most);
+            if (done <= 0)
+                throw UserError(path_.string() +
+                                ": holds fewer voxels than its header promises; it is cut short or damaged");
+            next += done;
+        }
+    }
+
+  private:
+    std::filesystem::path path_;
+    bool is_packed_;
+    int file_;
+    gzFile packed_ = nullptr;
+};
+
+template <class T>
+T swapped(T value) {
+    auto* const bytes = reinterpret_cast<unsigned char*>(&value);
+    std::reverse(bytes, bytes + sizeof value);
+    return value;
+}
+
+using AppendVoxels = void (*)(VoxelBytes&, uint64_t, bool, RawValues&);
+
+template <class T>
+void appendVoxels(VoxelBytes& bytes, uint64_t count, bool is_swapped, RawValues& values) {
+    constexpr bool is_held =
+        std::is_same_v<T, uint8_t> || std::is_same_v<T, int16_t> || std::is_same_v<T, uint16_t>;
+    constexpr uint64_t kBlock = uint64_t(1) << 20;
+    values.reserve(size_t(count));
+    std::vector<T> block;
+    for (uint64_t left = count; left > 0; left -= block.size()) {
+        block.resize(size_t(std::min(left, kBlock)));
+        bytes.read(block.data(), block.size() * sizeof(T));
+        if (is_swapped) std::ranges::transform(block, block.begin(), swapped<T>);
+        if constexpr (is_held)
+            values.append(std::span<const T>(block));
+        else
+            values.append(std::span<const float>(std::vector<float>(block.begin(), block.end())));
+    }
+}
+
+struct VoxelType {
+    std::vector<const char*> names;
+    size_t bytes;
+    AppendVoxels append;
+};
+
+const VoxelType& typeOf(const NrrdHeader& header, const std::filesystem::path& path) {
+    static const std::vector<VoxelType> kTypes{
+        {{"signed char", "int8", "int8_t"}, 1, appendVoxels<int8_t>},
+        {{"uchar", "unsigned char", "uint8", "uint8_t"}, 1, appendVoxels<uint8_t>},
+        {{"short", "short int", "signed short", "signed short int", "int16", "int16_t"},
+         2,
+         appendVoxels<int16_t>},
+        {{"ushort", "unsigned short", "unsigned short int", "uint16", "uint16_t"}, 2, appendVoxels<uint16_t>},
+        {{"int", "signed int", "int32", "int32_t"}, 4, appendVoxels<int32_t>},
+        {{"uint", "unsigned int", "uint32", "uint32_t"}, 4, appendVoxels<uint32_t>},
+        {{"float"}, 4, appendVoxels<float>},
+        {{"double"}, 8, appendVoxels<double>}};
+    for (const VoxelType& type : kTypes)
+        for (const char* const name : type.names)
+            if (header.fields.type == name) return type;
+    refuse(path, "its voxels are of type \"" + header.fields.type + "\"");
+}
+
+void requirePlain(const NrrdHeader& header, const std::filesystem::path& path) {
+    if (!header.data_file.empty() || header.fields.has_skip)
+        refuse(path, "its voxels do not follow its header in the same file");
+    if (header.encoding != "raw" && header.encoding != "gzip" && header.encoding != "gz")
+        refuse(path, "its encoding is " + header.encoding);
+    // ITK turns the wrong axis of LAS round; no build shall place a patient otherwise than another.
+    if (header.fields.space == "las" || header.fields.space == "left-anterior-superior")
+        throw UserError(path.string() + ": its space is " + header.fields.space +
+                        "; write it as left-posterior-superior");
+    if (numbersIn(header.fields.sizes).size() != 3) refuse(path, "it has other than three axes");
+}
+
+void requireSpacing(const NrrdHeader& header, bool is_given, const std::string& file) {
+    if (header.has_spacing && is_given)
+        throw UserError(file + ": says the voxels' size itself; leave volume.spacing_mm out");
+    if (!header.has_spacing && !is_given)
+        throw UserError(file +
+                        ": says nothing of the voxels' size; write volume.spacing_mm, or write it into the "
+                        "header in mm (spacings or space directions)");
+}
+
+}  // namespace
+
+RawVolume readPlainNrrd(const std::filesystem::path& path, const std::optional<Eigen::Vector3d>& spacing_mm) {
+    const NrrdHeader header = readNrrdHeader(path);
+    requirePlain(header, path);
+    const VoxelType& type = typeOf(header, path);
+    const std::vector<uint64_t> dims = dimsOf(header.fields);
+    checkVolumeSize(dims, type.bytes + sizeof(float), path.string());
+    requireSpacing(header, spacing_mm.has_value(), path.string());
+    FileFrame frame = frameOf(header, dims, path);
+    if (spacing_mm) frame.spacing_mm = *spacing_mm;
+    RawVolume raw;
+    VoxelBytes bytes(path, header);
+    type.append(bytes, dims[0] * dims[1] * dims[2], header.fields.endian == "big", raw.values);
+    if (!header.segments.empty()) raw.segments = joinLayers(header.segments, 1, raw.values, path.string());
+    const bool flipped = makeRightHanded(frame, path.string(), raw.geometry, raw.values);
+    if (header.exact_geometry && isSameGeometry(*header.exact_geometry, raw.geometry))
+        raw.geometry = *header.exact_geometry;
+    raw.lacks_patient_axes = !header.has_patient_space;
+    raw.description = std::string("NRRD") + (flipped ? ", left-handed: third axis reversed" : "");
+    return raw;
+}
+
+}  // namespace bonemill
