@@ -85,6 +85,49 @@ TEST_F(CheckDocs, EveryPictureIsShown) {
     EXPECT_EQ(finished.out, "docs/images/forgotten.png: no document shows it\n");
 }
 
+TEST_F(CheckDocs, OptionsMustBeThoseOfTheProgram) {
+    set("haptic_server/apps/haptic_server/main.cpp", "app.add_flag(\"--resume\");\n");
+    set("haptic_server/apps/make_phantom/make_phantom.cpp", "app.add_option(\"--seed\");\n");
+    set("deploy/demo", "case $1 in --seconds) ;; esac\n");
+    readme(
+        "`haptic_server --resume`, `deploy/demo --seconds 3`, `make_phantom [--seed S]`, `cmake --build`\n");
+    EXPECT_EQ(check().exit_code, 0);
+    expectFound("Say `haptic_server --seed 3`.\n", "10: haptic_server has no option --seed");
+    expectFound("```\nA=1 bin/haptic_server --resume \\\n  --slow  # --no\n```\n",
+                "11: bin/haptic_server has no option --slow");
+    expectFound("```\ndeploy/demo --frames 3 | sort --unique\n```\n",
+                "11: deploy/demo has no option --frames");
+}
+
+TEST_F(CheckDocs, EveryPackageHasItsRow) {
+    set("deploy/packages.txt", "# All\ncmake  # builds\nninja-build  # is quick\n");
+    set("deploy/packages-bench.txt", "r-base-core\n");
+    set("docs/develop/dependencies.md",
+        "# Packages\n\n| package | version in Debian 12 |\n|---|---|\n| cmake, git | 3 |\n| r-base-core | 4 "
+        "|\n\n"
+        "| package | version |\n|---|---|\n| esbuild | 0.25 |\n");
+    const Finished finished = check();
+    EXPECT_EQ(finished.exit_code, 1);
+    EXPECT_EQ(finished.out,
+              "docs/develop/dependencies.md: no row for ninja-build of deploy/packages*.txt\n"
+              "docs/develop/dependencies.md: git is not in deploy/packages*.txt\n");
+}
+
+TEST_F(CheckDocs, FiguresOfAccuracyAreThoseOfTheShippedFile) {
+    set("deploy/scenes/tooth_corridor.accuracy.json",
+        R"({"settings": {"balanced": {"force_error_percent": 0.0545, "tick_p50_us": 62.33,)"
+        R"( "tick_p99_us": 128.96, "tick_p99_9_us": 157.57}}})");
+    const std::string section = "## How exact, how fast, how stable\n\n";
+    readme(section + "It is right to 0.05 % in 62 µs, at p99.9 in 158\nµs a tick.\n\n## Next\n\n9 % more.\n");
+    const Finished finished = check();
+    EXPECT_EQ(finished.exit_code, 0) << finished.out << finished.err;
+    expectFound(section + "It is right to 0.24 % in 62 µs.\n",
+                "12: 0.24 % is not in deploy/scenes/tooth_corridor.accuracy.json: force_error_percent 0.05");
+    expectFound(section + "It takes 62 µs.\n",
+                "1: the section \"How exact, how fast, how stable\" quotes no figure in % of "
+                "deploy/scenes/tooth_corridor.accuracy.json");
+}
+
 TEST_F(CheckDocs, WithoutDocumentsTheCheckIsBlind) {
     std::filesystem::remove_all(root_.path());
     std::filesystem::create_directories(root_.path());
