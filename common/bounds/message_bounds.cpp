@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <vector>
 
 #include "proto/bounds.pb.h"
 #include "proto/scene.pb.h"
