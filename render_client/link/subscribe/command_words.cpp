@@ -122,7 +122,8 @@ uint32_t indexOf(CommandForm::Kind kind, const std::string& argument, const Sess
 }
 
 void setPlace(topics::Place& place, const std::string& argument) {
-    for (const double part : placeOf(argument).value()) place.add_p_m(part);
+    const std::array<double, 3> p_m = placeOf(argument).value();
+    for (const double part : p_m) place.add_p_m(part);
 }
 
 // Sets what the word means in the field that its form names.

@@ -88,6 +88,7 @@ TEST_F(CommandOutboxTest, AnEmptyResultIsNoSuccess) {
     stepAt(0ms);
     topics::Status status = acknowledgement(kSender, 1);
     status.clear_last_command_result();
+    status.clear_last_command_outcome();
     outbox_.acknowledge(status);
     const auto outcomes = outbox_.takeOutcomes();
     ASSERT_EQ(outcomes.size(), 1u);
