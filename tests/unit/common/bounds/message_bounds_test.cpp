@@ -111,17 +111,17 @@ class Bounds : public testing::TestWithParam<const Message*> {
     // refused.
     void expectRefused(const std::function<bool(Message&, const FieldDescriptor&)>& spoil) {
         std::set<const Descriptor*> seen;
-        forEachMessage(*message_, message_->GetDescriptor()->name(), seen,
-                       [&](Message& part, const std::string& path) {
-                           const std::unique_ptr<Message> kept(part.New());
-                           kept->CopyFrom(part);
-                           for (int n = 0; n < part.GetDescriptor()->field_count(); ++n) {
-                               const FieldDescriptor& field = *part.GetDescriptor()->field(n);
-                               if (spoil(part, field))
-                                   EXPECT_FALSE(isWithinBounds(*message_)) << path << "." << field.name();
-                               part.CopyFrom(*kept);
-                           }
-                       });
+        forEachMessage(
+            *message_, message_->GetDescriptor()->name(), seen, [&](Message& part, const std::string& path) {
+                const std::unique_ptr<Message> kept(part.New());
+                kept->CopyFrom(part);
+                for (int n = 0; n < part.GetDescriptor()->field_count(); ++n) {
+                    const FieldDescriptor& field = *part.GetDescriptor()->field(n);
+                    const bool is_spoilt = spoil(part, field);
+                    EXPECT_TRUE(!is_spoilt || !isWithinBounds(*message_)) << path << "." << field.name();
+                    part.CopyFrom(*kept);
+                }
+            });
     }
 
     std::unique_ptr<Message> message_;
