@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/base/user_error.h"
+#include "common/bounds/message_bounds.h"
 #include "common/config/effect_check.h"
 #include "common/config/field_unit.h"
 #include "common/config/material_check.h"
@@ -41,29 +42,6 @@ class SceneChecker {
     const std::string& name_;
 };
 
-double asDouble(const Message& message, const FieldDescriptor* field, int index) {
-    const auto& r = *message.GetReflection();
-    const bool repeated = field->is_repeated();
-    switch (field->cpp_type()) {
-        case FieldDescriptor::CPPTYPE_DOUBLE:
-            return repeated ? r.GetRepeatedDouble(message, field, index) : r.GetDouble(message, field);
-        case FieldDescriptor::CPPTYPE_FLOAT:
-            return double(repeated ? r.GetRepeatedFloat(message, field, index) : r.GetFloat(message, field));
-        case FieldDescriptor::CPPTYPE_UINT32:
-            return double(repeated ? r.GetRepeatedUInt32(message, field, index)
-                                   : r.GetUInt32(message, field));
-        case FieldDescriptor::CPPTYPE_INT32:
-            return double(repeated ? r.GetRepeatedInt32(message, field, index) : r.GetInt32(message, field));
-        case FieldDescriptor::CPPTYPE_UINT64:
-            return double(repeated ? r.GetRepeatedUInt64(message, field, index)
-                                   : r.GetUInt64(message, field));
-        case FieldDescriptor::CPPTYPE_INT64:
-            return double(repeated ? r.GetRepeatedInt64(message, field, index) : r.GetInt64(message, field));
-        default:
-            return 0.0;  // bool and enum: the parser accepts declared values only
-    }
-}
-
 void SceneChecker::checkValues(const Message& message, const std::string& prefix,
                                std::string_view outer_unit) {
     const auto& reflection = *message.GetReflection();
@@ -87,7 +65,7 @@ void SceneChecker::checkValues(const Message& message, const std::string& prefix
                                    : reflection.GetString(message, field),
                           path);
             } else {
-                checkNumber(*field, asDouble(message, field, i), path, unit);
+                checkNumber(*field, numberIn(message, *field, i), path, unit);
             }
         }
     }

@@ -11,6 +11,7 @@
 #include "common/base/user_error.h"
 #include "common/cli/command_line.h"
 #include "common/cli/number_range.h"
+#include "common/commands/role_rules.h"
 #include "common/dds/network_cli.h"
 #include "render_client/link/subscribe/command_words.h"
 #include "render_client/look/hud/session_text.h"
@@ -185,20 +186,22 @@ void convertOffscreen(const RawOptions& raw, std::chrono::seconds timeout, Clien
     if (has_video) options.offscreen->video = raw.video;
 }
 
+// Returns "\"reset\", \"shutdown\", ..." and so on.
+std::string quotedCommands() {
+    std::string text;
+    for (const std::string& words : commandWords()) text += (text.empty() ? "\"" : ", \"") + words + "\"";
+    return text;
+}
+
 // Returns the options that say what to do instead of a window.
 std::vector<CLI::Option*> addCommandOptions(CLI::App& app, RawOptions& raw, CLI::Option* offscreen,
                                             const std::vector<CLI::Option*>& view_options) {
-    auto* command =
-        app.add_option(
-               "--command", raw.command,
-               "No viewer: ask the server for \"reset\", \"pause\", \"resume\", \"tool NAME-or-number\", "
-               "\"checkpoint\", \"restore NUMBER-or-last\", \"accuracy NAME\", \"export NAME\", "
-               "\"reset-device\", \"scene ID\", \"start TRAINEE\", \"stop\", \"note TEXT\", "
-               "\"erase NUMBER-or-all\" or \"shutdown\", of a replay \"seek SECONDS\", \"speed FACTOR\", "
-               "\"next\", \"previous\" or \"when X Y Z\", print what it answers and stop")
-            ->check(commandProblem)
-            ->type_name("TEXT")
-            ->excludes(offscreen);
+    auto* command = app.add_option("--command", raw.command,
+                                   "No viewer: ask the server for " + quotedCommands() +
+                                       "; print what it answers and stop")
+                        ->check(commandProblem)
+                        ->type_name("TEXT")
+                        ->excludes(offscreen);
     for (CLI::Option* option : view_options) command->excludes(option);
     CLI::Option* measure =
         app.add_option(
@@ -276,12 +279,11 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
     }
     if (options.holds_tool && (raw.offscreen || raw.measure_s || !raw.command.empty()))
         throw UserError("--hold-tool needs a window: leave out --offscreen, --measure-s and --command");
-    if (options.holds_tool && options.subscriber.role != topics::Viewer::OPERATOR &&
-        options.subscriber.role != topics::Viewer::INSTRUCTOR)
+    const bool may_hold = mayHoldTool(options.subscriber.role);
+    if (options.holds_tool && !may_hold)
         throw UserError("--hold-tool needs --role operator or instructor: a viewer only looks");
-    if (options.subscriber.is_trainee && (raw.offscreen || raw.measure_s || !raw.command.empty() ||
-                                          (options.subscriber.role != topics::Viewer::OPERATOR &&
-                                           options.subscriber.role != topics::Viewer::INSTRUCTOR)))
+    if (options.subscriber.is_trainee &&
+        (raw.offscreen || raw.measure_s || !raw.command.empty() || !may_hold))
         throw UserError("--trainee needs a window, and --role operator or instructor");
     if (!options.sound_wav.empty() && (!options.has_effects || raw.measure_s || !raw.command.empty()))
         throw UserError(

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/commands/role_rules.h"
 #include "common/device_messages/device_messages.h"
 #include "proto/topics.pb.h"
 
@@ -37,8 +38,7 @@ std::optional<HandWish> parseHandWish(std::span<const uint8_t> payload, uint64_t
     wish.epoch = message.epoch();
     wish.sequence = message.sequence();
     wish.is_holding = message.is_holding();
-    wish.may_hold =
-        message.role() == topics::Viewer::OPERATOR || message.role() == topics::Viewer::INSTRUCTOR;
+    wish.may_hold = mayHoldTool(message.role());
     if (!wish.is_holding) return wish;
     const auto X_WT = poseIn(message);
     if (!X_WT) return std::nullopt;

@@ -56,13 +56,13 @@ CommandInbox::Decision CommandInbox::receive(uint64_t envelope_sender, const Com
     sender.last_heard = ++received_count_;
     if (command.sequence() < sender.sequence) return {};
     if (command.sequence() == sender.sequence) {
-        if (!sender.result) return {};
-        return {std::nullopt, CommandAcknowledgement{envelope_sender, sender.sequence, *sender.result}};
+        if (!sender.answer) return {};
+        return {std::nullopt, CommandAcknowledgement{envelope_sender, sender.sequence, *sender.answer}};
     }
     sender.sequence = command.sequence();
-    sender.result.reset();
+    sender.answer.reset();
     if (command.action_case() == topics::Command::ACTION_NOT_SET) {
-        return {std::nullopt, finish(command, "refused: this server does not know the action")};
+        return {std::nullopt, finish(command, Answer::refused("this server does not know the action"))};
     }
     return {std::move(command), std::nullopt};
 }
@@ -75,17 +75,17 @@ CommandInbox::Decision CommandInbox::refuseForeign(const topics::Command& comman
     if (command.sequence() < senders_.at(command.sender()).sequence)
         decision.acknowledgement = {
             command.sender(), command.sequence(),
-            "refused: another client of this session has this sender number; start anew"};
+            Answer::refused("another client of this session has this sender number; start anew")};
     return decision;
 }
 
-CommandAcknowledgement CommandInbox::finish(const topics::Command& command, const std::string& result) {
+CommandAcknowledgement CommandInbox::finish(const topics::Command& command, const Answer& answer) {
     const auto known = senders_.find(command.sender());
     if (known != senders_.end() && command.sequence() >= known->second.sequence) {
         known->second.sequence = command.sequence();
-        known->second.result = result;
+        known->second.answer = answer;
     }
-    return {command.sender(), command.sequence(), result};
+    return {command.sender(), command.sequence(), answer};
 }
 
 }  // namespace bonemill

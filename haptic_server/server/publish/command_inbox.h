@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "common/commands/answer.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {
@@ -18,7 +19,7 @@ namespace bonemill {
 struct CommandAcknowledgement {
     uint64_t sender = 0;
     uint32_t sequence = 0;
-    std::string result;
+    Answer answer;
 };
 
 // Who has really written a command (dds::Reader): 0 for the participant of a writer that has gone already.
@@ -50,16 +51,16 @@ class CommandInbox {
     Decision receive(uint64_t envelope_sender, const CommandOrigin& origin, std::span<const uint8_t> payload);
 
     // Remembers how a command ended, for senders that repeat it because they missed the acknowledgement.
-    CommandAcknowledgement finish(const topics::Command& command, const std::string& result);
+    CommandAcknowledgement finish(const topics::Command& command, const Answer& answer);
 
     uint64_t malformedCount() const noexcept { return malformed_count_; }
 
   private:
     struct Sender {
         CommandOrigin origin;
-        uint32_t sequence = 0;              // the last one received
-        std::optional<std::string> result;  // of that one; nothing: it is still being carried out
-        uint64_t last_heard = 0;            // receive counter, to forget the quietest
+        uint32_t sequence = 0;         // the last one received
+        std::optional<Answer> answer;  // of that one; nothing: it is still being carried out
+        uint64_t last_heard = 0;       // receive counter, to forget the quietest
     };
     // Null if another participant has it.
     Sender* senderOf(const topics::Command& command, const CommandOrigin& origin);

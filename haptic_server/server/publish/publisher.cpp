@@ -198,6 +198,7 @@ bool Publisher::publishStatus(topics::Status status) {
     status.set_last_command_sender(status_.last_command_sender());
     status.set_last_command_sequence(status_.last_command_sequence());
     status.set_last_command_result(status_.last_command_result());
+    status.set_last_command_outcome(status_.last_command_outcome());
     status_ = std::move(status);
     return writeStatus();
 }
@@ -308,14 +309,15 @@ std::string Publisher::proofOf(const topics::Command& command) const {
     return proven_senders_ ? proven_senders_->proofOf(command) : "by its own word";
 }
 
-void Publisher::acknowledge(const topics::Command& command, const std::string& result) {
-    show(inbox_.finish(command, result));
+void Publisher::acknowledge(const topics::Command& command, const Answer& answer) {
+    show(inbox_.finish(command, answer));
 }
 
 void Publisher::show(const CommandAcknowledgement& acknowledgement) {
     status_.set_last_command_sender(acknowledgement.sender);
     status_.set_last_command_sequence(acknowledgement.sequence);
-    status_.set_last_command_result(acknowledgement.result);
+    status_.set_last_command_result(acknowledgement.answer.text);
+    status_.set_last_command_outcome(acknowledgement.answer.outcome);
     writeStatus();
 }
 

@@ -84,8 +84,8 @@ class Publisher {
     std::string proofOf(const topics::Command& command) const;
     // Returns what the trainee sees, if that is known and has changed since the last call.
     std::optional<SeenEye> takeEye();
-    // Tells the sender, through Status at once, how the command ended: "done" or "refused: <why>".
-    void acknowledge(const topics::Command& command, const std::string& result);
+    // Tells the sender, through Status at once, how the command ended.
+    void acknowledge(const topics::Command& command, const Answer& answer);
 
     // Says how long the writes of nodes took in this run.
     const LatencyHistogram& writeTimes() const noexcept { return write_times_; }

@@ -141,7 +141,7 @@ void Player::play(bool goes_on) {
     changed_.notify_all();
 }
 
-std::string Player::carryOut(const topics::ReplayOrder& order) {
+Answer Player::carryOut(const topics::ReplayOrder& order) {
     switch (order.order_case()) {
         case topics::ReplayOrder::kSeekS:
             return seek(order.seek_s());
@@ -154,7 +154,7 @@ std::string Player::carryOut(const topics::ReplayOrder& order) {
         case topics::ReplayOrder::ORDER_NOT_SET:
             break;
     }
-    return "refused: this replay does not know the order";
+    return Answer::refused("this replay does not know the order");
 }
 
 void Player::goTo(uint64_t tick, std::string event) {
@@ -167,40 +167,42 @@ void Player::goTo(uint64_t tick, std::string event) {
     changed_.notify_all();
 }
 
-std::string Player::seek(double seconds) {
-    if (!(seconds >= 0)) return "refused: there is no moment before the first one, 0 s";
+Answer Player::seek(double seconds) {
+    if (!(seconds >= 0)) return Answer::refused("there is no moment before the first one, 0 s");
     goTo(recording_.tickAt(seconds), "");
-    return "done";
+    return Answer::done();
 }
 
-std::string Player::setSpeed(double speed) {
-    if (!(speed >= kSlowest && speed <= kFastest)) return "refused: a replay has a speed of 0.1 to 16";
+Answer Player::setSpeed(double speed) {
+    if (!(speed >= kSlowest && speed <= kFastest))
+        return Answer::refused("a replay has a speed of 0.1 to 16");
     {
         const std::lock_guard lock(mutex_);
         speed_ = speed;
         event_.clear();
     }
     changed_.notify_all();
-    return "done";
+    return Answer::done();
 }
 
-std::string Player::jump(int32_t by) {
+Answer Player::jump(int32_t by) {
     const uint64_t now = shown();
     std::optional<ReplayEvent> event;
     if (by > 0) {
         event = events_.after(now);
         if (!event && survey_.known() < recording_.ticks())
-            return "refused: no event is known yet after this one; the recording is still being looked "
-                   "through";
+            return Answer::refused(
+                "no event is known yet after this one; the recording is still being looked "
+                "through");
     } else if (by < 0) {
         const double moment_s = recording_.secondsOf(now) - sameMomentS();
         event = events_.before(moment_s > 0 ? recording_.tickAt(moment_s) : 0);
     }
     if (!event)
-        return by < 0 ? "refused: there is no event before this one"
-                      : "refused: there is no event after this one";
+        return Answer::refused(by < 0 ? "there is no event before this one"
+                                      : "there is no event after this one");
     goTo(event->tick, timeText(event->tick) + ": " + event->text);
-    return "done";
+    return Answer::done();
 }
 
 double Player::sameMomentS() const {
@@ -208,19 +210,20 @@ double Player::sameMomentS() const {
     return is_playing_ ? kSameMomentS * speed_ : 0;
 }
 
-std::string Player::goToRemoval(const topics::Place& place) {
+Answer Player::goToRemoval(const topics::Place& place) {
     if (place.p_m_size() != 3 ||
         !std::ranges::all_of(place.p_m(), [](double part) { return std::abs(part) < kMostMetres; }))
-        return "refused: that is no place";
+        return Answer::refused("that is no place");
     const Eigen::Vector3d p_V = X_VW_ * Eigen::Vector3d(place.p_m().data());
     const auto removal = survey_.removals().nearest(p_V, kPlaceRadius, shown());
     if (!removal)
-        return survey_.known() < recording_.ticks()
-                   ? "refused: no bone was removed within 2 mm of there in the first " +
-                         timeText(survey_.known()) + ", and the rest is still being looked through"
-                   : "refused: no bone was removed within 2 mm of there";
+        return Answer::refused("no bone was removed within 2 mm of there" +
+                               (survey_.known() < recording_.ticks()
+                                    ? " in the first " + timeText(survey_.known()) +
+                                          ", and the rest is still being looked through"
+                                    : std::string()));
     goTo(removal->tick, timeText(removal->tick) + ": removed here, in tick " + std::to_string(removal->tick));
-    return "done";
+    return Answer::done();
 }
 
 std::string Player::timeText(uint64_t tick) const {

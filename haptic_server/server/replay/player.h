@@ -8,6 +8,7 @@
 #include <stop_token>
 #include <string>
 
+#include "common/commands/answer.h"
 #include "common/rt/spsc_ring.h"
 #include "haptic_server/server/replay/survey.h"
 #include "haptic_server/server/session/replay_orders.h"
@@ -28,7 +29,7 @@ class Player final : public ReplayOrders {
     void run(const std::stop_token& stop);
 
     void play(bool goes_on) override;
-    std::string carryOut(const topics::ReplayOrder& order) override;
+    Answer carryOut(const topics::ReplayOrder& order) override;
     void describe(topics::Replay& replay) const override;
 
     // The tick that was shown last. Any thread.
@@ -39,10 +40,10 @@ class Player final : public ReplayOrders {
         uint64_t tick;
         std::string event;
     };
-    std::string seek(double seconds);
-    std::string setSpeed(double speed);
-    std::string jump(int32_t by);
-    std::string goToRemoval(const topics::Place& place);
+    Answer seek(double seconds);
+    Answer setSpeed(double speed);
+    Answer jump(int32_t by);
+    Answer goToRemoval(const topics::Place& place);
     double sameMomentS() const;
     std::string timeText(uint64_t tick) const;
     void goTo(uint64_t tick, std::string event);

@@ -43,10 +43,11 @@ AttemptKeeper::AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& 
       scene_hash_(sceneHashOf(scene)),
       told_(scene.assessment().exam() ? LessonBook::Told::kOnlyThatItWas : LessonBook::Told::kAll) {}
 
-std::optional<std::string> AttemptKeeper::start(const topics::Command& order) {
+std::optional<Answer> AttemptKeeper::start(const topics::Command& order) {
     const std::string& trainee = order.start_attempt();
-    if (std::string problem = LessonBook::traineeProblem(trainee); !problem.empty()) return problem;
-    if (std::string problem = limitProblem(trainee); !problem.empty()) return problem;
+    if (const std::string problem = LessonBook::traineeProblem(trainee); !problem.empty())
+        return Answer::refused(problem);
+    if (const std::string problem = limitProblem(trainee); !problem.empty()) return Answer::refused(problem);
     const bool is_answered_later = book_.isAttemptRunning() && end(order);
     if (task_) task_->beginAttempt();
     journal_.expectPutBack(Checkpoints::kScannedBone);
@@ -59,16 +60,16 @@ std::optional<std::string> AttemptKeeper::start(const topics::Command& order) {
     journal_.noteAttemptBegan(trainee, bone_order);
     if (tell_device_) tell_device_(true);
     if (is_answered_later) return std::nullopt;
-    return "done";
+    return Answer::done();
 }
 
-std::optional<std::string> AttemptKeeper::stop(const topics::Command& order) {
-    if (!book_.isAttemptRunning()) return "refused: no attempt is under way";
+std::optional<Answer> AttemptKeeper::stop(const topics::Command& order) {
+    if (!book_.isAttemptRunning()) return Answer::refused("no attempt is under way");
     const bool is_answered_later = end(order);
     history_.pauseMilling(true);
     if (tell_device_) tell_device_(false);
     if (is_answered_later) return std::nullopt;
-    return "done";
+    return Answer::done();
 }
 
 void AttemptKeeper::stop() {
@@ -82,7 +83,7 @@ void AttemptKeeper::noteRestored() {
 std::string AttemptKeeper::limitProblem(const std::string& trainee) const {
     if (!task_ || !task_->task() || task_->task()->most_attempts == 0) return "";
     if (book_.attemptsOf(trainee) < task_->task()->most_attempts) return "";
-    return "refused: '" + trainee + "' has had all " + std::to_string(task_->task()->most_attempts) +
+    return "'" + trainee + "' has had all " + std::to_string(task_->task()->most_attempts) +
            " attempts at this scene (assessment.most_attempts)";
 }
 

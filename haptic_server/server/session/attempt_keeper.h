@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/commands/answer.h"
 #include "haptic_server/core/bone/bone_history.h"
 #include "haptic_server/server/session/journal_keeper.h"
 #include "haptic_server/server/session/recorder.h"
@@ -28,11 +29,11 @@ class AttemptKeeper {
                   double voxel_volume, const scene::Scene& scene,
                   std::function<void(bool begins)> tell_device = {}, TaskWatch* task = nullptr);
 
-    // The answer is "done", or "refused: <why>". The bone goes back to the scan, and milling goes on. Where
+    // The bone goes back to the scan, and milling goes on. Where
     // an attempt that is recorded ends with the order, the answer comes with LessonBook::takeAnswers().
-    std::optional<std::string> start(const topics::Command& order);
+    std::optional<Answer> start(const topics::Command& order);
     // Likewise; milling is paused until it is resumed, or another attempt begins.
-    std::optional<std::string> stop(const topics::Command& order);
+    std::optional<Answer> stop(const topics::Command& order);
     // Ends the attempt under way, if there is one, without an order.
     void stop();
     // The bone was put back by an order. Outside of an attempt figures count from there.

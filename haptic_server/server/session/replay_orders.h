@@ -2,8 +2,7 @@
 // calls all members; none waits.
 #pragma once
 
-#include <string>
-
+#include "common/commands/answer.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {
@@ -13,8 +12,7 @@ class ReplayOrders {
     virtual ~ReplayOrders() = default;
     // Lets the recording go on, or holds it.
     virtual void play(bool goes_on) = 0;
-    // The answer is "done", or "refused: <why>".
-    virtual std::string carryOut(const topics::ReplayOrder& order) = 0;
+    virtual Answer carryOut(const topics::ReplayOrder& order) = 0;
     // Fills in how the replay stands.
     virtual void describe(topics::Replay& replay) const = 0;
 };

@@ -167,7 +167,7 @@ class Server {
 
     void refuseChange(const std::string& why) {
         spdlog::warn("the scene stays: {}", why);
-        lesson_.answerOrder(order_.command, "refused: " + why);
+        lesson_.answerOrder(order_.command, Answer::refused(why));
     }
 
     // From the force of the one to that of the other; what the one leaves behind is written when the other
@@ -192,10 +192,10 @@ class Server {
     void startChanged() {
         try {
             run_->start();
-            lesson_.answerOrder(order_.command, "done");
+            lesson_.answerOrder(order_.command, Answer::done());
         } catch (const std::exception& error) {
             spdlog::error("{}: the session ends", error.what());
-            lesson_.answerOrder(order_.command, std::string("refused: ") + error.what());
+            lesson_.answerOrder(order_.command, Answer::refused(error.what()));
             has_failed_ = true;
             stop_requested_ = true;
         }

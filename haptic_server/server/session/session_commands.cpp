@@ -1,7 +1,6 @@
 #include "haptic_server/server/session/session_commands.h"
 
 #include "common/base/units.h"
-#include "common/commands/role_rules.h"
 #include "common/config/effect_check.h"
 #include "common/rt/clock.h"
 #include "common/text/repeated_text.h"
@@ -9,22 +8,9 @@
 namespace bonemill {
 namespace {
 
-// Some actions are a bool only because an action must have a value: false says nothing that could be done.
-bool asksForNothing(const topics::Command& command) {
-    switch (command.action_case()) {
-        case topics::Command::kResetVolume:
-            return !command.reset_volume();
-        case topics::Command::kSaveCheckpoint:
-            return !command.save_checkpoint();
-        case topics::Command::kShutDown:
-            return !command.shut_down();
-        case topics::Command::kResetDevice:
-            return !command.reset_device();
-        case topics::Command::kStopAttempt:
-            return !command.stop_attempt();
-        default:
-            return false;
-    }
+OpenTo openTo(const scene::Scene& scene, bool only_instructors) {
+    if (scene.assessment().exam()) return OpenTo::kInstructorsInExam;
+    return only_instructors ? OpenTo::kInstructors : OpenTo::kAllRoles;
 }
 
 }  // namespace
@@ -38,23 +24,19 @@ SessionCommands::SessionCommands(const scene::Scene& scene, const BoneModel& bon
       voxel_mm3_(bone.volume.voxelVolume() * kPerCubicMillimetre),
       is_switchable_(scene.accuracy().switchable()),
       effect_of_gradient_law_(effectOfGradientLaw(scene.effects())),
-      only_instructors_(only_instructors),
-      is_exam_(scene.assessment().exam()) {}
+      open_to_(openTo(scene, only_instructors)) {}
 
-std::optional<std::string> SessionCommands::carryOut(const topics::Command& command) {
-    if (const std::string refusal = refusalOf(command); !refusal.empty()) return refusal;
-    if (asksForNothing(command)) return "refused: a command that is false asks for nothing; send true";
-    if (std::string refusal = controls_.limits.refusalOf(command, monotonicNowNs()); !refusal.empty())
-        return refusal;
+std::optional<Answer> SessionCommands::carryOut(const topics::Command& command) {
+    if (const std::string why_not = whyNot(command); !why_not.empty()) return Answer::refused(why_not);
     if (controls_.replay) return carryOutInReplay(command);
     switch (command.action_case()) {
         case topics::Command::kReplay:
-            return "refused: this is a live session, not a replay (docs/teach/replay.md)";
+            return Answer::refused("this is a live session, not a replay (docs/teach/replay.md)");
         case topics::Command::kResetVolume:
             return restore(Checkpoints::kScannedBone);
         case topics::Command::kPauseMilling:
             controls_.history.pauseMilling(command.pause_milling());
-            return "done";
+            return Answer::done();
         case topics::Command::kSetAccuracy:
             return setAccuracy(command.set_accuracy());
         case topics::Command::kSelectTool:
@@ -62,17 +44,17 @@ std::optional<std::string> SessionCommands::carryOut(const topics::Command& comm
         case topics::Command::kSaveCheckpoint:
             checkpoints_.save(sessionS());
             controls_.journal.noteCheckpoint(checkpoints_.kept().back());
-            return "done";
+            return Answer::done();
         case topics::Command::kRestoreCheckpoint:
             return restore(command.restore_checkpoint());
         case topics::Command::kShutDown:
             controls_.stop_requested = true;
-            return "done";
+            return Answer::done();
         case topics::Command::kExport:
             return controls_.bone_export.begin(command.export_());
         case topics::Command::kResetDevice:
             controls_.reset_orders.fetch_add(1, std::memory_order_relaxed);
-            return "done";
+            return Answer::done();
         case topics::Command::kChooseScene:
             return controls_.lesson.orderScene(command);
         case topics::Command::kStartAttempt:
@@ -84,72 +66,73 @@ std::optional<std::string> SessionCommands::carryOut(const topics::Command& comm
         case topics::Command::kEraseRemark:
             return remarks_.erase(command.erase_remark());
         default:
-            return "refused: this server does not know the action";
+            return Answer::refused("this server does not know the action");
     }
 }
 
 // What a recording holds stays as it was.
-std::optional<std::string> SessionCommands::carryOutInReplay(const topics::Command& command) {
+std::optional<Answer> SessionCommands::carryOutInReplay(const topics::Command& command) {
     switch (command.action_case()) {
         case topics::Command::kReplay:
             return controls_.replay->carryOut(command.replay());
         case topics::Command::kPauseMilling:
             controls_.replay->play(!command.pause_milling());
-            return "done";
+            return Answer::done();
         case topics::Command::kAddRemark:
             return remarks_.add(command, sessionS());
         case topics::Command::kEraseRemark:
             return remarks_.erase(command.erase_remark());
         case topics::Command::kShutDown:
             controls_.stop_requested = true;
-            return "done";
+            return Answer::done();
         default:
-            return "refused: this is a replay of a recorded session: it is led, not commanded "
-                   "(docs/teach/replay.md)";
+            return Answer::refused(
+                "this is a replay of a recorded session: it is led, not commanded "
+                "(docs/teach/replay.md)");
     }
 }
 
-// The refusal is empty if the role allows the command.
-std::string SessionCommands::refusalOf(const topics::Command& command) const {
-    if (is_exam_ && command.role() != topics::Viewer::INSTRUCTOR)
-        return "refused: this scene is an examination; only instructors command it";
-    if (only_instructors_ && command.role() != topics::Viewer::INSTRUCTOR)
-        return "refused: only instructors command this session (--instructor-only)";
-    return std::string(refusalOfRole(command.role(), command.action_case()));
+std::string SessionCommands::whyNot(const topics::Command& command) const {
+    const CommandAction action = command.action_case();
+    if (std::string why_not = whyNotOrder(command.role(), action, open_to_); !why_not.empty()) return why_not;
+    if (rowOf(action).is_plain() && !command.GetReflection()->GetBool(command, fieldOf(action)))
+        return "a command that is false asks for nothing; send true";
+    return controls_.limits.whyNotNow(action, monotonicNowNs());
 }
 
-std::string SessionCommands::setAccuracy(const std::string& name) {
+Answer SessionCommands::setAccuracy(const std::string& name) {
     const auto preset = presetOfName(name);
     if (name != "scene" && !preset)
-        return "refused: no preset is called '" + repeatedText(name) + "'; " + presetNames() + " or scene";
-    if (!is_switchable_ && preset) return "refused: the scene says accuracy.switchable: false";
+        return Answer::refused("no preset is called '" + repeatedText(name) + "'; " + presetNames() +
+                               " or scene");
+    if (!is_switchable_ && preset) return Answer::refused("the scene says accuracy.switchable: false");
     if (preset && presetSettings(*preset).law != ContactLaw::kGradient && effect_of_gradient_law_)
-        return std::string("refused: effects.") + effect_of_gradient_law_ +
-               " of the scene needs the gradient contact law, which " + name + " is not";
+        return Answer::refused(std::string("effects.") + effect_of_gradient_law_ +
+                               " of the scene needs the gradient contact law, which " + name + " is not");
     controls_.accuracy.choose(preset ? AccuracySwitch::choiceOf(*preset) : AccuracySwitch::kSceneChoice);
-    return "done";
+    return Answer::done();
 }
 
-std::string SessionCommands::selectTool(uint32_t index) {
+Answer SessionCommands::selectTool(uint32_t index) {
     if (index >= controls_.tools.count())
-        return "refused: there is no tool " + std::to_string(index + uint64_t{1}) + "; the scene has " +
-               std::to_string(controls_.tools.count());
+        return Answer::refused("there is no tool " + std::to_string(index + uint64_t{1}) +
+                               "; the scene has " + std::to_string(controls_.tools.count()));
     controls_.tools.choose(index);
-    return "done";
+    return Answer::done();
 }
 
-std::string SessionCommands::restore(uint32_t checkpoint) {
+Answer SessionCommands::restore(uint32_t checkpoint) {
     if (checkpoints_.has(checkpoint)) {
         controls_.journal.expectPutBack(checkpoint);
         checkpoints_.restore(checkpoint);
         controls_.attempts.noteRestored();
-        return "done";
+        return Answer::done();
     }
-    return "refused: there is no checkpoint " + std::to_string(checkpoint) +
-           (checkpoints_.kept().empty()
-                ? "; none is saved"
-                : "; the oldest is " + std::to_string(checkpoints_.kept().front().id) + ", the newest " +
-                      std::to_string(checkpoints_.kept().back().id));
+    return Answer::refused("there is no checkpoint " + std::to_string(checkpoint) +
+                           (checkpoints_.kept().empty()
+                                ? "; none is saved"
+                                : "; the oldest is " + std::to_string(checkpoints_.kept().front().id) +
+                                      ", the newest " + std::to_string(checkpoints_.kept().back().id)));
 }
 
 double SessionCommands::sessionS() const {

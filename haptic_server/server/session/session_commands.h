@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/commands/order_limits.h"
+#include "common/commands/role_rules.h"
 #include "haptic_server/core/bone/checkpoints.h"
 #include "haptic_server/core/tick/accuracy_switch.h"
 #include "haptic_server/core/tick/tool_switch.h"
@@ -44,11 +45,10 @@ class SessionCommands {
     SessionCommands(const scene::Scene& scene, const BoneModel& bone, const Recorder& recorder,
                     const SessionControls& controls, bool only_instructors);
 
-    // The answer is "done" or "refused: <why>"; nothing means that the command has begun, and its end
-    // comes with takeResult().
-    std::optional<std::string> carryOut(const topics::Command& command);
-    // This is how the command that was begun has ended, once it has: "done" or "failed: <why>".
-    std::optional<std::string> takeResult() { return controls_.bone_export.takeResult(); }
+    // Nothing means that the command has begun, and its end comes with takeResult().
+    std::optional<Answer> carryOut(const topics::Command& command);
+    // This is how the command that was begun has ended, once it has.
+    std::optional<Answer> takeResult() { return controls_.bone_export.takeResult(); }
     void waitForResult() { controls_.bone_export.wait(); }
     LessonBook& lesson() noexcept { return controls_.lesson; }
     JournalKeeper& journal() noexcept { return controls_.journal; }
@@ -61,11 +61,12 @@ class SessionCommands {
     const AccuracySwitch& accuracy() const noexcept { return controls_.accuracy; }
 
   private:
-    std::string refusalOf(const topics::Command& command) const;
-    std::optional<std::string> carryOutInReplay(const topics::Command& command);
-    std::string setAccuracy(const std::string& name);
-    std::string selectTool(uint32_t index);
-    std::string restore(uint32_t checkpoint);
+    // Empty if it may be carried out.
+    std::string whyNot(const topics::Command& command) const;
+    std::optional<Answer> carryOutInReplay(const topics::Command& command);
+    Answer setAccuracy(const std::string& name);
+    Answer selectTool(uint32_t index);
+    Answer restore(uint32_t checkpoint);
     double sessionS() const;
 
     SessionControls controls_;
@@ -75,8 +76,7 @@ class SessionCommands {
     double voxel_mm3_;
     bool is_switchable_;
     const char* effect_of_gradient_law_;  // null: none
-    bool only_instructors_;
-    bool is_exam_;
+    OpenTo open_to_;
 };
 
 }  // namespace bonemill

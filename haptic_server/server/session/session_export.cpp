@@ -90,37 +90,37 @@ SessionExport::SessionExport(BoneHistory& history, const BoneModel& bone, std::s
     requireWritable((fs::path(folder_) / kProbe).string());
 }
 
-std::optional<std::string> SessionExport::begin(const std::string& name) {
-    if (folder_.empty()) return "refused: this server was started without --export-dir";
+std::optional<Answer> SessionExport::begin(const std::string& name) {
+    if (folder_.empty()) return Answer::refused("this server was started without --export-dir");
     if (!isName(name))
-        return "refused: '" + repeatedText(name) +
-               "' is no name for files: letters, digits, _ - and . (not first), " +
-               std::to_string(kLongestName) + " at most";
-    if (result_.valid()) return "refused: an export is under way; wait for its end";
+        return Answer::refused("'" + repeatedText(name) +
+                               "' is no name for files: letters, digits, _ - and . (not first), " +
+                               std::to_string(kLongestName) + " at most");
+    if (result_.valid()) return Answer::refused("an export is under way; wait for its end");
     const Files files(folder_, name);
     std::error_code ignored;
     for (const fs::path& file : files.all())
         if (fs::exists(file, ignored))
-            return "refused: " + file.filename().string() + " is there already; give another name";
+            return Answer::refused(file.filename().string() + " is there already; give another name");
     try {
         result_ = std::async(std::launch::async, [this, files, snapshot = history_.snapshot(bone_)] {
-            std::string result = "done";
+            Answer result = Answer::done();
             try {
                 writeAll(files, history_.volumeOf(*snapshot, bone_.lattice), history_.scanned(),
                          bone_.lattice.leafCells());
             } catch (const std::exception& error) {
-                result = std::string("failed: ") + error.what();
+                result = Answer::failed(error.what());
             }
-            spdlog::info("export {}: {}", files.volume.stem().string(), result);
+            spdlog::info("export {}: {}", files.volume.stem().string(), result.text);
             return result;
         });
     } catch (const std::exception& error) {
-        return std::string("refused: no memory or thread for it: ") + error.what();
+        return Answer::refused(std::string("no memory or thread for it: ") + error.what());
     }
     return std::nullopt;
 }
 
-std::optional<std::string> SessionExport::takeResult() {
+std::optional<Answer> SessionExport::takeResult() {
     using namespace std::chrono_literals;
     if (!result_.valid() || result_.wait_for(0s) != std::future_status::ready) return std::nullopt;
     return result_.get();

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "common/commands/answer.h"
 #include "haptic_server/core/bone/bone_history.h"
 
 namespace bonemill {
@@ -20,10 +21,10 @@ class SessionExport {
     // Begins to write NAME.stl, NAME.ply, NAME.nrrd (densities) and NAME_difference.nrrd of the bone as it
     // is now. The answer is nothing when it has begun, else "refused: <why>". Not RT-safe, but no tick
     // waits for it.
-    std::optional<std::string> begin(const std::string& name);
-    // There is one answer when the export under way has ended: "done" or "failed: <why>". After a failure
+    std::optional<Answer> begin(const std::string& name);
+    // There is one answer when the export under way has ended. After a failure
     // none of its files is left.
-    std::optional<std::string> takeResult();
+    std::optional<Answer> takeResult();
     // Waits for the end of the export under way, if there is one.
     void wait() {
         if (result_.valid()) result_.wait();
@@ -33,7 +34,7 @@ class SessionExport {
     BoneHistory& history_;
     const BoneModel& bone_;
     std::string folder_;
-    std::future<std::string> result_;  // waits for its thread where it goes
+    std::future<Answer> result_;  // waits for its thread where it goes
 };
 
 }  // namespace bonemill

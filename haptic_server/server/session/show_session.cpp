@@ -242,7 +242,7 @@ void ShowSession::leaveAnswers() {
     if (!under_way_) return;
     commands_.waitForResult();
     commands_.lesson().answerLater(*under_way_,
-                                   commands_.takeResult().value_or("failed: the scene has ended"));
+                                   commands_.takeResult().value_or(Answer::failed("the scene has ended")));
 }
 
 void ShowSession::publishToolState(int64_t now_ns) {
@@ -320,7 +320,7 @@ void ShowSession::followTool() {
 // Who reads that a command is done finds what it did in the same status.
 void ShowSession::carryOutCommands() {
     for (const topics::Command& command : publisher_.takeCommands()) {
-        const std::optional<std::string> result = commands_.carryOut(command);
+        const std::optional<Answer> result = commands_.carryOut(command);
         followTool();
         publishRemarks();
         if (result)
@@ -332,11 +332,11 @@ void ShowSession::carryOutCommands() {
     for (const auto& [command, result] : commands_.lesson().takeAnswers()) answer(command, result);
 }
 
-void ShowSession::answer(const topics::Command& command, const std::string& result) {
+void ShowSession::answer(const topics::Command& command, const Answer& answer) {
     publishStatus();
-    publisher_.acknowledge(command, result);
-    commands_.journal().noteOrder(command, result);
-    log(command, result);
+    publisher_.acknowledge(command, answer);
+    commands_.journal().noteOrder(command, answer.text);
+    log(command, answer.text);
 }
 
 void ShowSession::log(const topics::Command& command, const std::string& result) {

@@ -62,7 +62,7 @@ class ShowSession {
     void publishRemarks();
     void carryOutCommands();
     void followTool();
-    void answer(const topics::Command& command, const std::string& result);
+    void answer(const topics::Command& command, const Answer& answer);
     void log(const topics::Command& command, const std::string& result);
 
     Publisher& publisher_;

@@ -11,11 +11,11 @@
 namespace bonemill {
 namespace {
 
-std::string answerTo(const topics::Command& order, const std::string& problem) {
-    if (problem.empty()) return "done";
+Answer answerTo(const topics::Command& order, const std::string& problem) {
+    if (problem.empty()) return Answer::done();
     const bool is_of_another = order.action_case() == topics::Command::kStartAttempt;
-    return std::string("failed: ") + (is_of_another ? "the attempt before" : "it") +
-           " is not in the class table: " + problem;
+    return Answer::failed(std::string(is_of_another ? "the attempt before" : "it") +
+                          " is not in the class table: " + problem);
 }
 
 int64_t nowUnixNs() {
@@ -57,16 +57,16 @@ void LessonBook::enterScene(const std::string& file) {
     has_changed_ = true;
 }
 
-std::optional<std::string> LessonBook::orderScene(const topics::Command& command) {
+std::optional<Answer> LessonBook::orderScene(const topics::Command& command) {
     const std::lock_guard lock(mutex_);
     const std::string& id = command.choose_scene();
     const auto scene = std::find_if(scenes_.begin(), scenes_.end(),
                                     [&](const ListedScene& s) { return s.choice.id() == id; });
     if (scene == scenes_.end())
-        return "refused: there is no scene '" + repeatedText(id) +
-               "'; haptic_server --list-scenes shows which there are";
+        return Answer::refused("there is no scene '" + repeatedText(id) +
+                               "'; haptic_server --list-scenes shows which there are");
     if (!lesson_.changing_to().empty())
-        return "refused: the scene " + lesson_.changing_to() + " is on its way; wait for it";
+        return Answer::refused("the scene " + lesson_.changing_to() + " is on its way; wait for it");
     lesson_.set_changing_to(id);
     has_changed_ = true;
     order_ = SceneOrder{command, scene->file};
@@ -78,19 +78,19 @@ std::optional<LessonBook::SceneOrder> LessonBook::takeOrder() {
     return std::exchange(order_, std::nullopt);
 }
 
-void LessonBook::answerOrder(const topics::Command& command, const std::string& result) {
+void LessonBook::answerOrder(const topics::Command& command, const Answer& answer) {
     const std::lock_guard lock(mutex_);
     lesson_.clear_changing_to();
     has_changed_ = true;
-    answers_.emplace_back(command, result);
+    answers_.emplace_back(command, answer);
 }
 
-void LessonBook::answerLater(const topics::Command& command, const std::string& result) {
+void LessonBook::answerLater(const topics::Command& command, const Answer& answer) {
     const std::lock_guard lock(mutex_);
-    answers_.emplace_back(command, result);
+    answers_.emplace_back(command, answer);
 }
 
-std::vector<std::pair<topics::Command, std::string>> LessonBook::takeAnswers() {
+std::vector<std::pair<topics::Command, Answer>> LessonBook::takeAnswers() {
     const std::lock_guard lock(mutex_);
     for (const TableWriter::Written& written : table_.takeWritten()) {
         if (written.order) answers_.emplace_back(*written.order, answerTo(*written.order, written.problem));
@@ -107,13 +107,12 @@ void LessonBook::takeVerdict(uint32_t attempt, const topics::Verdict& verdict) {
 
 // What Protobuf has parsed is UTF-8.
 std::string LessonBook::traineeProblem(const std::string& trainee) {
-    if (trainee.find_first_not_of(' ') == std::string::npos)
-        return "refused: give the trainee's name or number";
+    if (trainee.find_first_not_of(' ') == std::string::npos) return "give the trainee's name or number";
     if (trainee.size() > kLongestTrainee)
-        return "refused: the trainee's name has " + std::to_string(trainee.size()) + " bytes; " +
+        return "the trainee's name has " + std::to_string(trainee.size()) + " bytes; " +
                std::to_string(kLongestTrainee) + " at most";
     if (hasUnprintable(trainee))
-        return "refused: the name '" + repeatedText(trainee) + "' has characters that cannot be printed";
+        return "the name '" + repeatedText(trainee) + "' has characters that cannot be printed";
     return "";
 }
 

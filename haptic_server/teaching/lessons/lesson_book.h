@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/commands/answer.h"
 #include "haptic_server/teaching/lessons/class_table.h"
 #include "haptic_server/teaching/lessons/scene_folder.h"
 #include "haptic_server/teaching/lessons/table_writer.h"
@@ -35,17 +36,17 @@ class LessonBook {
 
     // A client asks for another scene. The answer is the refusal, or nothing: then it comes with
     // takeAnswers().
-    std::optional<std::string> orderScene(const topics::Command& command);
+    std::optional<Answer> orderScene(const topics::Command& command);
     struct SceneOrder {
         topics::Command command;
         std::string file;
     };
     // The order is whoever's takes it; there is none other until it is answered.
     std::optional<SceneOrder> takeOrder();
-    void answerOrder(const topics::Command& command, const std::string& result);
+    void answerOrder(const topics::Command& command, const Answer& answer);
     // A command that the scene that has ended can no longer answer.
-    void answerLater(const topics::Command& command, const std::string& result);
-    std::vector<std::pair<topics::Command, std::string>> takeAnswers();
+    void answerLater(const topics::Command& command, const Answer& answer);
+    std::vector<std::pair<topics::Command, Answer>> takeAnswers();
 
     // Says why the name cannot be a trainee's, or "".
     static std::string traineeProblem(const std::string& trainee);
@@ -74,7 +75,7 @@ class LessonBook {
     bool has_changed_ = true;
     uint32_t attempts_begun_ = 0;
     std::optional<SceneOrder> order_;  // not yet taken
-    std::vector<std::pair<topics::Command, std::string>> answers_;
+    std::vector<std::pair<topics::Command, Answer>> answers_;
 };
 
 }  // namespace bonemill

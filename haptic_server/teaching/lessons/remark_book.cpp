@@ -15,21 +15,21 @@ Eigen::Vector3d pointOf(const topics::Remark& remark, int n) {
 
 std::string noteProblem(const topics::Remark& remark) {
     const size_t letters = lettersOf(remark.note());
-    if (remark.note().find_first_not_of(' ') == std::string::npos) return "refused: the note is empty";
+    if (remark.note().find_first_not_of(' ') == std::string::npos) return "the note is empty";
     if (letters > kMostNoteLetters)
-        return "refused: the note has " + std::to_string(letters) + " letters; " +
-               std::to_string(kMostNoteLetters) + " at most";
-    if (hasUnprintable(remark.note())) return "refused: the note has characters that cannot be printed";
-    if (remark.points_m_size() > 3) return "refused: a note belongs to one place at most";
+        return "the note has " + std::to_string(letters) + " letters; " + std::to_string(kMostNoteLetters) +
+               " at most";
+    if (hasUnprintable(remark.note())) return "the note has characters that cannot be printed";
+    if (remark.points_m_size() > 3) return "a note belongs to one place at most";
     return "";
 }
 
 std::string strokeProblem(const topics::Remark& remark) {
     const int points = remark.points_m_size() / 3;
-    if (points < 2) return "refused: there is neither a note nor a stroke of two points";
+    if (points < 2) return "there is neither a note nor a stroke of two points";
     if (points > kMostRemarkPoints)
-        return "refused: the stroke has " + std::to_string(points) + " points; " +
-               std::to_string(kMostRemarkPoints) + " at most";
+        return "the stroke has " + std::to_string(points) + " points; " + std::to_string(kMostRemarkPoints) +
+               " at most";
     return "";
 }
 
@@ -43,13 +43,12 @@ bool RemarkBook::isNear(const Eigen::Vector3d& p_W) const {
 }
 
 std::string RemarkBook::problemOf(const topics::Remark& remark) const {
-    if (remark.points_m_size() % 3 != 0) return "refused: a point has three coordinates";
+    if (remark.points_m_size() % 3 != 0) return "a point has three coordinates";
     if (std::string problem = remark.note().empty() ? strokeProblem(remark) : noteProblem(remark);
         !problem.empty())
         return problem;
     for (int n = 0; n < remark.points_m_size() / 3; ++n)
-        if (!isNear(pointOf(remark, n)))
-            return "refused: point " + std::to_string(n + 1) + " is not at the bone";
+        if (!isNear(pointOf(remark, n))) return "point " + std::to_string(n + 1) + " is not at the bone";
     return "";
 }
 
@@ -63,9 +62,9 @@ uint32_t RemarkBook::freePlace() const {
     return place;
 }
 
-std::string RemarkBook::add(const topics::Command& command, double session_s) {
+Answer RemarkBook::add(const topics::Command& command, double session_s) {
     const topics::Remark& asked = command.add_remark();
-    if (std::string problem = problemOf(asked); !problem.empty()) return problem;
+    if (const std::string problem = problemOf(asked); !problem.empty()) return Answer::refused(problem);
     topics::Remark remark;
     remark.set_number(++last_number_);
     remark.set_author(cutToBytes(command.name(), kLongestAuthor));
@@ -77,18 +76,19 @@ std::string RemarkBook::add(const topics::Command& command, double session_s) {
     const uint32_t place = freePlace();
     kept_[place] = std::move(remark);
     changed_.insert(place);
-    return "done";
+    return Answer::done();
 }
 
-std::string RemarkBook::erase(uint32_t number) {
+Answer RemarkBook::erase(uint32_t number) {
     const auto erased = std::erase_if(kept_, [&](const auto& kept) {
         const bool is_meant = number == 0 || kept.second.number() == number;
         if (is_meant) changed_.insert(kept.first);
         return is_meant;
     });
     if (erased == 0 && number != 0)
-        return "refused: there is no note or stroke " + std::to_string(number) + "; it may be erased already";
-    return "done";
+        return Answer::refused("there is no note or stroke " + std::to_string(number) +
+                               "; it may be erased already");
+    return Answer::done();
 }
 
 std::vector<RemarkBook::Change> RemarkBook::takeChanges() {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/commands/answer.h"
 #include "common/dds/remark_bounds.h"
 #include "haptic_server/core/volume/raw_volume.h"
 #include "proto/topics.pb.h"
@@ -24,10 +25,10 @@ class RemarkBook {
     explicit RemarkBook(const VolumeGeometry& volume) : volume_(volume) {}
 
     // Takes Command.add_remark: number, author, role and clock are filled in from the sender. The oldest one
-    // makes room where kMostRemarks are kept. The answer is "done" or "refused: <why>".
-    std::string add(const topics::Command& command, double session_s);
+    // makes room where kMostRemarks are kept.
+    Answer add(const topics::Command& command, double session_s);
     // Takes Command.erase_remark: a number, or 0 for all.
-    std::string erase(uint32_t number);
+    Answer erase(uint32_t number);
 
     // It is what is shown at a place now; nothing: what was there is gone.
     struct Change {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/commands/role_rules.h"
 #include "render_client/hand/controls/help_rows.h"
 #include "render_client/hand/controls/key_table.h"
 
@@ -96,9 +97,7 @@ std::optional<HudNotice> HandFeed::watch(const SessionView& session, Clock::time
 // not asked again.
 bool HandFeed::isOffered(const SessionView& session, bool has_seen_bone) {
     const bool is_wanted = begins_by_itself_ || isHeldByMouse(session);
-    const bool may_hold =
-        session.role == topics::Viewer::OPERATOR || session.role == topics::Viewer::INSTRUCTOR;
-    if (!has_seen_bone || !is_wanted || !may_hold) return false;
+    if (!has_seen_bone || !is_wanted || !mayHoldTool(session.role)) return false;
     return std::exchange(offered_epoch_, subscriber_.epoch()) != subscriber_.epoch();
 }
 

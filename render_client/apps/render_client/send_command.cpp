@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include "render_client/apps/render_client/stop_signal.h"
-#include "render_client/link/subscribe/command_text.h"
 #include "render_client/link/subscribe/command_words.h"
 
 namespace bonemill {

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "common/base/user_error.h"
+#include "common/commands/command_text.h"
 #include "common/files/whole_file.h"
 #include "common/lesson_csv/attempts_csv.h"
 #include "render_client/apps/render_client/hand_feed.h"
@@ -15,13 +16,11 @@
 #include "render_client/apps/render_client/scene_feed.h"
 #include "render_client/apps/render_client/stop_signal.h"
 #include "render_client/hand/controls/announce_clock.h"
-#include "render_client/hand/controls/done_text.h"
 #include "render_client/hand/controls/eye_watch.h"
 #include "render_client/hand/controls/frame_rate.h"
 #include "render_client/hand/controls/help_rows.h"
 #include "render_client/hand/controls/viewer_controls.h"
 #include "render_client/hand/window/glfw_window.h"
-#include "render_client/link/subscribe/command_text.h"
 #include "render_client/link/subscribe/session_list.h"
 #include "render_client/look/hud/session_text.h"
 #include "render_client/look/hud/text_scale.h"
@@ -41,6 +40,10 @@ const topics::Lesson* lessonOf(const SceneSubscriber& subscriber) {
     return subscriber.lesson() ? &*subscriber.lesson() : nullptr;
 }
 
+std::string traineeOf(const SceneSubscriber& subscriber) {
+    return subscriber.lesson() ? subscriber.lesson()->trainee() : "";
+}
+
 // Shows over the picture, for a while, what the user should notice.
 class Notices {
   public:
@@ -54,7 +57,7 @@ class Notices {
     }
     void showOutcomes(SceneSubscriber& subscriber) {
         for (const CommandOutcome& outcome : subscriber.takeOutcomes())
-            outcome.isDone() ? show({doneText(outcome.command, lessonOf(subscriber)), HudTone::kGood})
+            outcome.isDone() ? show({doneText(outcome.command, traineeOf(subscriber)), HudTone::kGood})
                              : show({outcomeText(outcome), HudTone::kWarning});
     }
     void removeOld() {

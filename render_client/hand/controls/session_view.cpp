@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/commands/role_rules.h"
 #include "common/device_messages/device_messages.h"
 
 namespace bonemill {
@@ -86,7 +87,7 @@ CommandOrReason stopAttempt(const SessionView& session) {
 }  // namespace
 
 std::string whyNotCommand(const SessionView& session) {
-    if (session.role == topics::Viewer::VIEWER) return "A viewer only looks: start with --role operator";
+    if (!mayOrderAnything(session.role)) return "A viewer only looks: start with --role operator";
     if (!session.has_server) return "There is no server";
     return "";
 }
@@ -104,7 +105,7 @@ std::string whyNotHold(const SessionView& session) {
     const std::string why_not = whyNotCommand(session);
     if (!why_not.empty()) return why_not;
     if (isReplay(session)) return "This is a replay: nobody holds its tool";
-    if (session.role == topics::Viewer::EXAMINER) return "An examiner leaves the tool to others";
+    if (!mayHoldTool(session.role)) return "An examiner leaves the tool to others";
     for (const topics::Viewer& other : session.others)
         if (other.is_holding())
             return (other.name().empty() ? "Another viewer" : other.name()) + " holds the tool";
@@ -115,12 +116,12 @@ std::string whyNotHold(const SessionView& session) {
 }
 
 std::string whyNotPoint(const SessionView& session) {
-    if (session.role == topics::Viewer::INSTRUCTOR) return "";
+    if (mayPoint(session.role)) return "";
     return "Only an instructor points: start with --role instructor";
 }
 
 std::string whyNotEndSession(const SessionView& session) {
-    if (session.role != topics::Viewer::INSTRUCTOR)
+    if (!mayOrder(session.role, topics::Command::kShutDown))
         return "Only an instructor ends the session: start with --role instructor";
     return whyNotCommand(session);
 }
@@ -175,8 +176,10 @@ CommandOrReason commandOf(Action action, const SessionView& session) {
         default:
             return {};
     }
-    const std::string why_not = whyNotCommand(session);
-    return why_not.empty() ? asked : refuse(why_not);
+    if (const std::string why_not = whyNotCommand(session); !why_not.empty()) return refuse(why_not);
+    if (asked.command && !mayOrder(session.role, asked.command->action_case()))
+        return refuse("An examiner leaves bone, tool and device to others");
+    return asked;
 }
 
 }  // namespace bonemill

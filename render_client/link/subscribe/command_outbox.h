@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "common/commands/answer.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {
@@ -18,11 +19,14 @@ struct CommandOutcome {
     uint32_t sequence = 0;
     topics::Command command;
     bool is_acknowledged = false;  // false: no answer in time
-    std::string result;            // what the server said, or why there is no answer
+    Answer answer;                 // what the server said, or why there is no answer
 
     // Returns true when the server did what it was asked for.
-    bool isDone() const { return is_acknowledged && result == "done"; }
+    bool isDone() const { return is_acknowledged && answer.outcome == topics::DONE; }
 };
+
+// Returns "accuracy balanced: done", "accuracy best: refused: ...", "shut down: the server did not answer".
+std::string outcomeText(const CommandOutcome& outcome);
 
 class CommandOutbox {
   public:
@@ -47,7 +51,7 @@ class CommandOutbox {
     uint64_t sender() const noexcept { return sender_; }
 
   private:
-    void finish(bool is_acknowledged, std::string result);
+    void finish(bool is_acknowledged, Answer answer);
 
     uint64_t sender_;
     uint32_t last_sequence_ = 0;

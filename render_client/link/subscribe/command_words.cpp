@@ -4,17 +4,21 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <sstream>
 #include <vector>
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
+#include "common/commands/command_rows.h"
 #include "common/config/scene_tools.h"
 
 namespace bonemill {
 namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+using topics::CommandForm;
 
 struct Words {
     std::string action, argument;  // the rest of the text: a tool's name may be several words
@@ -71,104 +75,113 @@ struct Session {
     const topics::Status& status;
 };
 
-// A command's word, what follows it ("" when nothing does), and what it means.
-struct CommandWord {
-    const char* word;
-    const char* argument;
-    void (*mean)(topics::Command& command, const std::string& argument, const Session& session);
+struct KnownWord {
+    CommandAction action = topics::Command::ACTION_NOT_SET;
+    const CommandForm* form = nullptr;
 };
 
-using topics::Command;
-constexpr CommandWord kWords[] = {
-    {"reset", "", [](Command& c, const std::string&, const Session&) { c.set_reset_volume(true); }},
-    {"pause", "", [](Command& c, const std::string&, const Session&) { c.set_pause_milling(true); }},
-    {"resume", "", [](Command& c, const std::string&, const Session&) { c.set_pause_milling(false); }},
-    {"tool", "NAME-or-number",
-     [](Command& c, const std::string& name, const Session& s) { c.set_select_tool(toolOf(name, s.scene)); }},
-    {"checkpoint", "", [](Command& c, const std::string&, const Session&) { c.set_save_checkpoint(true); }},
-    {"restore", "NUMBER-or-last",
-     [](Command& c, const std::string& which, const Session& s) {
-         c.set_restore_checkpoint(checkpointOf(which, s.status));
-     }},
-    {"accuracy", "NAME",
-     [](Command& c, const std::string& name, const Session&) { c.set_set_accuracy(name); }},
-    {"export", "NAME", [](Command& c, const std::string& name, const Session&) { c.set_export_(name); }},
-    {"reset-device", "", [](Command& c, const std::string&, const Session&) { c.set_reset_device(true); }},
-    {"scene", "ID", [](Command& c, const std::string& id, const Session&) { c.set_choose_scene(id); }},
-    {"start", "TRAINEE",
-     [](Command& c, const std::string& trainee, const Session&) { c.set_start_attempt(trainee); }},
-    {"stop", "", [](Command& c, const std::string&, const Session&) { c.set_stop_attempt(true); }},
-    {"note", "TEXT",
-     [](Command& c, const std::string& text, const Session&) { c.mutable_add_remark()->set_note(text); }},
-    {"erase", "NUMBER-or-all",
-     [](Command& c, const std::string& which, const Session&) {
-         c.set_erase_remark(which == "all" ? 0 : *numberOf(which));
-     }},
-    {"seek", "SECONDS",
-     [](Command& c, const std::string& when, const Session&) {
-         c.mutable_replay()->set_seek_s(*realOf(when));
-     }},
-    {"speed", "FACTOR",
-     [](Command& c, const std::string& speed, const Session&) {
-         c.mutable_replay()->set_speed(*realOf(speed));
-     }},
-    {"next", "", [](Command& c, const std::string&, const Session&) { c.mutable_replay()->set_jump(1); }},
-    {"previous", "",
-     [](Command& c, const std::string&, const Session&) { c.mutable_replay()->set_jump(-1); }},
-    {"when", "X Y Z",
-     [](Command& c, const std::string& place, const Session&) {
-         const std::array<double, 3> p_m = placeOf(place).value();
-         for (const double part : p_m) c.mutable_replay()->mutable_removal_at()->add_p_m(part);
-     }},
-    {"shutdown", "", [](Command& c, const std::string&, const Session&) { c.set_shut_down(true); }},
-};
-
-const CommandWord* find(const std::string& word) {
-    const auto found = std::find_if(std::begin(kWords), std::end(kWords),
-                                    [&](const CommandWord& known) { return known.word == word; });
-    return found == std::end(kWords) ? nullptr : found;
+KnownWord find(const std::string& word) {
+    KnownWord found;
+    forEachCommand([&](CommandAction action, const topics::CommandRow& row) {
+        for (const CommandForm& form : row.forms())
+            if (form.has_word() && form.word() == word) found = {action, &form};
+    });
+    return found;
 }
 
 std::string knownCommands() {
     std::string text;
-    for (const CommandWord& known : kWords) {
-        text += text.empty() ? "" : ", ";
-        text += known.word;
-        if (*known.argument) text += std::string(" ") + known.argument;
-    }
+    for (const std::string& words : commandWords()) text += (text.empty() ? "" : ", ") + words;
     return text;
 }
 
+// Why the argument is none of its kind, as far as can be said without a session.
+std::string argumentProblem(CommandForm::Kind kind, const std::string& argument) {
+    switch (kind) {
+        case CommandForm::CHECKPOINT:
+            return argument == "last" || numberOf(argument) ? "" : "no checkpoint's number, nor last";
+        case CommandForm::REMARK:
+            return argument == "all" || numberOf(argument).value_or(0) > 0
+                       ? ""
+                       : "no number of a note or stroke, nor all";
+        case CommandForm::SECONDS:
+            return realOf(argument) ? "" : "no number of seconds";
+        case CommandForm::FACTOR:
+            return realOf(argument) ? "" : "no number of times";
+        case CommandForm::PLACE:
+            return placeOf(argument) ? "" : "no place: three numbers, in mm";
+        default:
+            return "";
+    }
+}
+
+uint32_t indexOf(CommandForm::Kind kind, const std::string& argument, const Session& session) {
+    if (kind == CommandForm::TOOL) return toolOf(argument, session.scene);
+    if (kind == CommandForm::CHECKPOINT) return checkpointOf(argument, session.status);
+    return argument == "all" ? 0 : *numberOf(argument);
+}
+
+void setPlace(topics::Place& place, const std::string& argument) {
+    const std::array<double, 3> p_m = placeOf(argument).value();
+    for (const double part : p_m) place.add_p_m(part);
+}
+
+// Sets what the word means in the field that its form names.
+void mean(Message& message, const FieldDescriptor& field, const CommandForm& form,
+          const std::string& argument, const Session& session) {
+    const auto& r = *message.GetReflection();
+    switch (field.cpp_type()) {
+        case FieldDescriptor::CPPTYPE_BOOL:
+            return r.SetBool(&message, &field, !form.has_value() || form.value() != 0);
+        case FieldDescriptor::CPPTYPE_INT32:
+            return r.SetInt32(&message, &field, form.value());
+        case FieldDescriptor::CPPTYPE_UINT32:
+            return r.SetUInt32(&message, &field, indexOf(form.kind(), argument, session));
+        case FieldDescriptor::CPPTYPE_DOUBLE:
+            return r.SetDouble(&message, &field, *realOf(argument));
+        case FieldDescriptor::CPPTYPE_STRING:
+            return r.SetString(&message, &field, argument);
+        default:
+            return setPlace(dynamic_cast<topics::Place&>(*r.MutableMessage(&message, &field)), argument);
+    }
+}
+
 }  // namespace
+
+std::vector<std::string> commandWords() {
+    std::vector<std::string> words;
+    forEachCommand([&](CommandAction, const topics::CommandRow& row) {
+        for (const CommandForm& form : row.forms())
+            if (form.has_word())
+                words.push_back(form.word() + (form.has_argument() ? " " + form.argument() : ""));
+    });
+    return words;
+}
 
 std::string commandProblem(const std::string& text) {
     constexpr size_t kLongest = 1024;  // a server drops what has more than 4 KiB without an answer
     if (text.size() > kLongest)
         return "a command of " + std::to_string(text.size()) + " letters is too long; " +
                std::to_string(kLongest) + " at most";
-    const auto [action, argument] = split(text);
-    const CommandWord* const known = find(action);
-    if (!known) return "'" + text + "' is no command; there are: " + knownCommands();
-    const bool needs_argument = *known->argument != 0;
-    if (needs_argument && argument.empty())
+    const auto [word, argument] = split(text);
+    const CommandForm* const form = find(word).form;
+    if (!form) return "'" + text + "' is no command; there are: " + knownCommands();
+    if (form->has_argument() && argument.empty())
         return "'" + text + "' says not which; there are: " + knownCommands();
-    if (!needs_argument && !argument.empty()) return "'" + action + "' takes no '" + argument + "'";
-    if (action == "restore" && argument != "last" && !numberOf(argument))
-        return "'" + argument + "' is no checkpoint's number, nor last";
-    if (action == "erase" && argument != "all" && numberOf(argument).value_or(0) == 0)
-        return "'" + argument + "' is no number of a note or stroke, nor all";
-    if ((action == "seek" || action == "speed") && !realOf(argument))
-        return "'" + argument + "' is no number of " + (action == "seek" ? "seconds" : "times");
-    if (action == "when" && !placeOf(argument)) return "'" + argument + "' is no place: three numbers, in mm";
-    return "";
+    if (!form->has_argument() && !argument.empty()) return "'" + word + "' takes no '" + argument + "'";
+    const std::string problem = argumentProblem(form->kind(), argument);
+    return problem.empty() ? "" : "'" + argument + "' is " + problem;
 }
 
 topics::Command commandOf(const std::string& text, const topics::SceneInfo& scene,
                           const topics::Status& status) {
     if (const std::string problem = commandProblem(text); !problem.empty()) throw UserError(problem);
-    const auto [action, argument] = split(text);
+    const auto [word, argument] = split(text);
+    const auto [known, form] = find(word);
+    const auto [action, inner] = placeOf(known, *form);
     topics::Command command;
-    find(action)->mean(command, argument, {scene, status});
+    Message& message = inner ? *command.GetReflection()->MutableMessage(&command, action) : command;
+    mean(message, inner ? *inner : *action, *form, argument, {scene, status});
     return command;
 }
 

@@ -1,13 +1,15 @@
-// People write commands so: reset, pause, resume, tool NAME (or its number), checkpoint, restore N (or last),
-// accuracy NAME, export NAME, reset-device, scene ID, start TRAINEE, stop, note TEXT, erase N (or
-// all), shutdown; of a replay also seek SECONDS, speed FACTOR, next, previous, when X Y Z (mm, in W).
+// Reads commands as people write them: the words of the rows (common/commands/command_rows.h).
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "proto/topics.pb.h"
 
 namespace bonemill {
+
+// Returns every word with what follows it: "reset", "tool NAME-or-number", ...
+std::vector<std::string> commandWords();
 
 // Returns why this is no command, as far as can be said without a server; empty when it may be one.
 std::string commandProblem(const std::string& text);

@@ -1,26 +1,11 @@
 #include "render_client/link/subscribe/density_payloads.h"
 
-#include <google/protobuf/stubs/logging.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "common/density_codec/density_codec.h"
+#include "common/bounds/message_bounds.h"
 
 namespace bonemill {
 namespace {
 
-constexpr uint32_t kMostVoxelsPerAxis = 16384;
-constexpr int64_t kMostBricks = 1 << 20;  // of a server's 16³ voxels, a scan of 1600³
-constexpr uint32_t kLeastBrickEdge = 8;
-constexpr double kMostSpacing_m = 1;
-constexpr double kFurthestOrigin_m = 1e3;
-constexpr double kLargestValue = 1e6;
-constexpr size_t kLongestBrick = 2u << 20;  // bytes, many times what a brick needs
-
-bool isBetween(double value, double low, double high) {
-    return value >= low && value <= high;  // not for NaN
-}
+constexpr int64_t kMaxBricks = 1 << 20;  // of a server's 16³ voxels, a scan of 1600³
 
 int64_t bricksOf(const topics::DensityGrid& grid) {
     int64_t bricks = 1;
@@ -32,18 +17,9 @@ int64_t bricksOf(const topics::DensityGrid& grid) {
 }  // namespace
 
 bool isUsableGrid(const topics::DensityGrid& grid) {
-    const auto is_count = [](uint32_t voxels) { return voxels >= 1 && voxels <= kMostVoxelsPerAxis; };
-    const auto is_spacing = [](double metres) { return metres > 0 && metres <= kMostSpacing_m; };
-    const auto is_place = [](double m) { return isBetween(m, -kFurthestOrigin_m, kFurthestOrigin_m); };
-    const auto is_value = [](double value) { return isBetween(value, -kLargestValue, kLargestValue); };
-    if (grid.voxels_size() != 3 || grid.spacing_m_size() != 3 || grid.origin_m_size() != 3 ||
-        grid.brick_edge() < kLeastBrickEdge || grid.brick_edge() > uint32_t(kMostBrickEdge) ||
-        !std::ranges::all_of(grid.voxels(), is_count) || !std::ranges::all_of(grid.spacing_m(), is_spacing) ||
-        !std::ranges::all_of(grid.origin_m(), is_place))
-        return false;
+    if (!isWithinBounds(grid)) return false;
     const int64_t bricks = bricksOf(grid);
-    return bricks <= kMostBricks && int64_t(grid.air().size()) == (bricks + 7) / 8 &&
-           is_value(grid.value_at_0()) && is_value(grid.value_at_65535()) && is_value(grid.iso_value()) &&
+    return bricks <= kMaxBricks && int64_t(grid.air().size()) == (bricks + 7) / 8 &&
            grid.value_at_0() < grid.value_at_65535();
 }
 
@@ -59,11 +35,8 @@ DensityGrid densityGridOf(const topics::DensityGrid& grid) {
 }
 
 std::optional<topics::DensityBrick> parseDensityBrick(std::span<const uint8_t> payload) {
-    const google::protobuf::LogSilencer silencer;
     topics::DensityBrick brick;
-    if (payload.size() > kLongestBrick ||
-        !brick.ParseFromArray(payload.data(), static_cast<int>(payload.size())) || brick.epoch() == 0)
-        return {};
+    if (!parseWithinBounds(payload, brick)) return std::nullopt;
     return brick;
 }
 

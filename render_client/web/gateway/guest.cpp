@@ -6,6 +6,7 @@
 #include <random>
 #include <utility>
 
+#include "common/commands/role_rules.h"
 #include "render_client/link/subscribe/remote_session.h"
 
 namespace bonemill::gateway {
@@ -135,13 +136,13 @@ void Guest::take(FromGuest& message, Clock::time_point now) {
 }
 
 void Guest::takeCommand(topics::Command& command) {
-    if (speaker_.role == topics::Viewer::VIEWER)
-        return stream_->answer(speaker_.sender, command.sequence(), "refused: an observer only looks");
+    if (const std::string why_not = whyNotOrder(speaker_.role, command.action_case()); !why_not.empty())
+        return stream_->answer(speaker_.sender, command.sequence(), Answer::refused(why_not));
     hall_.voice.command(speaker_, std::move(command));
 }
 
 void Guest::takeHand(topics::HandPointer& hand) {
-    if (!mayHold(speaker_.role)) return;
+    if (!mayHoldTool(speaker_.role)) return;
     is_holding_ = hand.is_holding();
     last_hand_ = hand;
     hall_.voice.hand(speaker_, std::move(hand));

@@ -80,8 +80,8 @@ void GuestStream::note(const SessionChanges& changes) {
     }
 }
 
-void GuestStream::answer(uint64_t sender, uint32_t sequence, std::string result) {
-    if (answers_.size() < kMostAnswers) answers_.push_back({sender, sequence, std::move(result)});
+void GuestStream::answer(uint64_t sender, uint32_t sequence, Answer answer) {
+    if (answers_.size() < kMostAnswers) answers_.push_back({sender, sequence, std::move(answer)});
 }
 
 bool GuestStream::hasNews() const {
@@ -120,11 +120,12 @@ std::string GuestStream::next(Clock::time_point now) {
 // A status of an own answer looks as if the server had said it: that is where guests look for answers.
 void GuestStream::addStatus(Samples& samples) {
     if (!state_.status) return answers_.clear();
-    for (const Answer& answer : std::exchange(answers_, {})) {
+    for (const OwnAnswer& own : std::exchange(answers_, {})) {
         topics::Status status = *state_.status;
-        status.set_last_command_sender(answer.sender);
-        status.set_last_command_sequence(answer.sequence);
-        status.set_last_command_result(answer.result);
+        status.set_last_command_sender(own.sender);
+        status.set_last_command_sequence(own.sequence);
+        status.set_last_command_result(own.answer.text);
+        status.set_last_command_outcome(own.answer.outcome);
         add(samples, Sample::STATUS, 0, status.SerializeAsString());
     }
     const auto key = std::pair(rankOf(Sample::STATUS), SmallKey{Sample::STATUS, 0});

@@ -11,6 +11,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "common/commands/answer.h"
 #include "render_client/web/gateway/send_window.h"
 #include "render_client/web/gateway/session_state.h"
 
@@ -32,7 +33,7 @@ class GuestStream {
     void wishBricks(std::unordered_set<uint32_t> bricks) { wished_ = std::move(bricks); }
     bool wishesBricks() const noexcept { return !wished_.empty(); }
     // The guest's command ended so, here, before it reached the server.
-    void answer(uint64_t sender, uint32_t sequence, std::string result);
+    void answer(uint64_t sender, uint32_t sequence, Answer answer);
 
     // There is something to say, and the guest has acknowledged enough.
     bool isDue(Clock::time_point now);
@@ -67,12 +68,12 @@ class GuestStream {
     topics::EffectState counted_;  // in tool states that were not sent
     std::deque<SessionChanges::Brick> bricks_;
     std::unordered_set<uint32_t> wished_;
-    struct Answer {
+    struct OwnAnswer {
         uint64_t sender;
         uint32_t sequence;
-        std::string result;
+        Answer answer;
     };
-    std::deque<Answer> answers_;
+    std::deque<OwnAnswer> answers_;
     Clock::time_point said_;
     bool said_server_ = false, said_ended_ = false, has_said_ = false;
 };

@@ -1,5 +1,7 @@
 #include "render_client/web/gateway/guest_voice.h"
 
+#include "common/commands/role_rules.h"
+
 namespace bonemill::gateway {
 namespace {
 
@@ -15,17 +17,13 @@ void say(dds::Writer<Sample>& writer, uint32_t session, const Message& message) 
 
 }  // namespace
 
-bool mayHold(topics::Viewer::Role role) {
-    return role == topics::Viewer::OPERATOR || role == topics::Viewer::INSTRUCTOR;
-}
-
 void GuestVoice::announce(const Speaker& speaker, topics::Viewer viewer) {
     viewer.set_sender(speaker.sender);
     viewer.set_name(speaker.name);
     viewer.set_role(speaker.role);
     viewer.set_link(speaker.link);
-    if (speaker.role != topics::Viewer::INSTRUCTOR) viewer.clear_pointer_m();
-    if (!mayHold(speaker.role)) viewer.clear_is_holding();
+    if (!mayPoint(speaker.role)) viewer.clear_pointer_m();
+    if (!mayHoldTool(speaker.role)) viewer.clear_is_holding();
     viewer.clear_eye(), viewer.clear_is_trainee();  // the trainee is in the building
     if (mouth_) say(mouth_->viewers, session_, viewer);
 }

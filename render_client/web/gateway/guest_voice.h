@@ -17,9 +17,6 @@ struct Speaker {
     std::string link;  // "browser", "viewer"
 };
 
-// The tool, with a mouse.
-bool mayHold(topics::Viewer::Role role);
-
 class GuestVoice {
   public:
     // It has joined no domain yet, and nobody hears it.
@@ -30,7 +27,7 @@ class GuestVoice {
     void leave() { mouth_.reset(); }
 
     void announce(const Speaker& speaker, topics::Viewer viewer);
-    // It must not come from a VIEWER.
+    // The role must be one that may order it (role_rules.h).
     void command(const Speaker& speaker, topics::Command command);
     void hand(const Speaker& speaker, topics::HandPointer hand);
     void wish(const Speaker& speaker, topics::DensityWish wish);

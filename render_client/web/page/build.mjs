@@ -35,9 +35,23 @@ for (const [folder, from] of [['src', join(source, 'src')], ['tests', join(sourc
   cpSync(from, join(work, folder), { recursive: true });
 }
 mkdirSync(join(work, 'generated'), { recursive: true });
-const protos = readdirSync(proto).filter((name) => /^(gateway|topics|densities|scene)(_\w+)?\.proto$/.test(name)).map((name) => join(proto, name));
+const protos = readdirSync(proto).filter((name) => /^(bounds|gateway|topics|densities|scene)(_\w+)?\.proto$/.test(name)).map((name) => join(proto, name));
 run('protoc', '-I', proto, `--plugin=protoc-gen-es=${join(work, 'node_modules/.bin/protoc-gen-es')}`, '--es_out=generated', '--es_opt=target=ts', ...protos);
+const fromWork = createRequire(join(work, 'package.json'));
+writeFileSync(join(work, 'generated/command_rows.ts'), commandRows());
 run(process.execPath, join(work, 'node_modules/typescript/bin/tsc'), '--noEmit');
+
+// The option (row) of each action of Command, as a table that needs no Protobuf.
+function commandRows() {
+  const { createFileRegistry, fromBinary, getOption, toJson } = fromWork('@bufbuild/protobuf');
+  const { FileDescriptorSetSchema } = fromWork('@bufbuild/protobuf/wkt');
+  run('protoc', '-I', proto, '--include_imports', '--descriptor_set_out=generated/topics.bin', join(proto, 'topics.proto'));
+  const registry = createFileRegistry(fromBinary(FileDescriptorSetSchema, readFileSync(join(work, 'generated/topics.bin'))));
+  const row = registry.getExtension('bonemill.topics.row');
+  const actions = registry.getMessage('bonemill.topics.Command').fields.filter((field) => field.oneof);
+  const rows = Object.fromEntries(actions.map((field) => [field.localName, toJson(row.message, getOption(field, row))]));
+  return `// Made from proto/topics.proto by build.mjs.\nexport const kCommandRows = ${JSON.stringify(rows, null, 2)};\n`;
+}
 
 // A shader is its text, with the files that it includes in their places and without what only readers need.
 function shaderText(file) {
@@ -49,7 +63,7 @@ const glsl = {
   setup: (made) => made.onLoad({ filter: /\.glsl$/ }, ({ path }) => ({ contents: shaderText(path), loader: 'text' })),
 };
 
-const { build } = createRequire(join(work, 'package.json'))('esbuild');
+const { build } = fromWork('esbuild');
 const common = { absWorkingDir: work, bundle: true, format: 'esm', legalComments: 'eof', logLevel: 'warning', plugins: [glsl] };
 const made = await build({
   ...common, metafile: true, minify: true, target: 'es2022', outdir: out,

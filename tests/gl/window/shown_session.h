@@ -68,7 +68,7 @@ class ShownSession {
             for (const topics::Command& command : publisher_.takeCommands()) {
                 carryOut(command);
                 publisher_.publishStatus(status());
-                publisher_.acknowledge(command, "done");
+                publisher_.acknowledge(command, Answer::done());
             }
             publisher_.publishStatus(status());
             publisher_.publishToolState(tool());

@@ -32,10 +32,10 @@ TEST(Commands, AreAcknowledgedInOrder) {
     const auto outcomes = pollForOutcomes(client, 2);
     ASSERT_EQ(outcomes.size(), 2u);
     EXPECT_EQ(outcomes[0].sequence, first);
-    EXPECT_TRUE(outcomes[0].is_acknowledged) << outcomes[0].result;
-    EXPECT_EQ(outcomes[0].result, "done: action " + std::to_string(topics::Command::kPauseMilling));
+    EXPECT_TRUE(outcomes[0].is_acknowledged) << outcomes[0].answer.text;
+    EXPECT_EQ(outcomes[0].answer.text, "done: action " + std::to_string(topics::Command::kPauseMilling));
     EXPECT_EQ(outcomes[1].sequence, second);
-    EXPECT_EQ(outcomes[1].result, "done: action " + std::to_string(topics::Command::kResetVolume));
+    EXPECT_EQ(outcomes[1].answer.text, "done: action " + std::to_string(topics::Command::kResetVolume));
 }
 
 TEST(Commands, UnknownActionIsRefusedWithAReason) {
@@ -45,7 +45,7 @@ TEST(Commands, UnknownActionIsRefusedWithAReason) {
     const auto outcomes = pollForOutcomes(client, 1);
     ASSERT_EQ(outcomes.size(), 1u);
     EXPECT_TRUE(outcomes[0].is_acknowledged);
-    EXPECT_NE(outcomes[0].result.find("refused"), std::string::npos) << outcomes[0].result;
+    EXPECT_NE(outcomes[0].answer.text.find("refused"), std::string::npos) << outcomes[0].answer.text;
 }
 
 TEST(Commands, OfSeveralClientsAreAllAcknowledged) {
@@ -55,7 +55,7 @@ TEST(Commands, OfSeveralClientsAreAllAcknowledged) {
     for (ClientProbe& client : clients) {
         const auto outcomes = pollForOutcomes(client, 1);
         ASSERT_EQ(outcomes.size(), 1u);
-        EXPECT_TRUE(outcomes[0].is_acknowledged) << outcomes[0].result;
+        EXPECT_TRUE(outcomes[0].is_acknowledged) << outcomes[0].answer.text;
     }
 }
 
@@ -65,7 +65,7 @@ TEST(Commands, WithoutAServerGiveUp) {
     const auto outcomes = pollForOutcomes(client, 1);
     ASSERT_EQ(outcomes.size(), 1u);
     EXPECT_FALSE(outcomes[0].is_acknowledged);
-    EXPECT_EQ(outcomes[0].result, "no server");
+    EXPECT_EQ(outcomes[0].answer.text, "no server");
 }
 
 }  // namespace

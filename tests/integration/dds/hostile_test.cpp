@@ -138,6 +138,7 @@ TEST(HostilePayloads, AForgedStatusSilencesNoClient) {
     for (const uint32_t sequence : {first, UINT32_MAX}) {
         forged.set_last_command_sequence(sequence);
         forged.set_last_command_result("done");
+        forged.set_last_command_outcome(topics::DONE);
         const std::string bytes = forged.SerializeAsString();
         for (int n = 0; n < 10; ++n) {
             ASSERT_TRUE(statuses.write(garbage<dds::StatusSample>(bytes)));
@@ -146,13 +147,13 @@ TEST(HostilePayloads, AForgedStatusSilencesNoClient) {
         }
     }
     EXPECT_TRUE(client.subscriber.takeOutcomes().empty()) << "a stranger cannot say how it ended";
-    server.acknowledge(heard, "refused: no");
+    server.acknowledge(heard, Answer::refused("no"));
     std::vector<CommandOutcome> outcomes;
     ASSERT_TRUE(client.pollUntil([&] {
         outcomes = client.subscriber.takeOutcomes();
         return !outcomes.empty();
     }));
-    EXPECT_EQ(outcomes[0].result, "refused: no");
+    EXPECT_EQ(outcomes[0].answer.text, "refused: no");
 }
 
 TEST(HostilePayloads, AForgedCommandSilencesNoClient) {
@@ -165,7 +166,7 @@ TEST(HostilePayloads, AForgedCommandSilencesNoClient) {
         EXPECT_TRUE(server.publishStatus({}));
         for (const topics::Command& one : server.takeCommands()) {
             heard.push_back(one);
-            server.acknowledge(one, "done");
+            server.acknowledge(one, Answer::done());
         }
     };
     client.subscriber.sendCommand(command);

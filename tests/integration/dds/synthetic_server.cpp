@@ -37,7 +37,8 @@ void carryOut(const std::string& line, Publisher& publisher) {
 
 void answerCommands(Publisher& publisher) {
     for (const topics::Command& command : publisher.takeCommands()) {
-        publisher.acknowledge(command, "done: action " + std::to_string(command.action_case()));
+        publisher.acknowledge(command,
+                              {topics::DONE, "done: action " + std::to_string(command.action_case())});
     }
 }
 

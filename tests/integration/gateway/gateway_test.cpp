@@ -74,7 +74,7 @@ TEST(Gateway, PassesOnNotesAndStrokesAlsoToWhoComesLater) {
         return !heard.empty();
     }));
     RemarkBook book(VolumeGeometry{});
-    ASSERT_EQ(book.add(heard[0], 12.5), "done");
+    ASSERT_EQ(book.add(heard[0], 12.5).outcome, topics::DONE);
     server.publisher.publishRemark(5, *book.takeChanges().at(0).remark);
     topics::Remark broken;
     broken.set_number(2);
@@ -160,7 +160,7 @@ TEST(Gateway, SpeaksForItsGuestsAsTheListKnowsThem) {
     EXPECT_EQ(heard[0].sender(), anna.welcome->sender());
     EXPECT_EQ(heard[0].role(), topics::Viewer::OPERATOR);
     EXPECT_EQ(heard[0].name(), "Anna");
-    server.publisher.acknowledge(heard[0], "done");
+    server.publisher.acknowledge(heard[0], Answer::done());
     EXPECT_TRUE(anna.pollUntil([&] { return anna.answer == "done"; }));
 
     observer.send(command);

@@ -30,14 +30,14 @@ TEST(RemoteViewer, ShowsTheModelAndCommands) {
         for (const topics::Command& command : server.publisher.takeCommands()) {
             EXPECT_EQ(command.sender(), anna.session->welcome().sender());
             EXPECT_EQ(command.name(), "Anna");
-            server.publisher.acknowledge(command, "done");
+            server.publisher.acknowledge(command, Answer::done());
         }
         return !anna.outcomes.empty();
     }));
     EXPECT_TRUE(anna.outcomes[0].isDone());
     observer.subscriber.sendCommand(reset);
     ASSERT_TRUE(observer.pollUntil([&] { return !observer.outcomes.empty(); }));
-    EXPECT_EQ(observer.outcomes[0].result, "refused: an observer only looks");
+    EXPECT_EQ(observer.outcomes[0].answer.outcome, topics::REFUSED);
 
     anna.subscriber.announce(60, std::nullopt);
     ASSERT_TRUE(observer.pollUntil([&] { return observer.subscriber.viewers().size() == 1; }));

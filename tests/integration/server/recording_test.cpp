@@ -116,7 +116,8 @@ class Recording : public testing::Test {
         probe_->subscriber.sendCommand(command);
         std::string answer = "none";
         probe_->pollUntil([&] {
-            for (const CommandOutcome& outcome : probe_->subscriber.takeOutcomes()) answer = outcome.result;
+            for (const CommandOutcome& outcome : probe_->subscriber.takeOutcomes())
+                answer = outcome.answer.text;
             return answer != "none";
         });
         return answer;

@@ -146,7 +146,7 @@ class SceneChange : public testing::Test {
         std::string answer = "none";
         one_.pollUntil([&] {
             two_.poll();
-            for (const CommandOutcome& outcome : one_.subscriber.takeOutcomes()) answer = outcome.result;
+            for (const CommandOutcome& outcome : one_.subscriber.takeOutcomes()) answer = outcome.answer.text;
             return answer != "none";
         });
         return answer;

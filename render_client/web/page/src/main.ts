@@ -1,6 +1,7 @@
 // The page: brings together the link (a worker), the picture, and what the user does.
-import { CommandOrder, FromLink, Role, ToLink } from './shared/messages';
-import { kPointerDevice, OrderDesk, orderText, whyNot, whyNotHold, whyNotPoint } from './orders';
+import { mayOrder, mayPoint, orderText } from './shared/commands';
+import { CommandOrder, FromLink, ToLink } from './shared/messages';
+import { kPointerDevice, OrderDesk, whyNot, whyNotHold, whyNotPoint } from './orders';
 import { Session } from './session';
 import { SoundPlayer } from './sound/sound_player';
 import { Stage } from './stage';
@@ -194,9 +195,9 @@ function toggleSound(): void {
 // The buttons over the picture.
 function drawBar(): void {
   const modes: [DragMode, string, string, boolean][] = [
-    ['point', 'Point', 'the laser goes where you drag', session.role === Role.Instructor],
-    ['draw', 'Draw', 'draws on the bone, for everyone', session.role !== Role.Viewer],
-    ['note', 'Note', 'tap on the bone and write', session.role !== Role.Viewer],
+    ['point', 'Point', 'the laser goes where you drag', mayPoint(session.role)],
+    ['draw', 'Draw', 'draws on the bone, for everyone', mayOrder(session.role, 'addRemark')],
+    ['note', 'Note', 'tap on the bone and write', mayOrder(session.role, 'addRemark')],
   ];
   const buttons = modes.filter((one) => one[3]).map(([mode, text, title]) => pressed(button(text, title, () => setMode(mode)), settings.mode === mode));
   if (SoundPlayer.isOffered(session)) buttons.push(pressed(button('Sound', 'Shift+M', toggleSound), sound.isOn));
@@ -243,10 +244,8 @@ link.onmessage = (event: MessageEvent<FromLink>) => {
     case 'viewer':
       if (message.sender === settings.following) takeFollowed();
       return;
-    case 'outcome': {
-      const is_done = message.result === 'done';
-      return say(`${orderText(message.order)}: ${message.result}`, is_done ? undefined : 'warning');
-    }
+    case 'outcome':
+      return say(`${orderText(message.order)}: ${message.result}`, message.isDone ? undefined : 'warning');
     case 'away':
       hold.letGo();
   }

@@ -1,22 +1,21 @@
-// Which orders a role may give, what is lost by them, and how a key makes one; as render_client/hand/controls/session_view.cpp.
+// Why an order cannot be given, what is lost by it, and how a key makes one; as render_client/hand/controls/session_view.cpp.
 import { readableText } from './shared/format';
+import { mayOrder, mayPoint, rowOf, type CommandAction } from './shared/commands';
 import { Role, type CommandOrder } from './shared/messages';
 import type { Session } from './session';
 
-// An examiner leaves bone, tool and device to others.
-const kNotOfExaminers: CommandOrder['action'][] = ['resetVolume', 'restoreCheckpoint', 'setAccuracy', 'selectTool', 'resetDevice'];
-
 // Empty if it may. The server and the gateway ask for themselves.
-export function whyNot(action: CommandOrder['action'], session: Session): string {
-  if (session.role === Role.Viewer) return 'An observer only looks';
-  if (action === 'shutDown' && session.role !== Role.Instructor) return 'Only an instructor ends the session';
-  if (session.role === Role.Examiner && kNotOfExaminers.includes(action)) return 'An examiner leaves bone and tool to others';
-  if (!session.isLive) return 'There is no server';
-  return '';
+export function whyNot(action: CommandAction, session: Session): string {
+  if (!mayOrder(session.role, action)) {
+    if (session.role === Role.Viewer) return 'An observer only looks';
+    if (rowOf(action).mayOperator) return 'An examiner leaves bone and tool to others';
+    return `Only an instructor may ${rowOf(action).forms[0].order}`;
+  }
+  return session.isLive ? '' : 'There is no server';
 }
 
 export function whyNotPoint(session: Session): string {
-  return session.role === Role.Instructor ? '' : 'Only an instructor points';
+  return mayPoint(session.role) ? '' : 'Only an instructor points';
 }
 
 export function whyNotHold(session: Session, now: number): string {
@@ -108,16 +107,4 @@ export class OrderDesk {
     if (this.session.lesson?.isRunning) this.give({ action: 'stopAttempt' });
     else this.say('no attempt is under way');
   }
-}
-
-export function orderText(order: CommandOrder): string {
-  const words: Record<CommandOrder['action'], string> = {
-    resetVolume: 'put the bone back', shutDown: 'end the session', saveCheckpoint: 'checkpoint',
-    resetDevice: 'reset the device', stopAttempt: 'end the attempt', pauseMilling: 'pause', setAccuracy: 'accuracy',
-    chooseScene: 'scene', startAttempt: 'attempt', selectTool: 'tool', restoreCheckpoint: 'back to checkpoint',
-    eraseRemark: 'erase', addRemark: 'note',
-  };
-  if (order.action === 'pauseMilling') return order.value ? 'pause' : 'go on';
-  const value = 'value' in order && typeof order.value === 'string' ? ` ${order.value}` : '';
-  return words[order.action] + value;
 }

@@ -215,6 +215,7 @@ export function status({ nodes, sessionS = 12.5, answer, isPaused = false }: Sta
     removedMm3: 3.25, nodeCount: nodes.count, nodeDigest: nodes.digest, sessionS, isMillingPaused: isPaused,
     checkpoints: [{ id: 1, sessionS: 4, removedMm3: 1 }], device: { name: 'simulated hand', kind: 5, state: 4, isSimulated: true },
     lastCommandSender: answer?.sender ?? 0n, lastCommandSequence: answer?.sequence ?? 0, lastCommandResult: answer?.result ?? '',
+    lastCommandOutcome: answer ? wire.Outcome.DONE : wire.Outcome.UNSAID,
   })));
 }
 

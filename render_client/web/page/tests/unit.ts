@@ -1,7 +1,11 @@
 // The pure parts of the page, with node's own test runner.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { create, fromBinary, getOption, ScalarType, toBinary, type DescMessage } from '@bufbuild/protobuf';
+import { items, shape, Shape } from '#proto/bounds_pb';
+import * as wire from '#proto/topics_pb';
 import * as linear from '../src/math/linear';
+import { read } from '../src/link/bounds';
 import { shownText, Malformed } from '../src/link/checks';
 import { CommandOutbox } from '../src/link/command_outbox';
 import { decodeMaterials, decodeNode, decoderReady } from '../src/link/node_codec';
@@ -11,6 +15,7 @@ import { Placement } from '../src/link/place_node';
 import { kVertexBytes, Role, type CommandOrder, type StatusView } from '../src/shared/messages';
 import { clockText, readableText } from '../src/shared/format';
 import { OrderDesk, questionBefore, whyNot, whyNotHold } from '../src/orders';
+import { orderText } from '../src/shared/commands';
 import { Pace } from '../src/pace';
 import { Session } from '../src/session';
 import { MillingSynth } from '../src/sound/milling_synth';
@@ -99,6 +104,31 @@ test('numbers that cannot be are refused', () => {
   assert.equal(payloads.viewerOf(synthetic.viewer(4, 'x', 1, [0, 0, 0]).payload).pointer, undefined, 'an operator does not point');
 });
 
+test('nothing in a payload passes unchecked', () => {
+  const payloadsOf: [DescMessage, Uint8Array][] = [
+    [wire.SceneInfoSchema, synthetic.sceneInfo().payload], [wire.ToolStateSchema, synthetic.toolState(1).payload],
+    [wire.StatusSchema, synthetic.status({ nodes: { count: 3, digest: 0n } }).payload], [wire.LessonSchema, synthetic.lesson().payload],
+    [wire.ViewerSchema, synthetic.viewer(4, 'x', 1).payload], [wire.RemarkSchema, synthetic.remark(0, 'x', []).payload],
+  ];
+  let spoilt = 0;
+  for (const [type, payload] of payloadsOf) {
+    read(type, payload);
+    for (const field of type.fields) {
+      const message = fromBinary(type, payload), values = message as unknown as Record<string, unknown>;
+      const is_floating = field.scalar === ScalarType.DOUBLE || field.scalar === ScalarType.FLOAT, is_text = field.scalar === ScalarType.STRING;
+      const length = 1 + (getOption(field, shape) === Shape.ANY ? getOption(field, items) : 4);
+      if (field.fieldKind === 'list') values[field.localName] = Array.from({ length }, () => field.message ? create(field.message) : is_text ? 'x' : 0);
+      else if (is_floating) values[field.localName] = NaN;
+      else if (is_text) values[field.localName] = 'x\u0007'.repeat(2000);
+      else continue;
+      ++spoilt;
+      if (is_text && field.fieldKind !== 'list') assert.ok(String((read(type, toBinary(type, message)) as unknown as Record<string, unknown>)[field.localName]).match(/^x{1,1200}$/), field.name);
+      else assert.throws(() => read(type, toBinary(type, message)), Malformed, `${type.name}.${field.name}`);
+    }
+  }
+  assert.ok(spoilt > 40, `${spoilt}`);
+});
+
 test('the newer epoch wins, then the newer revision, and there is an end to it', () => {
   const book = new NodeBook();
   assert.ok(book.begins(5n) && !book.begins(5n) && !book.begins(4n));
@@ -182,9 +212,9 @@ test('an order waits for its own answer, is repeated, and given up', () => {
   outbox.step(100, true, write);
   outbox.step(600, true, write);
   assert.deepEqual(written, [6, 6]);
-  const status = { lastCommandSender: '9', lastCommandSequence: 6, lastCommandResult: 'done' } as StatusView;
+  const status = { lastCommandSender: '9', lastCommandSequence: 6, lastCommandResult: 'done', isLastCommandDone: true } as StatusView;
   assert.equal(outbox.answered(status, '8'), undefined);
-  assert.equal(outbox.answered(status, '9')?.result, 'done');
+  assert.equal(outbox.answered(status, '9')?.isDone, true);
   outbox.step(700, true, write);
   assert.equal(outbox.step(5700, true, write)?.result, 'the server did not answer');
 });
@@ -206,6 +236,16 @@ test('what a role may do', () => {
   assert.equal(whyNot('startAttempt', live(Role.Examiner)), '');
   assert.equal(whyNot('pauseMilling', live(Role.Examiner)), '');
   assert.match(whyNotHold(live(Role.Examiner), 0), /examiner/);
+});
+
+test('what is ordered is said as in the native viewer', () => {
+  assert.equal(orderText({ action: 'resetVolume' }), 'put the bone back');
+  assert.equal(orderText({ action: 'pauseMilling', value: false }), 'go on milling');
+  assert.equal(orderText({ action: 'selectTool', value: 1 }), 'tool 2');
+  assert.equal(orderText({ action: 'restoreCheckpoint', value: 0 }), 'put the bone back');
+  assert.equal(orderText({ action: 'restoreCheckpoint', value: 7 }), 'back to checkpoint 7');
+  assert.equal(orderText({ action: 'startAttempt', value: 'Ben' }), 'attempt of Ben');
+  assert.equal(orderText({ action: 'addRemark', note: '', points: [], colour: 0 }), 'draw a stroke');
 });
 
 test('what loses something is asked for twice', () => {

@@ -1,4 +1,5 @@
 // The guest's orders, one after the other: each waits for its answer in the server's status.
+import { rowOf } from '../shared/commands';
 import type { CommandOrder, StatusView } from '../shared/messages';
 
 const kTimeoutMs = 5000;
@@ -14,6 +15,7 @@ interface Waiting {
 
 export interface Outcome {
   order: CommandOrder;
+  isDone: boolean;
   result: string;
 }
 
@@ -35,7 +37,7 @@ export class CommandOutbox {
     const first = this.waiting[0];
     if (!first || status.lastCommandSender !== sender || status.lastCommandSequence !== first.sequence) return undefined;
     this.waiting.shift();
-    return { order: first.order, result: status.lastCommandResult || 'the server gave no result' };
+    return { order: first.order, isDone: status.isLastCommandDone, result: status.lastCommandResult || 'the server gave no result' };
   }
 
   // Writes the first one as often as it takes; returns one that nobody has answered in time.
@@ -43,10 +45,10 @@ export class CommandOutbox {
     const first = this.waiting[0];
     if (!first) return undefined;
     first.started ??= now;
-    const is_long = first.written !== undefined && first.order.action === 'chooseScene';
+    const is_long = first.written !== undefined && rowOf(first.order.action).isLong;
     if (now - first.started >= (is_long ? kLongTimeoutMs : kTimeoutMs)) {
       this.waiting.shift();
-      return { order: first.order, result: first.written === undefined ? 'no server' : 'the server did not answer' };
+      return { order: first.order, isDone: false, result: first.written === undefined ? 'no server' : 'the server did not answer' };
     }
     if (!is_connected || (first.written !== undefined && now - first.written < kRepeatAfterMs)) return undefined;
     write(first.order, first.sequence);

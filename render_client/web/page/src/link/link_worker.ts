@@ -2,7 +2,8 @@
 // page's orders and announcements to the gateway.
 import { Sample_Topic, type Sample, type Samples } from '#proto/gateway_pb';
 import type { CommandOrder, FromLink, PlacedNode, SceneView, ToLink } from '../shared/messages';
-import { Malformed } from './checks';
+import { read } from './bounds';
+import { demand, Malformed } from './checks';
 import { CommandOutbox } from './command_outbox';
 import { commandOf, announcementOf, HandSpeaker } from './speech';
 import { decodeNode, decoderReady, type DecodedNode } from './node_codec';
@@ -10,9 +11,7 @@ import { NodeBook } from './node_book';
 import * as payloads from './payloads';
 import { Placement } from './place_node';
 import { SessionSocket } from './session_socket';
-import { fromBinary } from '@bufbuild/protobuf';
 import { StructureMeshSchema } from '#proto/topics_pb';
-import { demand } from './checks';
 
 const kMostStructureTriangles = 1 << 18;
 const kMostKeys = 1024;  // viewers, remarks and pictures each
@@ -103,8 +102,7 @@ function takeScene(scene: SceneView): void {
 function takeStructure(id: number, payload: Uint8Array): void {
   demand(id >= 1 && id <= 255, 'structure');
   if (payload.length === 0) return post({ kind: 'structure', id });
-  const message = fromBinary(StructureMeshSchema, payload);
-  demand(message.warningDistanceM > 0 && message.warningDistanceM <= 1, 'warning distance');
+  const message = read(StructureMeshSchema, payload);
   const node = decodeNode(message.surface);
   demand(node.epoch === message.epoch && node.indices.length <= 3 * kMostStructureTriangles, 'structure');
   beginIfNew(node.epoch);

@@ -3,27 +3,12 @@ import { create, type MessageInitShape } from '@bufbuild/protobuf';
 import { CommandSchema, HandPointerSchema, ViewerSchema, type Command } from '#proto/topics_pb';
 import type { CameraWish, CommandOrder, ToLink } from '../shared/messages';
 
-function actionOf(order: CommandOrder): MessageInitShape<typeof CommandSchema>['action'] {
-  switch (order.action) {
-    case 'resetVolume':
-    case 'shutDown':
-    case 'saveCheckpoint':
-    case 'resetDevice':
-    case 'stopAttempt':
-      return { case: order.action, value: true };
-    case 'addRemark':
-      return { case: 'addRemark', value: { note: order.note, pointsM: order.points.flat(), color: order.colour } };
-    case 'pauseMilling':
-      return { case: order.action, value: order.value };
-    case 'setAccuracy':
-    case 'chooseScene':
-    case 'startAttempt':
-      return { case: order.action, value: order.value };
-    case 'selectTool':
-    case 'restoreCheckpoint':
-    case 'eraseRemark':
-      return { case: order.action, value: order.value };
-  }
+type Action = MessageInitShape<typeof CommandSchema>['action'];
+
+function actionOf(order: CommandOrder): Action {
+  if (order.action === 'addRemark')
+    return { case: 'addRemark', value: { note: order.note, pointsM: order.points.flat(), color: order.colour } };
+  return { case: order.action, value: order.value ?? true } as Action;
 }
 
 export function commandOf(order: CommandOrder, sequence: number): Command {

@@ -1,5 +1,6 @@
 // What the link (a worker: socket, protobuf, decoding) and the page (pictures, buttons) say to each other. All of it
 // was checked by the link: numbers are finite and bounded, texts printable and bounded. 64-bit numbers are texts.
+import type { Command } from '#proto/topics_pb';
 import type { Pose, Quat, Vec3 } from '../math/linear';
 
 export enum Role { Viewer = 0, Operator = 1, Instructor = 2, Examiner = 3 }
@@ -114,6 +115,7 @@ export interface StatusView {
   lastCommandSequence: number;
   lastCommandSender: string;
   lastCommandResult: string;
+  isLastCommandDone: boolean;
   deviceStale: boolean;
   sessionS: number;
   isMillingPaused: boolean;
@@ -204,12 +206,14 @@ export interface StructureSurface {
   node: PlacedNode;
 }
 
-export type CommandOrder =
-  | { action: 'resetVolume' | 'shutDown' | 'saveCheckpoint' | 'resetDevice' | 'stopAttempt' }
-  | { action: 'pauseMilling'; value: boolean }
-  | { action: 'setAccuracy' | 'chooseScene' | 'startAttempt'; value: string }
-  | { action: 'selectTool' | 'restoreCheckpoint' | 'eraseRemark'; value: number }
-  | { action: 'addRemark'; note: string; points: Vec3[]; colour: number };
+// An action of the protocol with what it takes; a bool is true if it is not given. A remark has only what a guest says.
+type Said = Extract<Command['action'], { case: string }>;
+type OrderOf<S> = S extends { case: infer Action; value: infer Value }
+  ? Value extends boolean ? { action: Action; value?: boolean }
+    : Value extends string | number ? { action: Action; value: Value }
+      : Action extends 'addRemark' ? { action: Action; note: string; points: Vec3[]; colour: number } : never
+  : never;
+export type CommandOrder = OrderOf<Said>;
 
 export type ToLink =
   | { kind: 'open'; url: string; token: string }
@@ -235,5 +239,5 @@ export type FromLink =
   | { kind: 'remark'; key: string; remark?: RemarkView }
   | { kind: 'structure'; id: number; surface?: StructureSurface }
   | { kind: 'nodes'; placed: PlacedNode[]; gone: number[] }
-  | { kind: 'outcome'; order: CommandOrder; result: string }
+  | { kind: 'outcome'; order: CommandOrder; isDone: boolean; result: string }
   | { kind: 'frame'; bytes: number; connection: number };

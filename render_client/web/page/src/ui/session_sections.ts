@@ -1,6 +1,7 @@
 // The panel's parts about the session: lesson, orders, who is watching, notes.
 import { clockText, figureText, readableText } from '../shared/format';
-import { Role, type AttemptView, type CommandOrder, type SceneChoiceView } from '../shared/messages';
+import { mayOrder } from '../shared/commands';
+import { type AttemptView, type CommandOrder, type SceneChoiceView } from '../shared/messages';
 import type { OrderDesk } from '../orders';
 import { whyNot } from '../orders';
 import type { Session } from '../session';
@@ -176,7 +177,7 @@ export function remarksSection(acts: SessionActs): Section {
         swatch.style.backgroundColor = `rgb(${one.colour.map((part) => Math.round(255 * part)).join(' ')})`;
         const text = make('span', { text: `${clockText(one.sessionS)} ${one.author || kRoleNames[one.role]}: ${one.note || 'a stroke'}` });
         const erase = orderButton(acts, 'Erase', 'takes it away for everyone', { action: 'eraseRemark', value: one.number });
-        parts.push(row(...(one.points.length > 1 ? [swatch] : []), text, ...(session.role === Role.Viewer ? [] : [erase])));
+        parts.push(row(...(one.points.length > 1 ? [swatch] : []), text, ...(mayOrder(session.role, 'eraseRemark') ? [erase] : [])));
       }
       return parts;
     },

@@ -41,25 +41,26 @@ TEST_F(CommandInboxTest, CarriesACommandOutOnceAndAcknowledgesRepetitions) {
     EXPECT_FALSE(repeated_before_the_end.command);
     EXPECT_FALSE(repeated_before_the_end.acknowledgement);
 
-    inbox_.finish(*first.command, "done");
+    inbox_.finish(*first.command, Answer::done());
     const auto repeated = receive(7, resetCommand(7, 1));
     EXPECT_FALSE(repeated.command);
     ASSERT_TRUE(repeated.acknowledgement);
     EXPECT_EQ(repeated.acknowledgement->sender, 7u);
     EXPECT_EQ(repeated.acknowledgement->sequence, 1u);
-    EXPECT_EQ(repeated.acknowledgement->result, "done");
+    EXPECT_EQ(repeated.acknowledgement->answer.text, "done");
 }
 
 // Who repeats a command reads what who did not repeat it has read.
 TEST_F(CommandInboxTest, ARepetitionIsAnsweredWithTheVeryResult) {
-    for (const std::string& result : {std::string("done"), std::string("refused: no"), std::string()}) {
+    for (const Answer& answer : {Answer::done(), Answer::refused("no"), Answer()}) {
         inbox_ = CommandInbox([](uint64_t) { return true; });
         const auto first = receive(7, resetCommand(7, 1));
         ASSERT_TRUE(first.command);
-        EXPECT_EQ(inbox_.finish(*first.command, result).result, result);
+        EXPECT_EQ(inbox_.finish(*first.command, answer).answer.text, answer.text);
         const auto repeated = receive(7, resetCommand(7, 1));
-        ASSERT_TRUE(repeated.acknowledgement) << "'" << result << "'";
-        EXPECT_EQ(repeated.acknowledgement->result, result);
+        ASSERT_TRUE(repeated.acknowledgement) << "'" << answer.text << "'";
+        EXPECT_EQ(repeated.acknowledgement->answer.text, answer.text);
+        EXPECT_EQ(repeated.acknowledgement->answer.outcome, answer.outcome);
     }
 }
 
@@ -82,7 +83,7 @@ TEST_F(CommandInboxTest, AnswersAnUnknownAction) {
     const auto decision = receive(7, command);
     EXPECT_FALSE(decision.command);
     ASSERT_TRUE(decision.acknowledgement);
-    EXPECT_NE(decision.acknowledgement->result.find("refused"), std::string::npos);
+    EXPECT_NE(decision.acknowledgement->answer.text.find("refused"), std::string::npos);
     EXPECT_TRUE(receive(7, command).acknowledgement) << "a repetition is answered too";
     EXPECT_EQ(inbox_.malformedCount(), 0u);
 }
@@ -139,18 +140,18 @@ TEST_F(CommandInboxTest, AForgedNumberSilencesNobody) {
     const auto newcomer = receive(7, resetCommand(7, 1), kOtto);
     EXPECT_FALSE(newcomer.command);
     ASSERT_TRUE(newcomer.acknowledgement);
-    EXPECT_NE(newcomer.acknowledgement->result.find("refused: another client"), std::string::npos);
+    EXPECT_NE(newcomer.acknowledgement->answer.text.find("refused: another client"), std::string::npos);
 }
 
 TEST_F(CommandInboxTest, WhoJoinsAnewGoesOnAndWhoTakesTheNumberOfOneWhoHasGoneBegins) {
     const auto first = receive(7, resetCommand(7, 5));
     ASSERT_TRUE(first.command);
-    inbox_.finish(*first.command, "done");
+    inbox_.finish(*first.command, Answer::done());
     gone_.insert(kAnna.writer);
     const auto repeated = receive(7, resetCommand(7, 5), kOtto);
     EXPECT_FALSE(repeated.command) << "it is not carried out twice";
     ASSERT_TRUE(repeated.acknowledgement);
-    EXPECT_EQ(repeated.acknowledgement->result, "done");
+    EXPECT_EQ(repeated.acknowledgement->answer.text, "done");
     EXPECT_TRUE(receive(7, resetCommand(7, 6), kOtto).command);
     gone_.insert(kOtto.writer);
     EXPECT_TRUE(receive(7, resetCommand(7, 1), {3, 33}).command);

@@ -32,7 +32,7 @@ class RemarkBookTest : public testing::Test {
                 command.mutable_add_remark()->add_points_m(float(value));
         return command;
     }
-    std::string add(const topics::Command& command) { return book_.add(command, 12.5); }
+    std::string add(const topics::Command& command) { return book_.add(command, 12.5).text; }
 
     RemarkBook book_{volume()};
 };
@@ -97,8 +97,8 @@ TEST_F(RemarkBookTest, WhatIsEmptyTooMuchOrNowhereIsRefusedWithAReason) {
 TEST_F(RemarkBookTest, WhatIsErasedIsGoneAndItsPlaceFree) {
     for (const char* text : {"one", "two", "three"}) ASSERT_EQ(add(noteOf(text)), "done");
     book_.takeChanges();
-    EXPECT_EQ(book_.erase(4), "refused: there is no note or stroke 4; it may be erased already");
-    EXPECT_EQ(book_.erase(2), "done");
+    EXPECT_EQ(book_.erase(4).text, "refused: there is no note or stroke 4; it may be erased already");
+    EXPECT_EQ(book_.erase(2).text, "done");
     auto changes = book_.takeChanges();
     ASSERT_EQ(changes.size(), 1u);
     EXPECT_EQ(changes[0].place, 1u);
@@ -108,16 +108,16 @@ TEST_F(RemarkBookTest, WhatIsErasedIsGoneAndItsPlaceFree) {
     ASSERT_EQ(changes.size(), 1u);
     EXPECT_EQ(changes[0].place, 1u);
     EXPECT_EQ(changes[0].remark->number(), 4u) << "numbers are not given again";
-    EXPECT_EQ(book_.erase(0), "done");
+    EXPECT_EQ(book_.erase(0).text, "done");
     EXPECT_EQ(book_.takeChanges().size(), 3u);
     EXPECT_EQ(book_.count(), 0u);
-    EXPECT_EQ(book_.erase(0), "done");
+    EXPECT_EQ(book_.erase(0).text, "done");
 }
 
 TEST_F(RemarkBookTest, TheOldestMakesRoom) {
     for (uint32_t n = 0; n < kMostRemarks; ++n) ASSERT_EQ(add(noteOf("x")), "done");
     EXPECT_EQ(book_.takeChanges().size(), kMostRemarks);
-    ASSERT_EQ(book_.erase(11), "done");
+    ASSERT_EQ(book_.erase(11).text, "done");
     ASSERT_EQ(add(noteOf("fits")), "done");
     book_.takeChanges();
     for (const uint32_t place : {0u, 1u}) {
@@ -128,7 +128,7 @@ TEST_F(RemarkBookTest, TheOldestMakesRoom) {
         EXPECT_EQ(changes[0].remark->note(), "newer");
     }
     EXPECT_EQ(book_.count(), kMostRemarks);
-    EXPECT_EQ(book_.erase(1), "refused: there is no note or stroke 1; it may be erased already");
+    EXPECT_EQ(book_.erase(1).text, "refused: there is no note or stroke 1; it may be erased already");
 }
 
 }  // namespace

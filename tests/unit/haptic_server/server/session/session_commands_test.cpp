@@ -32,9 +32,9 @@ class SessionCommandsTest : public testing::Test {
     }
     std::string order(topics::Command command, topics::Viewer::Role role = topics::Viewer::OPERATOR) {
         command.set_role(role);
-        if (const auto answer = commands_.carryOut(command)) return *answer;
+        if (const auto answer = commands_.carryOut(command)) return answer->text;
         const auto answers = lesson_.takeAnswers();
-        return answers.empty() ? "nothing said" : answers.front().second;
+        return answers.empty() ? "nothing said" : answers.front().second.text;
     }
     static topics::Command startOf(const std::string& trainee) {
         topics::Command command;
@@ -61,7 +61,7 @@ class SessionCommandsTest : public testing::Test {
         topics::Command command;
         command.set_role(topics::Viewer::OPERATOR);
         command.set_set_accuracy(name);
-        return commands_.carryOut(command).value_or("nothing said");
+        return commands_.carryOut(command).value_or(Answer{.text = "nothing said"}).text;
     }
     topics::Status told() {
         topics::Status status;
@@ -104,8 +104,8 @@ TEST_F(SessionCommandsTest, ASceneIsOrderedOnceAndAnsweredWhenItIsThere) {
     ASSERT_TRUE(taken);
     EXPECT_EQ(taken->file, "/scenes/tooth.textproto");
     EXPECT_EQ(order(choiceOf("tooth")), "refused: the scene tooth is on its way; wait for it");
-    lesson_.answerOrder(taken->command, "refused: no such volume");
-    EXPECT_EQ(lesson_.takeAnswers().at(0).second, "refused: no such volume");
+    lesson_.answerOrder(taken->command, Answer::refused("no such volume"));
+    EXPECT_EQ(lesson_.takeAnswers().at(0).second.text, "refused: no such volume");
     EXPECT_TRUE(lesson_.takeAnswers().empty());
     EXPECT_EQ(lesson_.takeChanged()->changing_to(), "");
     EXPECT_EQ(order(choiceOf("tooth")), "nothing said");
@@ -291,12 +291,12 @@ TEST_F(SessionCommandsTest, AnotherLawIsRefusedWhereAnEffectNeedsTheGradientLaw)
     command.set_role(topics::Viewer::OPERATOR);
     for (const std::string law : {"thesis_2012", "proxy_3dof"}) {
         command.set_set_accuracy(law);
-        EXPECT_EQ(commands.carryOut(command),
+        EXPECT_EQ(commands.carryOut(command)->text,
                   "refused: effects.energy_removal of the scene needs the gradient contact law, which " +
                       law + " is not");
     }
     command.set_set_accuracy("exact");
-    EXPECT_EQ(commands.carryOut(command), "done");
+    EXPECT_EQ(commands.carryOut(command)->outcome, topics::DONE);
 }
 
 TEST_F(SessionCommandsTest, WhatIsFalseIsRefusedAndNotDone) {
@@ -308,7 +308,7 @@ TEST_F(SessionCommandsTest, WhatIsFalseIsRefusedAndNotDone) {
         topics::Command command;
         command.set_role(topics::Viewer::INSTRUCTOR);
         (command.*set)(false);
-        EXPECT_EQ(commands_.carryOut(command),
+        EXPECT_EQ(commands_.carryOut(command)->text,
                   "refused: a command that is false asks for nothing; send true");
     }
     EXPECT_FALSE(stop_requested_);
@@ -317,20 +317,20 @@ TEST_F(SessionCommandsTest, WhatIsFalseIsRefusedAndNotDone) {
     topics::Command command;
     command.set_role(topics::Viewer::INSTRUCTOR);
     command.set_save_checkpoint(true);
-    EXPECT_EQ(commands_.carryOut(command), "done");
+    EXPECT_EQ(commands_.carryOut(command)->outcome, topics::DONE);
     command.set_shut_down(true);
-    EXPECT_EQ(commands_.carryOut(command), "done");
+    EXPECT_EQ(commands_.carryOut(command)->outcome, topics::DONE);
     EXPECT_TRUE(stop_requested_);
 }
 
 TEST_F(SessionCommandsTest, OperatorsAndInstructorsResetTheDevice) {
     topics::Command command;
     command.set_reset_device(true);
-    EXPECT_NE(commands_.carryOut(command)->find("refused"), std::string::npos);
+    EXPECT_EQ(commands_.carryOut(command)->outcome, topics::REFUSED);
     uint32_t orders = 0;
     for (const auto role : {topics::Viewer::OPERATOR, topics::Viewer::INSTRUCTOR}) {
         command.set_role(role);
-        EXPECT_EQ(commands_.carryOut(command), "done");
+        EXPECT_EQ(commands_.carryOut(command)->outcome, topics::DONE);
         EXPECT_EQ(reset_orders_, ++orders);
     }
 }
@@ -349,9 +349,9 @@ TEST_F(SessionCommandsTest, OfAnUnknownNameOnly32PrintableCharactersAreRepeated)
 class FakeReplay final : public ReplayOrders {
   public:
     void play(bool goes_on) override { said_ += goes_on ? "play " : "hold "; }
-    std::string carryOut(const topics::ReplayOrder& order) override {
+    Answer carryOut(const topics::ReplayOrder& order) override {
         said_ += "seek " + std::to_string(int(order.seek_s())) + " ";
-        return "done";
+        return Answer::done();
     }
     void describe(topics::Replay& replay) const override { replay.set_length_s(60); }
     std::string said_;
@@ -371,7 +371,7 @@ TEST_F(SessionCommandsTest, AReplayIsLedAndItsBoneStaysAsItWas) {
     SessionCommands commands(sceneOf(), ball_.bone, recorder_, in_replay, false);
     const auto tell = [&](topics::Command command, topics::Viewer::Role role = topics::Viewer::OPERATOR) {
         command.set_role(role);
-        return commands.carryOut(command).value_or("nothing said").substr(0, 7);
+        return commands.carryOut(command).value_or(Answer{.text = "nothing said"}).text.substr(0, 7);
     };
     topics::Command seek, pause, tool, reset, bone, shut_down;
     seek.mutable_replay()->set_seek_s(3);

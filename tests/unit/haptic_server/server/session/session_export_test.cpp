@@ -27,7 +27,7 @@ class SessionExportTest : public testing::Test {
   protected:
     static std::string resultOf(SessionExport& bone_export) {
         for (int n = 0; n < 3000; ++n) {
-            if (const auto result = bone_export.takeResult()) return *result;
+            if (const auto result = bone_export.takeResult()) return result->text;
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
         return "no result within 30 s";
@@ -113,27 +113,27 @@ TEST_F(SessionExportTest, RefusesWhatIsNoNameAndWhatIsThere) {
     SessionExport bone_export(ball_.history, ball_.bone, folder_.path().string());
     for (const char* name :
          {"", ".", "..", "../up", "a/b", "/tmp/x", ".hidden", "-rf", "a b", "a\\b", "n\xc3\xa4"}) {
-        const std::string answer = bone_export.begin(name).value_or("");
+        const std::string answer = bone_export.begin(name).value_or(Answer()).text;
         EXPECT_EQ(answer.rfind("refused: '", 0), 0u) << name << ": " << answer;
     }
-    EXPECT_EQ(bone_export.begin(std::string(65, 'a')).value_or("").rfind("refused: ", 0), 0u);
+    EXPECT_EQ(bone_export.begin(std::string(65, 'a')).value_or(Answer()).text.rfind("refused: ", 0), 0u);
     EXPECT_TRUE(filesOf().empty());
     ASSERT_EQ(bone_export.begin("a"), std::nullopt);
     EXPECT_EQ(resultOf(bone_export), "done");
-    EXPECT_EQ(bone_export.begin("a"), "refused: a.stl is there already; give another name");
+    EXPECT_EQ(bone_export.begin("a")->text, "refused: a.stl is there already; give another name");
 }
 
 TEST_F(SessionExportTest, OneAtATime) {
     SessionExport bone_export(ball_.history, ball_.bone, folder_.path().string());
     ASSERT_EQ(bone_export.begin("a"), std::nullopt);
-    EXPECT_EQ(bone_export.begin("b"), "refused: an export is under way; wait for its end");
+    EXPECT_EQ(bone_export.begin("b")->text, "refused: an export is under way; wait for its end");
     EXPECT_EQ(resultOf(bone_export), "done");
     EXPECT_EQ(bone_export.begin("b"), std::nullopt);
 }
 
 TEST_F(SessionExportTest, WithoutAFolderEveryNameIsRefused) {
     SessionExport bone_export(ball_.history, ball_.bone, "");
-    EXPECT_NE(bone_export.begin("a").value_or("").find("--export-dir"), std::string::npos);
+    EXPECT_NE(bone_export.begin("a").value_or(Answer()).text.find("--export-dir"), std::string::npos);
     EXPECT_THROW(SessionExport(ball_.history, ball_.bone, folder_ / "none"), UserError);
 }
 

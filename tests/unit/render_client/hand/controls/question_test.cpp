@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "render_client/hand/controls/done_text.h"
 #include "tests/support/controlled_viewer.h"
 
 namespace bonemill {
@@ -121,17 +120,6 @@ TEST_F(Questions, DoNotAskWhereNothingIsLost) {
     type('K');
     type('P');
     EXPECT_EQ(wishes_.commands.size(), 5u) << "these lose nothing";
-}
-
-TEST(DoneText, SaysWhoseAttemptHasBegunAndEnded) {
-    topics::Command command;
-    topics::Lesson lesson;
-    lesson.set_trainee("Anna");
-    command.set_start_attempt("Ben");
-    EXPECT_EQ(doneText(command, &lesson), "Ben's attempt has begun");
-    command.set_stop_attempt(true);
-    EXPECT_EQ(doneText(command, &lesson), "Anna's attempt has ended");
-    EXPECT_EQ(doneText(command, nullptr), "The attempt has ended");
 }
 
 }  // namespace

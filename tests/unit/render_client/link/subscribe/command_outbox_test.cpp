@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "render_client/link/subscribe/command_text.h"
-
 namespace bonemill {
 namespace {
 
@@ -22,6 +20,7 @@ class CommandOutboxTest : public testing::Test {
         status.set_last_command_sender(sender);
         status.set_last_command_sequence(sequence);
         status.set_last_command_result("done");
+        status.set_last_command_outcome(topics::DONE);
         return status;
     }
 
@@ -58,7 +57,7 @@ TEST_F(CommandOutboxTest, OneCommandAfterTheOther) {
     ASSERT_EQ(outcomes.size(), 1u);
     EXPECT_TRUE(outcomes[0].is_acknowledged);
     EXPECT_TRUE(outcomes[0].isDone());
-    EXPECT_EQ(outcomes[0].result, "done");
+    EXPECT_EQ(outcomes[0].answer.text, "done");
 }
 
 TEST_F(CommandOutboxTest, AnOutcomeNamesItsCommand) {
@@ -70,6 +69,7 @@ TEST_F(CommandOutboxTest, AnOutcomeNamesItsCommand) {
     stepAt(0ms);
     topics::Status refusal = acknowledgement(kSender, 1);
     refusal.set_last_command_result("refused: no such preset");
+    refusal.set_last_command_outcome(topics::REFUSED);
     outbox_.acknowledge(refusal);
     stepAt(1ms);
     stepAt(5001ms);
@@ -88,6 +88,7 @@ TEST_F(CommandOutboxTest, AnEmptyResultIsNoSuccess) {
     stepAt(0ms);
     topics::Status status = acknowledgement(kSender, 1);
     status.clear_last_command_result();
+    status.clear_last_command_outcome();
     outbox_.acknowledge(status);
     const auto outcomes = outbox_.takeOutcomes();
     ASSERT_EQ(outcomes.size(), 1u);
@@ -114,7 +115,7 @@ TEST_F(CommandOutboxTest, WaitsForAServerAndGivesUp) {
     const auto outcomes = outbox_.takeOutcomes();
     ASSERT_EQ(outcomes.size(), 1u);
     EXPECT_FALSE(outcomes[0].is_acknowledged);
-    EXPECT_EQ(outcomes[0].result, "no server");
+    EXPECT_EQ(outcomes[0].answer.text, "no server");
 }
 
 TEST_F(CommandOutboxTest, EachCommandHasItsOwnTimeout) {
@@ -127,7 +128,7 @@ TEST_F(CommandOutboxTest, EachCommandHasItsOwnTimeout) {
     stepAt(10000ms);
     EXPECT_TRUE(outbox_.takeOutcomes().empty());
     stepAt(10001ms);
-    EXPECT_EQ(outbox_.takeOutcomes().at(0).result, "the server did not answer");
+    EXPECT_EQ(outbox_.takeOutcomes().at(0).answer.text, "the server did not answer");
 }
 
 }  // namespace

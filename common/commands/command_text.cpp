@@ -1,0 +1,95 @@
+#include "common/commands/command_text.h"
+
+#include <cstdio>
+
+#include "common/commands/command_rows.h"
+
+namespace bonemill {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+using topics::CommandForm;
+
+struct Value {
+    double number = 0;  // of a text, whether there is any
+    std::string text;
+};
+
+Value valueOf(const Message& message, const FieldDescriptor& field) {
+    const auto& r = *message.GetReflection();
+    switch (field.cpp_type()) {
+        case FieldDescriptor::CPPTYPE_BOOL:
+            return {r.GetBool(message, &field) ? 1.0 : 0.0, {}};
+        case FieldDescriptor::CPPTYPE_UINT32:
+            return {double(r.GetUInt32(message, &field)), {}};
+        case FieldDescriptor::CPPTYPE_INT32:
+            return {double(r.GetInt32(message, &field)), {}};
+        case FieldDescriptor::CPPTYPE_DOUBLE:
+            return {r.GetDouble(message, &field), {}};
+        case FieldDescriptor::CPPTYPE_STRING: {
+            const std::string text = r.GetString(message, &field);
+            return {text.empty() ? 0.0 : 1.0, text};
+        }
+        default:
+            return {};
+    }
+}
+
+std::string printed(const char* format, double number) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, number);
+    return text;
+}
+
+std::string argumentText(const CommandForm& form, const Value& value) {
+    switch (form.kind()) {
+        case CommandForm::TEXT:
+            return value.text;
+        case CommandForm::TOOL:
+            return printed("%.0f", value.number + 1);
+        case CommandForm::SECONDS:
+            return printed("%.2f", value.number);
+        case CommandForm::FACTOR:
+            return printed("%g", value.number);
+        default:
+            return printed("%.0f", value.number);
+    }
+}
+
+std::string withInstead(std::string text, const std::string& mark, const std::string& instead) {
+    const size_t at = text.find(mark);
+    return at == std::string::npos ? text : text.replace(at, mark.size(), instead);
+}
+
+// Returns the words of the first form that fits, with the argument in them; empty if there is none.
+std::string wordsOf(const topics::Command& command, const std::string& (CommandForm::*words)() const) {
+    for (const CommandForm& form : rowOf(command.action_case()).forms()) {
+        const auto [action, inner] = placeOf(command.action_case(), form);
+        const Message& message = inner ? command.GetReflection()->GetMessage(command, action)
+                                       : static_cast<const Message&>(command);
+        const FieldDescriptor& field = inner ? *inner : *action;
+        if (field.containing_oneof() && !message.GetReflection()->HasField(message, &field)) continue;
+        const Value value = valueOf(message, field);
+        if (!form.has_value() || value.number == form.value())
+            return withInstead((form.*words)(), "{}", argumentText(form, value));
+    }
+    return "";
+}
+
+}  // namespace
+
+std::string commandText(const topics::Command& command) {
+    const std::string text = wordsOf(command, &CommandForm::order);
+    if (!text.empty()) return text;
+    const FieldDescriptor* field = fieldOf(command.action_case());
+    return field ? field->name() : "no action";
+}
+
+std::string doneText(const topics::Command& command, const std::string& trainee) {
+    const std::string text = wordsOf(command, &CommandForm::done);
+    if (text.empty()) return CommandForm().done();
+    return withInstead(text, "{trainee's}", trainee.empty() ? "The" : trainee + "'s");
+}
+
+}  // namespace bonemill
