@@ -20,6 +20,7 @@ constexpr size_t kLongestName = 64;   // bytes
 constexpr size_t kLongestText = 512;  // bytes
 constexpr double kLargestNumber = 1e6;
 constexpr double kLongestSession = 1e9;  // s
+constexpr int kMaxShownFigures = 16;
 constexpr int kMostCheckpoints = 64;
 constexpr int kMostTools = 64;  // far more than a scene may have
 constexpr int kMostWarnings = 64;
@@ -95,7 +96,9 @@ bool isUsable(const topics::EffectState& state) {
                               state.cutting_power_w(),      state.temperature_c(),     state.necrotic_mm3(),
                               state.protected_distance_m(), state.protected_force_n(), state.damaged_mm3(),
                               state.removed_mm3()};
-    return std::ranges::all_of(numbers, isSane) && state.removed_mm3() >= 0;
+    return std::ranges::all_of(numbers, isSane) && state.removed_mm3() >= 0 &&
+           state.figures_size() <= kMaxShownFigures &&
+           std::ranges::all_of(state.figures(), [](const auto& figure) { return isSane(figure.value()); });
 }
 
 bool isUsable(const topics::Training& training) {
@@ -322,7 +325,13 @@ std::optional<topics::SceneInfo> parseSceneInfo(std::span<const uint8_t> payload
 }
 
 std::optional<topics::ToolState> parseToolState(std::span<const uint8_t> payload) {
-    return parseOfEpoch<topics::ToolState>(payload);
+    std::optional<topics::ToolState> state = parseOfEpoch<topics::ToolState>(payload);
+    if (!state || !state->has_effects()) return state;
+    for (topics::ShownFigure& figure : *state->mutable_effects()->mutable_figures()) {
+        figure.set_words(shownName(figure.words()));
+        figure.set_unit(shownName(figure.unit()));
+    }
+    return state;
 }
 
 std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload) {

@@ -11,6 +11,7 @@ import {
   bounded, demand, finite, sane, saneOrNone, quaternion, shownName, shownText, time, vector, vectorOrNone, within,
 } from './checks';
 
+const kMaxFigures = 16;
 const kMostMaterials = 255;
 const kMostTools = 64;
 const kMostListed = 64;  // checkpoints, warnings, scenes, structures
@@ -93,6 +94,9 @@ function effectsOf(state: wire.EffectState): EffectView {
     damagedMm3: saneOrNone(state.damagedMm3),
     protectedId: state.protectedId,
     eventId: state.eventId,
+    figures: bounded(state.figures, kMaxFigures).map((figure) => ({
+      words: shownName(figure.words), value: sane(figure.value), unit: shownName(figure.unit),
+    })),
   };
 }
 
