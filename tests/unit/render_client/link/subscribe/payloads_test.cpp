@@ -153,16 +153,6 @@ TEST(Payloads, EffectStateAndTrainingAreChecked) {
     state = validToolState();
     state.mutable_effects()->set_protected_distance_m(std::numeric_limits<double>::infinity());
     EXPECT_FALSE(isAccepted(&parseToolState, state));
-    state = validToolState();
-    state.mutable_effects()->add_figures()->set_words("Wax\ned");
-    const auto shown = parseToolState(bytesOf(state.SerializeAsString()));
-    ASSERT_TRUE(shown);
-    EXPECT_EQ(shown->effects().figures(0).words(), "Waxed");
-    state.mutable_effects()->mutable_figures(0)->set_value(std::numeric_limits<double>::quiet_NaN());
-    EXPECT_FALSE(isAccepted(&parseToolState, state));
-    state.mutable_effects()->clear_figures();
-    for (int n = 0; n < 17; ++n) state.mutable_effects()->add_figures();
-    EXPECT_FALSE(isAccepted(&parseToolState, state));
 
     topics::Status status;
     status.set_epoch(1);
