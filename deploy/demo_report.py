@@ -225,24 +225,12 @@ def contact_table(runs):
     return lines
 
 
-EFFECT_FIGURES = (
-    ("axis torque, max", "axis_torque_max_nm", 1e3, "N·mm"),
-    ("cutting power, max", "cutting_power_max_w", 1, "W"),
-    ("energy that removed bone", "removed_energy_j", 1, "J"),
-    ("hottest bone", "temperature_max_c", 1, "°C"),
-    ("nearest to a protected structure", "protected_distance_min_mm", 1, "mm"),
-    ("damage to them", "protected_damaged_mm3", 1, "mm³"),
-)
-
-
 def effect_lines(runs):
     """Returns what the effects of a scene measured; nothing where no run has any."""
     lines = []
     for run in runs:
         figures = [
-            f"{label} {factor * run['loop'][key]:.3g} {unit}"
-            for label, key, factor, unit in EFFECT_FIGURES
-            if key in run["loop"]
+            f"{figure['words']} {figure['value']:.3g} {figure['unit']}" for figure in run["loop"].get("effects", [])
         ]
         if figures:
             lines.append(f"- {run['name']}: " + ", ".join(figures) + ".")

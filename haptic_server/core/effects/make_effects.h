@@ -15,7 +15,20 @@ struct EffectRoom {
     double longest_way;  // m, of a burr in a tick
 };
 
+// An effect may need this beside its own config.
+struct EffectNeeds {
+    const EffectConfigs& all;
+    const BoneModel& bone;
+    const EffectRoom& room;
+};
+
 // The effects stand in the order in which they act.
-EffectList makeEffects(const EffectConfigs& configs, const BoneModel& bone, const EffectRoom& room);
+inline EffectList makeEffects(const EffectConfigs& configs, const BoneModel& bone, const EffectRoom& room) {
+    EffectList effects;
+    forEachEffect(configs, [&](const auto& config) {
+        if (config) effects.push_back(config->make({configs, bone, room}));
+    });
+    return effects;
+}
 
 }  // namespace bonemill

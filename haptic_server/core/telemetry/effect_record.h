@@ -2,6 +2,7 @@
 // without an effect that says so; the burr's force and power are zero without one that reads contacts.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
@@ -17,6 +18,8 @@ enum TickEvent : uint32_t {
     kEventTooHot = 1u << 4,            // bone above the temperature of necrosis
 };
 
+constexpr size_t kMaxOwnFigures = 8;
+
 struct EffectRecord {
     uint32_t events;  // TickEvent bits
     // 1 + index of the scene's material that is nearest to the burr, is touched (hardest) and was damaged in
@@ -31,9 +34,11 @@ struct EffectRecord {
     float temperature;      // °C: the hottest bone
     float necrotic_volume;  // m³ in all
     float
-        protected_distance;  // m from the burr's surface, negative inside; of no meaning without protected_id
+        protected_distance;  // m from the burr's surface, negative inside; without protected_id of no meaning
     float protected_force;   // N on the tool, from protected structures
     float damaged_volume;    // m³ of protected structures in all
+    // Figures that no other code reads by name; effects/effect_figures.h says whose each is.
+    float own[kMaxOwnFigures] = {};
 };
 static_assert(std::is_trivially_copyable_v<EffectRecord>);
 

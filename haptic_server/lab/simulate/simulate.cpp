@@ -180,7 +180,7 @@ SimulateResult simulate(const SimulateOptions& options) {
     files.write(save.difference,
                 [&](const std::string& path) { saveDifference(path, *before, bone.volume); });
     nlohmann::json json = totals(statistics, hash);
-    for (const auto& [key, value] : statistics.effects().figures()) json[key] = value;
+    for (const auto& [figure, value] : statistics.effects().figures()) json[figure->run.key] = value;
     if (recorded.any()) json["warnings"] = statistics.effects().warnings(materialNamesOf(loaded.scene));
     if (simulation.task || !options.assess.empty()) {
         const TaskRun::Result result = task.judgeBone(*before, bone.volume);

@@ -4,9 +4,8 @@
 
 #include <vector>
 
-#include "haptic_server/core/telemetry/recorded_effects.h"
-#include "haptic_server/core/telemetry/tick_record.h"
 #include "haptic_server/recording/export/h5_file.h"
+#include "haptic_server/recording/statistics/tick_columns.h"
 
 namespace bonemill {
 
@@ -21,14 +20,13 @@ class TickTable {
     void flush();
 
   private:
-    template <class Value>
     struct Column {
+        TickColumn about;
         H5File::Column* column;
-        void (*fill)(const TickRecord& record, std::vector<Value>& out);
-        std::vector<Value> waiting;
+        std::vector<double> reals;     // that wait,
+        std::vector<uint32_t> counts;  // or these
     };
-    std::vector<Column<double>> reals_;
-    std::vector<Column<uint32_t>> counts_;
+    std::vector<Column> columns_;
     size_t rows_ = 0;  // that wait
 };
 

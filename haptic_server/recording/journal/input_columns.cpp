@@ -5,13 +5,12 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <utility>
+
+#include "haptic_server/scene/trajectory/recorded_row.h"
 
 namespace bonemill {
 namespace {
-
-constexpr uint64_t kRepeated = 1, kStale = 2, kPaused = 4, kWriteRefused = 8, kAllFlags = 15;
-
-constexpr int32_t kMostPeriods = 10'000;
 
 uint64_t zigzag(uint64_t difference) noexcept {
     return (difference << 1) ^ uint64_t(int64_t(difference) >> 63);
@@ -98,9 +97,9 @@ bool decodePoses(const journal::Inputs& inputs, std::span<JournalTick> ticks) {
     return true;
 }
 
-template <class ValueOf>
-void putRuns(std::span<const JournalTick> ticks, journal::Runs& runs, ValueOf value_of) {
-    for (const JournalTick& tick : ticks) {
+template <class Ticks, class ValueOf>
+void putRuns(const Ticks& ticks, journal::Runs& runs, ValueOf value_of) {
+    for (const auto& tick : ticks) {
         const uint64_t value = value_of(tick);
         const int last = runs.values_size() - 1;
         if (last >= 0 && runs.values(last) == value) {
@@ -113,8 +112,8 @@ void putRuns(std::span<const JournalTick> ticks, journal::Runs& runs, ValueOf va
 }
 
 // Calls set(tick, value), which says whether the value can be.
-template <class Set>
-bool takeRuns(const journal::Runs& runs, std::span<JournalTick> ticks, Set set) {
+template <class Tick, class Set>
+bool takeRuns(const journal::Runs& runs, std::span<Tick> ticks, Set set) {
     if (runs.values_size() != runs.lengths_size()) return false;
     size_t next = 0;
     for (int run = 0; run < runs.values_size(); ++run) {
@@ -125,77 +124,70 @@ bool takeRuns(const journal::Runs& runs, std::span<JournalTick> ticks, Set set) 
     return next == ticks.size();
 }
 
-uint64_t flagsOf(const TickInput& input) noexcept {
-    return (input.is_repeated ? kRepeated : 0) | (input.is_stale ? kStale : 0) |
-           (input.decisions.is_milling_paused ? kPaused : 0) |
-           (input.decisions.is_write_refused ? kWriteRefused : 0);
-}
+// A column of the message, to be written and to be read.
+using RunColumn =
+    std::pair<journal::Runs* (journal::Inputs::*)(), const journal::Runs& (journal::Inputs::*)() const>;
+using RecordedNumbers = std::array<uint64_t, kRecordedNumbers.size()>;
 
-bool setFlags(TickInput& input, uint64_t flags) noexcept {
-    input.is_repeated = flags & kRepeated;
-    input.is_stale = flags & kStale;
-    input.decisions.is_milling_paused = flags & kPaused;
-    input.decisions.is_write_refused = flags & kWriteRefused;
-    return (flags & ~kAllFlags) == 0;
-}
+// In the order of kRecordedNumbers.
+constexpr std::array<RunColumn, kRecordedNumbers.size()> kNumberColumns = {{
+    {&journal::Inputs::mutable_flags, &journal::Inputs::flags},
+    {&journal::Inputs::mutable_periods, &journal::Inputs::periods},
+    {&journal::Inputs::mutable_placements, &journal::Inputs::placements},
+    {&journal::Inputs::mutable_faults, &journal::Inputs::faults},
+    {&journal::Inputs::mutable_device_state, &journal::Inputs::device_state},
+    {&journal::Inputs::mutable_stop_cause, &journal::Inputs::stop_cause},
+    {&journal::Inputs::mutable_device_fault_code, &journal::Inputs::device_fault_code},
+    {&journal::Inputs::mutable_device_flags, &journal::Inputs::device_flags},
+    {&journal::Inputs::mutable_tool, &journal::Inputs::tool},
+    {&journal::Inputs::mutable_accuracy, &journal::Inputs::accuracy},
+    {&journal::Inputs::mutable_most_samples, &journal::Inputs::most_samples},
+}};
 
-bool setFactor(TickInput& input, uint64_t bits) noexcept {
-    input.stale_factor = std::bit_cast<double>(bits);
-    return input.stale_factor >= 0 && input.stale_factor <= 1;
-}
-
-bool setPeriods(TickInput& input, uint64_t periods) noexcept {
-    input.periods = int32_t(periods);
-    return periods >= 1 && periods <= uint64_t(kMostPeriods);
-}
-
-bool setNarrow(uint32_t& out, uint64_t value) noexcept {
-    out = uint32_t(value);
-    return value <= UINT32_MAX;
-}
-
-// Both lists go together: each column's place in the message, and in a tick.
 void encodeRuns(std::span<const JournalTick> ticks, journal::Inputs& out) {
+    std::vector<RecordedNumbers> numbers;
+    numbers.reserve(ticks.size());
+    for (const JournalTick& tick : ticks) numbers.push_back(numbersOf(tick.input, tick.device));
+    for (size_t column = 0; column < kNumberColumns.size(); ++column)
+        putRuns(numbers, *(out.*kNumberColumns[column].first)(),
+                [&](const RecordedNumbers& of_tick) { return of_tick[column]; });
     using T = const JournalTick&;
     putRuns(ticks, *out.mutable_buttons(), [](T t) { return t.buttons; });
-    putRuns(ticks, *out.mutable_placements(), [](T t) { return t.input.placements; });
-    putRuns(ticks, *out.mutable_device_state(), [](T t) { return t.device.state; });
-    putRuns(ticks, *out.mutable_stop_cause(), [](T t) { return t.device.stop_cause; });
-    putRuns(ticks, *out.mutable_device_fault_code(), [](T t) { return t.device.fault_code; });
-    putRuns(ticks, *out.mutable_device_flags(), [](T t) { return t.device.flags; });
-    putRuns(ticks, *out.mutable_faults(), [](T t) { return t.input.faults; });
-    putRuns(ticks, *out.mutable_periods(), [](T t) { return uint64_t(t.input.periods); });
-    putRuns(ticks, *out.mutable_flags(), [](T t) { return flagsOf(t.input); });
     putRuns(ticks, *out.mutable_stale_factor_bits(),
             [](T t) { return std::bit_cast<uint64_t>(t.input.stale_factor); });
-    putRuns(ticks, *out.mutable_tool(), [](T t) { return t.input.decisions.tool; });
-    putRuns(ticks, *out.mutable_accuracy(), [](T t) { return t.input.decisions.accuracy; });
-    putRuns(ticks, *out.mutable_most_samples(), [](T t) { return t.input.decisions.most_samples; });
     putRuns(ticks, *out.mutable_bone_order(), [](T t) { return t.input.decisions.bone_order; });
+}
+
+bool decodeNumbers(const journal::Inputs& in, std::span<JournalTick> ticks) {
+    std::vector<RecordedNumbers> numbers(ticks.size());
+    for (size_t column = 0; column < kNumberColumns.size(); ++column) {
+        const auto set = [&](RecordedNumbers& of_tick, uint64_t value) {
+            of_tick[column] = value;
+            return true;
+        };
+        if (!takeRuns((in.*kNumberColumns[column].second)(), std::span(numbers), set)) return false;
+    }
+    for (size_t n = 0; n < ticks.size(); ++n)
+        if (!takeNumbers(numbers[n], ticks[n].input, ticks[n].device)) return false;
+    return true;
 }
 
 bool decodeRuns(const journal::Inputs& in, std::span<JournalTick> ticks) {
     using T = JournalTick&;
-    const auto narrow = [&](const journal::Runs& runs, auto place) {
-        return takeRuns(runs, ticks, [&](T t, uint64_t v) { return setNarrow(place(t), v); });
+    const auto buttons = [](T t, uint64_t value) {
+        t.buttons = uint32_t(value);
+        return value <= UINT32_MAX;
     };
-    return narrow(in.buttons(), [](T t) -> uint32_t& { return t.buttons; }) &&
-           narrow(in.placements(), [](T t) -> uint32_t& { return t.input.placements; }) &&
-           narrow(in.device_state(), [](T t) -> uint32_t& { return t.device.state; }) &&
-           narrow(in.stop_cause(), [](T t) -> uint32_t& { return t.device.stop_cause; }) &&
-           narrow(in.device_fault_code(), [](T t) -> uint32_t& { return t.device.fault_code; }) &&
-           narrow(in.device_flags(), [](T t) -> uint32_t& { return t.device.flags; }) &&
-           narrow(in.faults(), [](T t) -> uint32_t& { return t.input.faults; }) &&
-           narrow(in.tool(), [](T t) -> uint32_t& { return t.input.decisions.tool; }) &&
-           narrow(in.accuracy(), [](T t) -> uint32_t& { return t.input.decisions.accuracy; }) &&
-           narrow(in.most_samples(), [](T t) -> uint32_t& { return t.input.decisions.most_samples; }) &&
-           takeRuns(in.periods(), ticks, [](T t, uint64_t v) { return setPeriods(t.input, v); }) &&
-           takeRuns(in.flags(), ticks, [](T t, uint64_t v) { return setFlags(t.input, v); }) &&
-           takeRuns(in.stale_factor_bits(), ticks, [](T t, uint64_t v) { return setFactor(t.input, v); }) &&
-           takeRuns(in.bone_order(), ticks, [](T t, uint64_t v) {
-               t.input.decisions.bone_order = v;
-               return true;
-           });
+    const auto factor = [](T t, uint64_t bits) {
+        t.input.stale_factor = std::bit_cast<double>(bits);
+        return t.input.stale_factor >= 0 && t.input.stale_factor <= 1;
+    };
+    const auto order = [](T t, uint64_t value) {
+        t.input.decisions.bone_order = value;
+        return true;
+    };
+    return decodeNumbers(in, ticks) && takeRuns(in.buttons(), ticks, buttons) &&
+           takeRuns(in.stale_factor_bits(), ticks, factor) && takeRuns(in.bone_order(), ticks, order);
 }
 
 void encodeTimes(std::span<const JournalTick> ticks, journal::Inputs& out) {

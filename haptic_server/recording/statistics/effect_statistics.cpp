@@ -3,16 +3,30 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/base/units.h"
-
 namespace bonemill {
 namespace {
 
-void raise(std::optional<double>& largest, double value) noexcept {
-    if (std::isfinite(value)) largest = std::max(largest.value_or(value), value);
+// What a run's figure is before its first tick.
+std::optional<double> startOf(RunSummary summary) noexcept {
+    if (summary == RunSummary::kLargest || summary == RunSummary::kLeast) return std::nullopt;
+    return 0;
 }
-void raise(double& largest, double value) noexcept {
-    if (std::isfinite(value)) largest = std::max(largest, value);
+
+double summedUp(RunSummary summary, std::optional<double> before, double value) noexcept {
+    switch (summary) {
+        case RunSummary::kLargest:
+            return std::max(before.value_or(value), value);
+        case RunSummary::kLargestSize:
+            return std::max(before.value_or(0), std::abs(value));
+        case RunSummary::kLeast:
+            return std::min(before.value_or(value), value);
+        case RunSummary::kSum:
+            return before.value_or(0) + value;
+        case RunSummary::kLast:
+        case RunSummary::kNone:
+            return value;
+    }
+    return value;
 }
 
 std::string nameOf(size_t id, const std::vector<std::string>& materials) {
@@ -23,53 +37,41 @@ std::string nameOf(size_t id, const std::vector<std::string>& materials) {
 
 }  // namespace
 
+EffectStatistics::EffectStatistics(const RecordedEffects& recorded) : recorded_(recorded) {
+    for (size_t n = 0; n < figures_.size(); ++n) figures_[n] = startOf(kEffectFigures[n].run.summary);
+}
+
 void EffectStatistics::add(const EffectRecord& record) noexcept {
-    raise(max_axis_torque_, std::abs(double(record.axis_torque)));
-    raise(max_cutting_power_, double(record.cutting_power));
-    if (std::isfinite(record.removed_energy)) removed_energy_ += double(record.removed_energy);
-    if (recorded_.heat) raise(max_temperature_, double(record.temperature));
-    raise(max_protected_force_, double(record.protected_force));
-    noteDistance(record);
-    necrotic_ = double(record.necrotic_volume);
-    damaged_ = double(record.damaged_volume);
+    const std::optional<double> nearest_before = figure("protected_distance_min_mm");
+    for (size_t n = 0; n < figures_.size(); ++n) {
+        const EffectFigure& figure = kEffectFigures[n];
+        if (!figure.run.key || !figure.isToldBy(recorded_)) continue;
+        const double value = figure.numberIn(record);
+        if (std::isfinite(value)) figures_[n] = summedUp(figure.run.summary, figures_[n], value);
+    }
+    if (figure("protected_distance_min_mm") != nearest_before) nearest_id_ = record.protected_id;
     events_ |= record.events;
-    stalled_ticks_ += record.events & kEventSpindleStalled ? 1 : 0;
     book(kEventNearProtected, record.protected_id, record);
     book(kEventProtectedTouched, record.touched_id, record);
     book(kEventProtectedDamaged, record.damaged_id, record);
-}
-
-void EffectStatistics::noteDistance(const EffectRecord& record) noexcept {
-    const double distance = double(record.protected_distance);
-    if (record.protected_id == 0 || !std::isfinite(distance)) return;
-    if (least_protected_distance_ && *least_protected_distance_ <= distance) return;
-    least_protected_distance_ = distance;
-    nearest_id_ = record.protected_id;
 }
 
 void EffectStatistics::book(uint32_t event, size_t structure, const EffectRecord& record) noexcept {
     events_of_[std::min(structure, events_of_.size() - 1)] |= record.events & event;
 }
 
-std::vector<std::pair<std::string, double>> EffectStatistics::figures() const {
-    std::vector<std::pair<std::string, double>> figures;
-    if (recorded_.burr) {
-        figures.emplace_back("axis_torque_max_nm", max_axis_torque_);
-        figures.emplace_back("cutting_power_max_w", max_cutting_power_);
-        figures.emplace_back("removed_energy_j", removed_energy_);
-        figures.emplace_back("spindle_stalled_ticks", double(stalled_ticks_));
-    }
-    if (recorded_.heat) {
-        if (max_temperature_) figures.emplace_back("temperature_max_c", *max_temperature_);
-        figures.emplace_back("necrotic_mm3", necrotic_ * kPerCubicMillimetre);
-    }
-    if (recorded_.protection) {
-        if (least_protected_distance_)
-            figures.emplace_back("protected_distance_min_mm", *least_protected_distance_ * kPerMillimetre);
-        figures.emplace_back("protected_force_max_n", max_protected_force_);
-        figures.emplace_back("protected_damaged_mm3", damaged_ * kPerCubicMillimetre);
-    }
+std::vector<EffectStatistics::Figure> EffectStatistics::figures() const {
+    std::vector<Figure> figures;
+    for (size_t n = 0; n < figures_.size(); ++n)
+        if (kEffectFigures[n].run.key && figures_[n] && kEffectFigures[n].isToldBy(recorded_))
+            figures.push_back({&kEffectFigures[n], *figures_[n]});
     return figures;
+}
+
+std::optional<double> EffectStatistics::figure(std::string_view key) const noexcept {
+    for (size_t n = 0; n < figures_.size(); ++n)
+        if (kEffectFigures[n].run.key && kEffectFigures[n].run.key == key) return figures_[n];
+    return std::nullopt;
 }
 
 std::vector<std::string> EffectStatistics::warnings(const std::vector<std::string>& materials) const {

@@ -1,15 +1,16 @@
 // Keeps what the effects of a run told, from its tick records: extremes, totals, and what the trainee
 // was warned of.
 //
-// One normal thread calls it; add() allocates nothing. Units are SI but for temperatures, which are in °C.
+// One normal thread calls it; add() allocates nothing. Units are those of the figures' keys.
 #pragma once
 
 #include <array>
 #include <optional>
 #include <string>
-#include <utility>
+#include <string_view>
 #include <vector>
 
+#include "haptic_server/core/effects/effect_figures.h"
 #include "haptic_server/core/telemetry/effect_record.h"
 #include "haptic_server/core/telemetry/recorded_effects.h"
 
@@ -17,40 +18,34 @@ namespace bonemill {
 
 class EffectStatistics {
   public:
-    EffectStatistics() = default;
-    explicit EffectStatistics(const RecordedEffects& recorded) : recorded_(recorded) {}
+    struct Figure {
+        const EffectFigure* is;
+        double value;
+    };
+
+    explicit EffectStatistics(const RecordedEffects& recorded = {});
 
     void add(const EffectRecord& record) noexcept;
 
     const RecordedEffects& recorded() const noexcept { return recorded_; }
-    double removedEnergy() const noexcept { return removed_energy_; }
-    std::optional<double> maxTemperature() const noexcept { return max_temperature_; }
-    double necrotic() const noexcept { return necrotic_; }
-    // It is the distance of the burr's surface, and nothing while no structure was in reach.
-    std::optional<double> leastProtectedDistance() const noexcept { return least_protected_distance_; }
-    // The name of the structure that it is of; empty while there is none.
+    // What is recorded and has a value yet: effects' figures in the order of effects/effect_figures.h.
+    std::vector<Figure> figures() const;
+    // The one with this key; nothing while it has no value.
+    std::optional<double> figure(std::string_view key) const noexcept;
+    // The name of the structure that the least distance is of; empty while there is none.
     std::string nearest(const std::vector<std::string>& materials) const;
-    double maxProtectedForce() const noexcept { return max_protected_force_; }
-    double damaged() const noexcept { return damaged_; }
-
-    // The keys have unit suffixes; only what is recorded is among them.
-    std::vector<std::pair<std::string, double>> figures() const;
     // Each warning comes once, in words; `materials` are the materials' names in the scene's order.
     std::vector<std::string> warnings(const std::vector<std::string>& materials) const;
     // The protected structures that the burr touched, by name.
     std::vector<std::string> touched(const std::vector<std::string>& materials) const;
 
   private:
-    void noteDistance(const EffectRecord& record) noexcept;
     void book(uint32_t event, size_t structure, const EffectRecord& record) noexcept;
 
     RecordedEffects recorded_;
-    double max_axis_torque_ = 0, max_cutting_power_ = 0, removed_energy_ = 0;
-    std::optional<double> max_temperature_, least_protected_distance_;
-    uint32_t nearest_id_ = 0;  // of that distance
-    double necrotic_ = 0, max_protected_force_ = 0, damaged_ = 0;
-    uint32_t events_ = 0;  // that were ever set
-    uint64_t stalled_ticks_ = 0;
+    std::array<std::optional<double>, kEffectFigures.size()> figures_;
+    uint32_t nearest_id_ = 0;                   // of the least distance to a protected structure
+    uint32_t events_ = 0;                       // that were ever set
     std::array<uint32_t, 256> events_of_ = {};  // by material
 };
 

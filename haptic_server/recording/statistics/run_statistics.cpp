@@ -48,6 +48,17 @@ nlohmann::ordered_json changesOf(const DeviceHistory& device) {
     return changes;
 }
 
+// The figures that people read, with words and unit.
+nlohmann::ordered_json wordsOf(const EffectStatistics& effects) {
+    nlohmann::ordered_json words = nlohmann::ordered_json::array();
+    for (const auto& [figure, value] : effects.figures())
+        if (figure->run.words)
+            words.push_back({{"words", figure->run.words},
+                             {"value", figure->shown.factor * value},
+                             {"unit", figure->shown.unit}});
+    return words;
+}
+
 }  // namespace
 
 void RunStatistics::add(const TickRecord& record) {
@@ -140,7 +151,8 @@ std::string RunStatistics::toJson(const std::vector<std::string>& materials) con
         report["device_changes"] = device_.count();
         report["device_states"] = changesOf(device_);
     }
-    for (const auto& [key, value] : effects_.figures()) report[key] = value;
+    for (const auto& [figure, value] : effects_.figures()) report[figure->run.key] = value;
+    if (effects_.recorded().any()) report["effects"] = wordsOf(effects_);
     if (effects_.recorded().any()) report["warnings"] = effects_.warnings(materials);
     if (page_faults_)
         report["page_faults_after_warm_up"] = {{"minor", page_faults_->minor},

@@ -6,7 +6,7 @@
 namespace bonemill {
 
 static_assert(std::endian::native == std::endian::little, "the digest is defined over little-endian bytes");
-static_assert(sizeof(EffectRecord) == 15 * sizeof(float), "no padding goes into the digest");
+static_assert(offsetof(EffectRecord, own) == 15 * sizeof(float), "no padding goes into the digest");
 
 void StateHash::addBytes(const void* data, size_t size) noexcept {
     constexpr uint64_t kFnvPrime = 1099511628211ull;
@@ -21,7 +21,13 @@ void StateHash::addRecord(const TickRecord& record, const RecordedEffects& recor
     add(record.f_hand_W), add(record.t_hand_W);
     add(record.max_penetration), add(record.contacts);
     add(record.removed_voxels), add(record.added_voxels), add(record.buttons), add(record.faults);
-    if (recorded.any()) add(record.effects);
+    addEffects(record.effects, recorded);
+}
+
+void StateHash::addEffects(const EffectRecord& effects, const RecordedEffects& recorded) noexcept {
+    if (recorded.any()) addBytes(&effects, offsetof(EffectRecord, own));
+    for (size_t slot = 0; slot < kMaxOwnFigures; ++slot)
+        if (recorded.own >> slot & 1u) addBytes(&effects.own[slot], sizeof effects.own[slot]);
 }
 
 void StateHash::addVolume(const VoxelVolume& volume) {

@@ -17,6 +17,8 @@ class StateHash {
     // Adds poses, wrench, contacts, removal and faults of a tick, and what its effects told if that is
     // recorded, but not its measured times.
     void addRecord(const TickRecord& record, const RecordedEffects& recorded = {}) noexcept;
+    // Adds what effects told, as far as it is recorded.
+    void addEffects(const EffectRecord& effects, const RecordedEffects& recorded) noexcept;
     // Adds all densities without the border of air.
     void addVolume(const VoxelVolume& volume);
     uint64_t value() const noexcept { return value_; }

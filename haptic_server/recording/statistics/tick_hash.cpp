@@ -18,7 +18,7 @@ void TickHash::add(const TickRecord& r) noexcept {
     bonemill::add(force, r.f_hand_W, r.t_hand_W);
     bonemill::add(contact, r.max_penetration, r.contacts, r.candidates, r.iterations, faults);
     bonemill::add(removal, r.removed_voxels, r.added_voxels, r.removed, r.added);
-    if (recorded_.any()) bonemill::add(effects, r.effects);
+    effects.addEffects(r.effects, recorded_);
 }
 
 std::array<uint64_t, TickHash::kParts> TickHash::parts() const noexcept {

@@ -2,25 +2,26 @@
 
 #include <cerrno>
 #include <charconv>
-#include <cmath>
 #include <cstring>
 #include <span>
 
-#include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/files/require_file.h"
-#include "common/rt/clock.h"
 
 namespace bonemill {
 namespace {
 
-std::string headerOf(const RecordedEffects& recorded) {
-    std::string header = kTraceHeader;
-    if (recorded.burr) header += kBurrColumns;
-    if (recorded.heat) header += kHeatColumns;
-    if (recorded.protection) header += kProtectionColumns;
-    if (recorded.any()) header += kEventColumn;
-    return header + '\n';
+std::string headerOf(const std::vector<TickColumn>& columns) {
+    std::string header;
+    for (const TickColumn& column : columns) header += std::string(column.trace_names) + ',';
+    header.back() = '\n';
+    return header;
+}
+
+std::vector<TickColumn> traceColumns(const RecordedEffects& recorded) {
+    std::vector<TickColumn> columns = tickColumns(recorded);
+    std::erase_if(columns, [](const TickColumn& column) { return !column.trace_names; });
+    return columns;
 }
 
 template <class Number>
@@ -30,7 +31,7 @@ void append(std::string& line, Number value) {
     line.append(text, end).push_back(',');
 }
 
-void appendAll(std::string& line, std::span<const double> values) {
+void append(std::string& line, std::span<const double> values) {
     for (const double value : values) append(line, value);
 }
 
@@ -42,53 +43,19 @@ std::FILE* openForWriting(const std::string& path) {
 }  // namespace
 
 TraceWriter::TraceWriter(const std::string& path, const RecordedEffects& recorded)
-    : recorded_(recorded), file_(openForWriting(path)) {
+    : columns_(traceColumns(recorded)), file_(openForWriting(path)) {
     if (!file_) {
         throw UserError("trace " + path + " cannot be written (" + std::strerror(errno) +
                         "): does its folder exist, and may you write there?");
     }
-    is_good_ = std::fputs(headerOf(recorded).c_str(), file_.get()) >= 0;
-}
-
-void TraceWriter::appendEffects(const EffectRecord& effects) {
-    if (recorded_.burr) {
-        append(line_, double(effects.spin_speed) / kRpm);
-        append(line_, effects.burr_force);
-        append(line_, effects.axis_torque);
-        append(line_, effects.cutting_power);
-        append(line_, effects.removal_power);
-        append(line_, effects.removed_energy);
-    }
-    if (recorded_.heat) {
-        append(line_, effects.temperature);
-        append(line_, double(effects.necrotic_volume) * kPerCubicMillimetre);
-    }
-    if (recorded_.protection) {
-        append(line_, effects.protected_id);
-        append(line_, double(effects.protected_distance) * kPerMillimetre);
-        append(line_, effects.protected_force);
-        append(line_, double(effects.damaged_volume) * kPerCubicMillimetre);
-    }
-    if (recorded_.any()) append(line_, effects.events);
+    is_good_ = std::fputs(headerOf(columns_).c_str(), file_.get()) >= 0;
 }
 
 bool TraceWriter::write(const TickRecord& record) {
     if (!is_good_ || !file_) return false;
     line_.clear();
-    append(line_, record.t_s);
-    appendAll(line_, record.p_WT);
-    appendAll(line_, record.q_WT);
-    appendAll(line_, record.p_WT_device);
-    appendAll(line_, record.q_WT_device);
-    appendAll(line_, record.f_hand_W);
-    appendAll(line_, record.t_hand_W);
-    append(line_, record.contacts);
-    append(line_, record.max_penetration);
-    append(line_, record.removed_voxels);
-    append(line_, record.removed * kPerCubicMillimetre);
-    append(line_, record.faults);
-    append(line_, microsecondsOfNs(double(record.compute_ns)));
-    appendEffects(record.effects);
+    for (const TickColumn& column : columns_)
+        std::visit([&](const auto& value) { append(line_, value); }, column.in(record));
     line_.back() = '\n';
     is_good_ = std::fwrite(line_.data(), 1, line_.size(), file_.get()) == line_.size();
     return is_good_;

@@ -3,97 +3,29 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/assert.h"
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/config/field_unit.h"
+#include "haptic_server/core/effects/effect_figures.h"
 #include "haptic_server/scene/setup/scene_materials.h"
 
 namespace bonemill {
 namespace {
 
-// Each reads what the scene says of one effect, if it lists it.
-
-void read(const scene::Effects& effects, std::optional<SpindleConfig>& config) {
-    constexpr double kTorquePerKrpm = kMillimetre / (1000 * kRpm);  // N·m·s/rad
-    if (!effects.has_spindle()) return;
-    const scene::Spindle& spindle = effects.spindle();
-    config = {.inertia = spindle.inertia_kg_mm2() * kMillimetre * kMillimetre,
-              .max_torque = spindle.max_torque_nmm() * kMillimetre,
-              .droop = spindle.droop_nmm_per_krpm() * kTorquePerKrpm,
-              .drag = spindle.drag_nmm_per_krpm() * kTorquePerKrpm};
-}
-
-void read(const scene::Effects&, std::optional<MaterialStiffnessConfig>&) {}  // The materials say it.
-
-void read(const scene::Effects& effects, std::optional<EnergyRemovalConfig>& config) {
-    if (!effects.has_energy_removal()) return;
-    const scene::EnergyRemoval& removal = effects.energy_removal();
-    config = {.specific_energy = removal.specific_energy_j_per_mm3() * kPerCubicMillimetre,
-              .reference_density = kMaxDensity,
-              .density_exponent = removal.density_exponent(),
-              .threshold_pressure = removal.threshold_pressure_mpa() * kMega,
-              .diamond_energy_factor = removal.diamond_energy_factor()};
-}
-
-void read(const scene::Effects& effects, std::optional<CuttingForceConfig>& config) {
-    if (!effects.has_cutting_force()) return;
-    config = {.slow_speed = effects.cutting_force().slow_speed_mm_per_s() * kMillimetre,
-              .smoothing_time = effects.cutting_force().smoothing_time_ms() * kMillisecond};
-}
-
-void read(const scene::Effects& effects, std::optional<SurfaceFrictionConfig>& config) {
-    if (!effects.has_surface_friction()) return;
-    const scene::SurfaceFriction& friction = effects.surface_friction();
-    config = {.coefficient = friction.coefficient(),
-              .presliding_stiffness = friction.presliding_stiffness_n_per_mm() / kMillimetre};
-}
-
-void read(const scene::Effects& effects, std::optional<BurrVibrationConfig>& config) {
-    if (!effects.has_burr_vibration()) return;
-    config = {.amplitude_per_force = effects.burr_vibration().amplitude_per_force(),
-              .max_amplitude = effects.burr_vibration().max_amplitude_n(),
-              .diamond_factor = effects.burr_vibration().diamond_factor()};
-}
-
-void read(const scene::Effects& effects, std::optional<VirtualFixtureConfig>& config) {
-    if (!effects.has_virtual_fixture()) return;
-    const scene::VirtualFixture& fixture = effects.virtual_fixture();
-    config = {.distance = fixture.distance_mm() * kMillimetre,
-              .stiffness = fixture.stiffness_n_per_mm() / kMillimetre,
-              .max_force = fixture.max_force_n(),
-              .hand_force_scale = fixture.hand_force_scale()};
-}
-
-void read(const scene::Effects& effects, std::optional<TimeRemovalConfig>& config) {
-    if (effects.has_time_removal())
-        config = {.rate = effects.time_removal().rate_density_per_s() * kDensityCountsPerUnit};
-}
-
-void read(const scene::Effects& effects, std::optional<AddMaterialConfig>& config) {
-    if (effects.has_add_material())
-        config = {.rate = effects.add_material().rate_density_per_s() * kDensityCountsPerUnit};
-}
-
-void read(const scene::Effects& effects, std::optional<ThermalConfig>& config) {
-    if (!effects.has_thermal()) return;
-    const scene::Thermal& thermal = effects.thermal();
-    config = {.heat_share = thermal.heat_share(),
-              .irrigation_radius = thermal.irrigation_radius_mm() * kMillimetre,
-              .heat = {.cell = thermal.cell_mm() * kMillimetre,
-                       .conductivity = thermal.conductivity_w_per_m_k(),
-                       .heat_capacity = thermal.heat_capacity_j_per_cm3_k() * kPerCubicCentimetre,
-                       .perfusion = thermal.perfusion_per_s(),
-                       .body_temperature = thermal.body_temperature_c(),
-                       .wet_transfer = thermal.irrigation_w_per_m2_k(),
-                       .irrigation_temperature = thermal.irrigation_temperature_c(),
-                       .dry_transfer = thermal.dry_w_per_m2_k(),
-                       .necrosis_temperature = thermal.necrosis_temperature_c(),
-                       .necrosis_time = thermal.necrosis_time_s()}};
-}
-
-void read(const scene::Effects& effects, std::optional<ProtectedStructuresConfig>& config) {
-    if (effects.has_protected_structures())
-        config = {.warning_distance = effects.protected_structures().warning_distance_mm() * kMillimetre};
+// What the scene says of one effect, if it lists it.
+template <class Config>
+void read(const scene::Effects& effects, std::optional<Config>& config) {
+    const auto* const place = effects.GetDescriptor()->FindFieldByName(Config::kName);
+    if (!place || !effects.GetReflection()->HasField(effects, place)) return;
+    const google::protobuf::Message& message = effects.GetReflection()->GetMessage(effects, place);
+    config.emplace();
+    if constexpr (requires { Config::parameters(); })
+        for (const auto& [name, set] : Config::parameters()) {
+            const auto* const field = message.GetDescriptor()->FindFieldByName(name);
+            BONEMILL_ASSERT(field);
+            set(*config, message.GetReflection()->GetDouble(message, field));
+        }
 }
 
 EffectConfigs configsOf(const scene::Effects& effects) {

@@ -10,7 +10,7 @@ namespace {
 
 enum InputFlag : uint64_t { kRepeated = 1, kStale = 2, kPaused = 4, kRefused = 8 };
 constexpr uint64_t kAllFlags = kRepeated | kStale | kPaused | kRefused;
-constexpr uint64_t kMostPeriods = 1'000'000;
+constexpr uint64_t kMaxPeriods = 10'000;
 constexpr size_t kDigitsPerByte = 2;
 
 }  // namespace
@@ -45,7 +45,7 @@ bool takeNumbers(const std::array<uint64_t, kRecordedNumbers.size()>& numbers, T
     const uint64_t flags = numbers[0];
     const bool are_small = std::ranges::all_of(
         numbers, [](uint64_t number) { return number <= std::numeric_limits<uint32_t>::max(); });
-    if (!are_small || (flags & ~kAllFlags) || numbers[1] < 1 || numbers[1] > kMostPeriods) return false;
+    if (!are_small || (flags & ~kAllFlags) || numbers[1] < 1 || numbers[1] > kMaxPeriods) return false;
     input.is_repeated = flags & kRepeated;
     input.is_stale = flags & kStale;
     input.decisions.is_milling_paused = flags & kPaused;

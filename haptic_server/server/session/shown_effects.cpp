@@ -6,6 +6,7 @@
 #include "common/base/units.h"
 #include "common/config/viewer_effects.h"
 #include "haptic_server/core/effects/burr_probes.h"
+#include "haptic_server/core/effects/effect_figures.h"
 #include "haptic_server/scene/setup/scene_effects.h"
 
 namespace bonemill {
@@ -64,6 +65,19 @@ double warningDistanceOf(const scene::Effects& effects) {
            kMillimetre;
 }
 
+void addLines(std::span<const EffectFigure> figures, const EffectRecord& newest, const RecordedEffects& recorded,
+              topics::EffectState& state) {
+    for (const EffectFigure& figure : figures) {
+        if (!figure.shown.line || !figure.isToldBy(recorded)) continue;
+        const double value = figure.shown.factor * figure.numberIn(newest);
+        if (!std::isfinite(value)) continue;
+        topics::ShownFigure& shown = *state.add_figures();
+        shown.set_words(figure.shown.line);
+        shown.set_value(value);
+        shown.set_unit(figure.shown.unit);
+    }
+}
+
 ShownEffects::ShownEffects(const scene::Effects& effects)
     : recorded_(recordedEffectsOf(effects)), is_seen_(isAnyListed(viewerEffectsOf(effects))) {}
 
@@ -82,6 +96,7 @@ topics::EffectState ShownEffects::at(const EffectRecord& newest, const EventSum&
         state.set_temperature_c(finite(newest.temperature));
         state.set_necrotic_mm3(finite(newest.necrotic_volume) * kPerCubicMillimetre);
     }
+    addLines(kEffectFigures, newest, recorded_, state);
     if (!recorded_.protection) return state;
     state.set_protected_force_n(finite(newest.protected_force));
     state.set_damaged_mm3(finite(newest.damaged_volume) * kPerCubicMillimetre);
@@ -109,15 +124,15 @@ void ShownEffects::describe(const EffectStatistics& statistics, const std::vecto
 void ShownEffects::fill(const EffectStatistics& statistics, const std::vector<std::string>& materials,
                         topics::Training& training) const {
     if (recorded_.protection) {
-        training.set_damaged_mm3(statistics.damaged() * kPerCubicMillimetre);
-        training.set_max_protected_force_n(statistics.maxProtectedForce());
-        if (const auto distance = statistics.leastProtectedDistance())
-            training.set_least_distance_mm(*distance * kPerMillimetre);
+        training.set_damaged_mm3(statistics.figure("protected_damaged_mm3").value());
+        training.set_max_protected_force_n(statistics.figure("protected_force_max_n").value());
+        if (const auto distance = statistics.figure("protected_distance_min_mm"))
+            training.set_least_distance_mm(*distance);
         training.set_nearest_structure(statistics.nearest(materials));
     }
     if (recorded_.heat) {
-        training.set_necrotic_mm3(statistics.necrotic() * kPerCubicMillimetre);
-        if (const auto temperature = statistics.maxTemperature())
+        training.set_necrotic_mm3(statistics.figure("necrotic_mm3").value());
+        if (const auto temperature = statistics.figure("temperature_max_c"))
             training.set_max_temperature_c(*temperature);
     }
     std::vector<std::string> warnings = statistics.warnings(materials);

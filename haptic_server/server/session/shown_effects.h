@@ -2,9 +2,11 @@
 // publisher thread; allocates.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
+#include "haptic_server/core/telemetry/effect_figure.h"
 #include "haptic_server/core/telemetry/recorded_effects.h"
 #include "haptic_server/core/tool/burr.h"
 #include "haptic_server/recording/statistics/effect_statistics.h"
@@ -24,6 +26,10 @@ void describeBurr(const scene::Scene& scene, const Burr& burr, topics::SceneInfo
 // The trainee is warned at this distance (m) of a structure: what the scene says, or else what it could have
 // said.
 double warningDistanceOf(const scene::Effects& effects);
+
+// Adds the figures that are recorded, mean something and have a line in viewers.
+void addLines(std::span<const EffectFigure> figures, const EffectRecord& newest, const RecordedEffects& recorded,
+              topics::EffectState& state);
 
 // This makes the effects part of the tool states of a session.
 class ShownEffects {

@@ -59,6 +59,9 @@ std::vector<HudRow> effectTaskRows(const EffectState& state, const topics::Scene
     if (state.has_temperature_c()) rows.push_back(temperatureRow(state.temperature_c(), events));
     if (state.has_necrotic_mm3())
         rows.push_back({"Necrosis", volumeText(state.necrotic_mm3()), toneOfVolume(state.necrotic_mm3())});
+    for (const topics::ShownFigure& figure : state.figures())
+        rows.push_back({shortenedText(figure.words(), kLongestStructureName),
+                        readableText(figure.value(), (" " + figure.unit()).c_str())});
     return rows;
 }
 

@@ -89,6 +89,7 @@ function effectsOf(state: wire.EffectState): EffectView {
     damagedMm3: state.damagedMm3,
     protectedId: state.protectedId,
     eventId: state.eventId,
+    figures: state.figures.map(({ words, value, unit }) => ({ words, value, unit })),
   };
 }
 

@@ -60,6 +60,7 @@ export interface EffectView {
   damagedMm3?: number;
   protectedId: number;
   eventId: number;
+  figures: { words: string; value: number; unit: string }[];
 }
 
 export interface ToolView {

@@ -84,6 +84,8 @@ function effectRows(effects: EffectView, scene: SceneView | undefined, events: n
       tone: events & Event.TooHot ? 'alarm' : temperatureC >= kWarm ? 'warning' : 'plain',
     });
   if (necroticMm3 !== undefined) volume('Necrosis', necroticMm3);
+  for (const { words, value, unit } of effects.figures)
+    rows.push({ label: shortened(words, 16), value: readableText(value, ` ${unit}`) });
   return rows;
 }
 

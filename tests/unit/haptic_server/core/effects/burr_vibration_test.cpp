@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/burr_vibration.h"
+#include "haptic_server/core/effects/burr_vibration/burr_vibration.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/contact_groups.h"
+#include "haptic_server/core/effects/surface_friction/contact_groups.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/cutting_force.h"
+#include "haptic_server/core/effects/cutting_force/cutting_force.h"
 
 #include <gtest/gtest.h>
 

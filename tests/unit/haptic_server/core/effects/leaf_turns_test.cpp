@@ -1,5 +1,5 @@
 // Leaves share the ticks evenly.
-#include "haptic_server/core/effects/leaf_turns.h"
+#include "haptic_server/core/effects/energy_removal/leaf_turns.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/material_stiffness.h"
+#include "haptic_server/core/effects/material_stiffness/material_stiffness.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/protected_structures.h"
+#include "haptic_server/core/effects/protected_structures/protected_structures.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/spindle.h"
+#include "haptic_server/core/effects/spindle/spindle.h"
 
 #include <gtest/gtest.h>
 

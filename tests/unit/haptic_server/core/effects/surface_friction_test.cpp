@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/surface_friction.h"
+#include "haptic_server/core/effects/surface_friction/surface_friction.h"
 
 #include <gtest/gtest.h>
 

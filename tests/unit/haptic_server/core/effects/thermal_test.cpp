@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/thermal.h"
+#include "haptic_server/core/effects/thermal/thermal.h"
 
 #include <gtest/gtest.h>
 

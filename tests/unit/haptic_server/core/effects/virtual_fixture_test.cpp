@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/virtual_fixture.h"
+#include "haptic_server/core/effects/virtual_fixture/virtual_fixture.h"
 
 #include <gtest/gtest.h>
 

@@ -11,8 +11,9 @@ namespace {
 constexpr RecordedEffects kAll{.burr = true, .heat = true, .protection = true};
 
 std::map<std::string, double> figuresOf(const EffectStatistics& statistics) {
-    const auto figures = statistics.figures();
-    return {figures.begin(), figures.end()};
+    std::map<std::string, double> figures;
+    for (const auto& [figure, value] : statistics.figures()) figures[figure->run.key] = value;
+    return figures;
 }
 
 EffectRecord nearNerve(float distance, uint32_t events) {

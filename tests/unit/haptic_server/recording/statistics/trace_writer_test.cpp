@@ -16,6 +16,11 @@
 namespace bonemill {
 namespace {
 
+constexpr char kHeader[] =
+    "t_s,spo_px_m,spo_py_m,spo_pz_m,spo_qw,spo_qx,spo_qy,spo_qz,dev_px_m,dev_py_m,dev_pz_m,dev_qw,dev_qx,"
+    "dev_qy,dev_qz,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,contacts,max_penetration_m,removed_voxels,removed_mm3,"
+    "faults,tick_us";
+
 TickRecord awkwardRecord() {
     TickRecord record{};
     record.t_s = 1.0 / 3.0;
@@ -57,12 +62,7 @@ std::vector<double> expectedCells(const TickRecord& r) {
 TEST(TraceWriter, headerIsTheDocumentedOne) {
     const TemporaryFile file("header.csv");
     EXPECT_TRUE(TraceWriter(file.path()).close());
-    EXPECT_EQ(
-        file.content(),
-        "t_s,spo_px_m,spo_py_m,spo_pz_m,spo_qw,spo_qx,spo_qy,spo_qz,dev_px_m,dev_py_m,dev_pz_m,dev_qw,dev_qx,"
-        "dev_qy,dev_qz,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,contacts,max_penetration_m,removed_voxels,removed_"
-        "mm3,"
-        "faults,tick_us\n");
+    EXPECT_EQ(file.content(), std::string(kHeader) + "\n");
 }
 
 TEST(TraceWriter, everyNumberRoundTrips) {
@@ -121,7 +121,7 @@ TEST(TraceWriter, effectsAddTheirColumns) {
         {"events", kEventTooHot}};
     const std::vector<std::string> names = cellsOf(header), cells = cellsOf(line);
     ASSERT_EQ(names.size(), cells.size());
-    const size_t without = cellsOf(kTraceHeader).size();
+    const size_t without = cellsOf(kHeader).size();
     ASSERT_EQ(names.size(), without + expected.size());
     for (size_t i = 0; i < expected.size(); ++i) {
         EXPECT_EQ(names[without + i], expected[i].first);
@@ -133,7 +133,7 @@ TEST(TraceWriter, effectsAddTheirColumns) {
 TEST(TraceWriter, onlyListedEffectsHaveColumns) {
     const TemporaryFile file("heat.csv");
     EXPECT_TRUE(TraceWriter(file.path(), {.heat = true}).close());
-    EXPECT_EQ(file.content(), std::string(kTraceHeader) + ",temperature_c,necrotic_mm3,events\n");
+    EXPECT_EQ(file.content(), std::string(kHeader) + ",temperature_c,necrotic_mm3,events\n");
 }
 
 TEST(TraceWriter, unwritablePathIsAUserError) {

@@ -1,7 +1,11 @@
 // Reads what a scene says of a driven burr, in SI.
 #include <gtest/gtest.h>
 
+#include <set>
+#include <string>
+
 #include "common/base/user_error.h"
+#include "haptic_server/core/effects/effect_figures.h"
 #include "haptic_server/scene/setup/scene_effects.h"
 #include "tests/support/typical_effects.h"
 
@@ -34,6 +38,21 @@ TEST(SceneEffects, DefaultsAreWhatTheEffectsAreTestedWith) {
     EXPECT_DOUBLE_EQ(configs.burr_vibration->amplitude_per_force, test::kBurrVibration.amplitude_per_force);
     EXPECT_DOUBLE_EQ(configs.burr_vibration->max_amplitude, test::kBurrVibration.max_amplitude);
     EXPECT_DOUBLE_EQ(configs.burr_vibration->diamond_factor, test::kBurrVibration.diamond_factor);
+}
+
+// A field that nothing reads, or a parameter without its field, would be a silent one.
+TEST(SceneEffects, EveryFieldOfAnEffectIsReadByItsDeclaration) {
+    forEachConfig([]<class Config>() {
+        const auto* const place = scene::Effects::descriptor()->FindFieldByName(Config::kName);
+        std::set<std::string> fields, read;
+        if (place)
+            for (int n = 0; n < place->message_type()->field_count(); ++n)
+                fields.insert(place->message_type()->field(n)->name());
+        fields.erase("reference_value");  // mapRawValues() reads it
+        if constexpr (requires { Config::parameters(); })
+            for (const auto& parameter : Config::parameters()) read.insert(parameter.field);
+        EXPECT_EQ(fields, read) << Config::kName;
+    });
 }
 
 TEST(SceneEffects, EnergyOfBoneRisesWithItsDensityUnlessTheSceneSaysOtherwise) {

@@ -79,11 +79,11 @@ TEST_F(RecorderTest, AnAttemptCountsFromWhereItsBoneIsPutBack) {
     push(9, 3, 0), push(9, 0, 1);
     recorder.drain();
     EXPECT_EQ(recorder.attempt().max_force, 0);
-    EXPECT_EQ(recorder.attempt().effects.damaged(), 0);
+    EXPECT_EQ(recorder.attempt().effects.figure("protected_damaged_mm3"), 0);
     push(2, 0, 2), push(1, 1, 2);
     recorder.drain();
     EXPECT_EQ(recorder.attempt().max_force, 2);
-    EXPECT_EQ(recorder.attempt().effects.damaged(), 1);
+    EXPECT_EQ(recorder.attempt().effects.figure("protected_damaged_mm3"), 1e9);
 }
 
 // What is measured of an attempt begins with its bone and ends when it is taken.

@@ -75,7 +75,7 @@ TEST(ShownEffects, ASceneWithoutThemShowsNothing) {
     describeToViewers(sceneOf("effects { time_removal {} spindle {} }"), info);
     EXPECT_EQ(info.ByteSizeLong(), 0u);
     topics::Status status;
-    ShownEffects(effectsOf("energy_removal {} spindle {}")).describe({}, {}, status);
+    ShownEffects(effectsOf("energy_removal {} spindle {}")).describe(EffectStatistics(), {}, status);
     EXPECT_EQ(status.ByteSizeLong(), 0u);
 }
 
@@ -139,6 +139,27 @@ TEST(ShownEffects, NoNumberIsShownThatIsNone) {
     EXPECT_EQ(state.axis_torque_nm(), 0);
     EXPECT_FALSE(state.has_protected_distance_m());
     EXPECT_EQ(state.protected_id(), 0u);
+}
+
+TEST(ShownEffects, FiguresThatHaveALineAreShownInWords) {
+    constexpr EffectFigure kFigures[] = {
+        {.name = "waxed_mm2",
+         .shown = {.unit = "mm\u00b2", .factor = 10, .line = "Waxed"},
+         .told_with = {.own = 2},
+         .slot = 1},
+        {.name = "other", .shown = {.unit = "N", .line = "Other"}, .told_with = {.own = 1}, .slot = 0},
+        {.name = "of_no_line", .told_with = {.own = 2}, .slot = 1}};
+    EffectRecord record{};
+    record.own[1] = 0.5f;
+    topics::EffectState state;
+    addLines(kFigures, record, {.own = 2}, state);
+    ASSERT_EQ(state.figures_size(), 1);
+    EXPECT_EQ(state.figures(0).words(), "Waxed");
+    EXPECT_EQ(state.figures(0).value(), 5);
+    EXPECT_EQ(state.figures(0).unit(), "mm\u00b2");
+    record.own[1] = std::nanf("");
+    addLines(kFigures, record, {.own = 2}, state);
+    EXPECT_EQ(state.figures_size(), 1);
 }
 
 TEST(ShownEffects, TheStatusSaysHowCarefulTheSessionWas) {
@@ -231,6 +252,15 @@ TEST(StateHash, EffectsCountOnlyWhereTheyAreRecorded) {
     EXPECT_EQ(hashOf(1, {}), hashOf(2, {}));
     EXPECT_NE(hashOf(1, {.burr = true}), hashOf(2, {.burr = true}));
     EXPECT_NE(hashOf(1, {.burr = true}), hashOf(1, {}));
+    const auto hashOfOwn = [](float figure, const RecordedEffects& recorded) {
+        TickRecord record{};
+        record.effects.own[1] = figure;
+        StateHash hash;
+        hash.addRecord(record, recorded);
+        return hash.value();
+    };
+    EXPECT_EQ(hashOfOwn(1, {.burr = true, .own = 1}), hashOfOwn(2, {.burr = true, .own = 1}));
+    EXPECT_NE(hashOfOwn(1, {.own = 2}), hashOfOwn(2, {.own = 2}));
 }
 
 }  // namespace

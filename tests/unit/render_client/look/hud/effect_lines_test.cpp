@@ -53,6 +53,18 @@ TEST(EffectText, FiguresHaveUnits) {
     EXPECT_EQ(test::findRow(rows, "Damaged")->tone, HudTone::kAlarm);
 }
 
+TEST(EffectText, AFigureOfAnyEffectIsALine) {
+    EffectState state;
+    topics::ShownFigure& figure = *state.add_figures();
+    figure.set_words("Waxed");
+    figure.set_value(12.34);
+    figure.set_unit("mm\u00b2");
+    const std::vector<HudRow> rows = effectTaskRows(state, nullptr, 0);
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_EQ(rows[0].label, "Waxed");
+    EXPECT_EQ(rows[0].value, "12.3 mm\u00b2");
+}
+
 TEST(EffectText, NothingHasNoSign) {
     EffectState state;
     state.set_axis_torque_nm(-4e-6);

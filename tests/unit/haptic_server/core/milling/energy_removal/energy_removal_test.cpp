@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/energy_removal.h"
+#include "haptic_server/core/effects/energy_removal/energy_removal.h"
 
 #include <gtest/gtest.h>
 

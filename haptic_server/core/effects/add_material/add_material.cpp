@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/add_material.h"
+#include "haptic_server/core/effects/add_material/add_material.h"
 
 #include <algorithm>
 
@@ -61,6 +61,10 @@ void AddMaterial::mill(EffectTick& tick, BoneModel& bone, MillingResult& result)
     if (tick.is_add_wanted)
         deposit_.owe(bone.volume, {tick.X_VT_start.position, tick.X_VT.position, longest_way_}, radius);
     if (deposit_.isOwing()) result.include(deposit_.lay(bone, placeOf(tick), tick.dt, tick.is_add_wanted));
+}
+
+std::unique_ptr<HapticEffect> AddMaterialConfig::make(const EffectNeeds& needs) const {
+    return std::make_unique<AddMaterial>(*this, needs.bone, needs.room);
 }
 
 }  // namespace bonemill

@@ -14,9 +14,9 @@
 // IEEE Trans. Automatic Control 2002; here it has an energy. It is RT-safe, for the tick thread only.
 #pragma once
 
-#include "haptic_server/core/effects/contact_groups.h"
 #include "haptic_server/core/effects/effect_configs.h"
 #include "haptic_server/core/effects/haptic_effect.h"
+#include "haptic_server/core/effects/surface_friction/contact_groups.h"
 
 namespace bonemill {
 

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "haptic_server/core/effects/heat_config.h"
+#include "haptic_server/core/effects/thermal/heat_config.h"
 #include "haptic_server/core/volume/voxel_volume.h"
 
 namespace bonemill {

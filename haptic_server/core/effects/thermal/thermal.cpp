@@ -1,9 +1,10 @@
-#include "haptic_server/core/effects/thermal.h"
+#include "haptic_server/core/effects/thermal/thermal.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "haptic_server/core/effects/burr_speed.h"
+#include "haptic_server/core/effects/make_effects.h"
 
 namespace bonemill {
 namespace {
@@ -46,6 +47,10 @@ void Thermal::finish(EffectTick& tick) noexcept {
     record.temperature = float(hottest);
     record.necrotic_volume = float(heat_.necroticVolume());
     if (hottest >= config_.heat.necrosis_temperature) record.events |= kEventTooHot;
+}
+
+std::unique_ptr<HapticEffect> ThermalConfig::make(const EffectNeeds& needs) const {
+    return std::make_unique<Thermal>(*this, needs.bone, needs.room.dt);
 }
 
 }  // namespace bonemill

@@ -1,9 +1,10 @@
-#include "haptic_server/core/effects/protected_structures.h"
+#include "haptic_server/core/effects/protected_structures/protected_structures.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "haptic_server/core/effects/make_effects.h"
 #include "haptic_server/core/effects/voxel_inside.h"
 
 namespace bonemill {
@@ -134,6 +135,10 @@ bool ProtectedStructures::isDestroyed(const EffectTick& tick, const Pose& X_TV, 
         return true;
     const Eigen::Vector3d p_V = volume.spacing().cwiseProduct(voxel.cast<double>());
     return isCutting(tick) && tick.tool->burr.signedDistance(X_TV * p_V) < 0;
+}
+
+std::unique_ptr<HapticEffect> ProtectedStructuresConfig::make(const EffectNeeds& needs) const {
+    return std::make_unique<ProtectedStructures>(*this, needs.all, needs.bone);
 }
 
 }  // namespace bonemill

@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/time_removal.h"
+#include "haptic_server/core/effects/time_removal/time_removal.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,6 +72,10 @@ void TimeRemoval::mill(EffectTick& tick, BoneModel& bone, MillingResult& result)
     const bool is_swept = tick.shape == MillingShape::kSubVoxel;
     const BurrWay way(tick.X_VT_start.position, tick.X_VT.position, is_swept ? longest_way_ : 0);
     result.include(milling_.apply(bone.volume, bone.lattice, bone.shell, way, -1, tick.dt));
+}
+
+std::unique_ptr<HapticEffect> TimeRemovalConfig::make(const EffectNeeds& needs) const {
+    return std::make_unique<TimeRemoval>(*this, needs.bone, needs.room);
 }
 
 }  // namespace bonemill

@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/heat_grid.h"
+#include "haptic_server/core/effects/thermal/heat_grid.h"
 
 #include <algorithm>
 #include <array>

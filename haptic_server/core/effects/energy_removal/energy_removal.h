@@ -34,8 +34,8 @@
 #include <climits>
 
 #include "haptic_server/core/effects/effect_configs.h"
+#include "haptic_server/core/effects/energy_removal/leaf_turns.h"
 #include "haptic_server/core/effects/haptic_effect.h"
-#include "haptic_server/core/effects/leaf_turns.h"
 #include "haptic_server/core/milling/surface_shift.h"
 
 namespace bonemill {

@@ -1,7 +1,8 @@
-#include "haptic_server/core/effects/material_stiffness.h"
+#include "haptic_server/core/effects/material_stiffness/material_stiffness.h"
 
 #include <algorithm>
 
+#include "haptic_server/core/effects/make_effects.h"
 #include "haptic_server/core/effects/voxel_inside.h"
 
 namespace bonemill {
@@ -24,6 +25,11 @@ double MaterialStiffness::scale(const EffectTick&, Candidates& candidates, const
         largest = std::max(largest, factor);
     }
     return double(largest);
+}
+
+std::unique_ptr<HapticEffect> MaterialStiffnessConfig::make(const EffectNeeds& needs) const {
+    return std::make_unique<MaterialStiffness>(needs.all.properties, needs.all.materials,
+                                               needs.bone.volume.spacing());
 }
 
 }  // namespace bonemill

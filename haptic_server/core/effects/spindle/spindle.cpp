@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/spindle.h"
+#include "haptic_server/core/effects/spindle/spindle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,6 +61,10 @@ void Spindle::watch(double wanted, double dt) noexcept {
 void Spindle::finish(EffectTick& tick) noexcept {
     if (isStalled()) tick.record.events |= kEventSpindleStalled;
     tick.record.axis_torque = float(std::abs(held_));
+}
+
+std::unique_ptr<HapticEffect> SpindleConfig::make(const EffectNeeds&) const {
+    return std::make_unique<Spindle>(*this);
 }
 
 }  // namespace bonemill

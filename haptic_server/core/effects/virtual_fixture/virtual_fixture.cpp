@@ -1,9 +1,10 @@
-#include "haptic_server/core/effects/virtual_fixture.h"
+#include "haptic_server/core/effects/virtual_fixture/virtual_fixture.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/math/pinned_math.h"
+#include "haptic_server/core/effects/make_effects.h"
 
 namespace bonemill {
 namespace {
@@ -72,6 +73,10 @@ void VirtualFixture::addToHand(const EffectTick& tick, Wrench& wrench_V) noexcep
         scale_ = std::min(1.0, scale_ + step);
     wrench_V.force *= scale_;
     wrench_V.torque *= scale_;
+}
+
+std::unique_ptr<HapticEffect> VirtualFixtureConfig::make(const EffectNeeds& needs) const {
+    return std::make_unique<VirtualFixture>(*this, needs.all.protected_field);
 }
 
 }  // namespace bonemill

@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/surface_friction.h"
+#include "haptic_server/core/effects/surface_friction/surface_friction.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -124,6 +124,10 @@ void SurfaceFriction::finish(EffectTick& tick) noexcept {
     forgetFreeMotion();
     giveWay();
     stored_ = at(stretch_).energy;
+}
+
+std::unique_ptr<HapticEffect> SurfaceFrictionConfig::make(const EffectNeeds&) const {
+    return std::make_unique<SurfaceFriction>(*this);
 }
 
 }  // namespace bonemill

@@ -8,7 +8,7 @@
 #include "haptic_server/core/effects/burr_probes.h"
 #include "haptic_server/core/effects/effect_configs.h"
 #include "haptic_server/core/effects/haptic_effect.h"
-#include "haptic_server/core/effects/place_marks.h"
+#include "haptic_server/core/effects/protected_structures/place_marks.h"
 
 namespace bonemill {
 

@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/leaf_turns.h"
+#include "haptic_server/core/effects/energy_removal/leaf_turns.h"
 
 #include <algorithm>
 #include <span>

@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/cutting_force.h"
+#include "haptic_server/core/effects/cutting_force/cutting_force.h"
 
 #include <cmath>
 
@@ -99,6 +99,10 @@ void CuttingForce::finish(EffectTick& tick) noexcept {
     const double against = (tick.spin_speed != 0 ? tick.spin_speed : tick.axis_load) < 0 ? 1 : -1;
     const EnergyTerm at_end = energy(tick, tick.X_VT);
     tick.record.axis_torque = float(against * tick.axis().dot(at_end.wrench.torque));
+}
+
+std::unique_ptr<HapticEffect> CuttingForceConfig::make(const EffectNeeds&) const {
+    return std::make_unique<CuttingForce>(*this);
 }
 
 }  // namespace bonemill

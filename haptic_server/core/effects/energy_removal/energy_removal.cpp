@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/energy_removal.h"
+#include "haptic_server/core/effects/energy_removal/energy_removal.h"
 
 #include <algorithm>
 #include <cmath>
@@ -184,6 +184,10 @@ void EnergyRemoval::mill(EffectTick& tick, BoneModel& bone, MillingResult& resul
 void EnergyRemoval::finish(EffectTick& tick) noexcept {
     tick.record.removal_power = float(removal_power_);
     tick.record.removed_energy = float(removed_energy_);
+}
+
+std::unique_ptr<HapticEffect> EnergyRemovalConfig::make(const EffectNeeds& needs) const {
+    return std::make_unique<EnergyRemoval>(*this, needs.all, needs.bone, needs.room);
 }
 
 }  // namespace bonemill

@@ -1,4 +1,4 @@
-#include "haptic_server/core/effects/burr_vibration.h"
+#include "haptic_server/core/effects/burr_vibration/burr_vibration.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,6 +36,10 @@ void BurrVibration::addToHand(const EffectTick& tick, Wrench& wrench_V) noexcept
     if (amplitude_ == 0) return;
     wrench_V.force +=
         amplitude_ * pinned::sin(phase_) * (tick.X_VT_start.rotation * Eigen::Vector3d::UnitX());
+}
+
+std::unique_ptr<HapticEffect> BurrVibrationConfig::make(const EffectNeeds&) const {
+    return std::make_unique<BurrVibration>(*this);
 }
 
 }  // namespace bonemill

@@ -5,7 +5,7 @@
 
 #include "haptic_server/core/effects/effect_configs.h"
 #include "haptic_server/core/effects/haptic_effect.h"
-#include "haptic_server/core/effects/heat_grid.h"
+#include "haptic_server/core/effects/thermal/heat_grid.h"
 
 namespace bonemill {
 

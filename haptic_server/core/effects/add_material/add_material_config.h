@@ -1,0 +1,22 @@
+// Free forming, as a scene asks for it (add_material.h).
+#pragma once
+
+#include "haptic_server/core/effects/effect_declaration.h"
+#include "haptic_server/core/volume/voxel_volume.h"
+
+namespace bonemill {
+
+struct AddMaterialConfig {
+    static constexpr const char* kName = "add_material";
+    static constexpr auto parameters() {
+        using C = AddMaterialConfig;
+        return std::to_array<EffectParameter<C>>({
+            {"rate_density_per_s", [](C& c, double v) { c.rate = v * kDensityCountsPerUnit; }},
+        });
+    }
+    std::unique_ptr<HapticEffect> make(const EffectNeeds& needs) const;
+
+    double rate;  // density counts/s
+};
+
+}  // namespace bonemill

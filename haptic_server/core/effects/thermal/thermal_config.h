@@ -1,0 +1,50 @@
+// Heat of cutting in the bone, as a scene asks for it and as ticks tell of it (thermal.h).
+#pragma once
+
+#include "haptic_server/core/effects/effect_declaration.h"
+#include "haptic_server/core/effects/thermal/heat_config.h"
+
+namespace bonemill {
+
+struct ThermalConfig {
+    static constexpr const char* kName = "thermal";
+    static constexpr RecordedEffects kRecords{.burr = true, .heat = true};
+    static constexpr EffectFigure kFigures[] = {
+        {"temperature_c",
+         "degC",
+         "of the hottest bone",
+         [](const EffectRecord& r) -> ColumnValue { return r.temperature; },
+         {RunSummary::kLargest, "temperature_max_c", "hottest bone"},
+         {"\u00b0C"}},
+        {"necrotic_mm3",
+         "mm^3",
+         "dead bone in all",
+         [](const EffectRecord& r) -> ColumnValue { return double(r.necrotic_volume) * kPerCubicMillimetre; },
+         {RunSummary::kLast, "necrotic_mm3"}},
+    };
+    static constexpr auto parameters() {
+        using C = ThermalConfig;
+        return std::to_array<EffectParameter<C>>({
+            {"heat_share", [](C& c, double v) { c.heat_share = v; }},
+            {"irrigation_radius_mm", [](C& c, double v) { c.irrigation_radius = v * kMillimetre; }},
+            {"cell_mm", [](C& c, double v) { c.heat.cell = v * kMillimetre; }},
+            {"conductivity_w_per_m_k", [](C& c, double v) { c.heat.conductivity = v; }},
+            {"heat_capacity_j_per_cm3_k",
+             [](C& c, double v) { c.heat.heat_capacity = v * kPerCubicCentimetre; }},
+            {"perfusion_per_s", [](C& c, double v) { c.heat.perfusion = v; }},
+            {"body_temperature_c", [](C& c, double v) { c.heat.body_temperature = v; }},
+            {"irrigation_w_per_m2_k", [](C& c, double v) { c.heat.wet_transfer = v; }},
+            {"irrigation_temperature_c", [](C& c, double v) { c.heat.irrigation_temperature = v; }},
+            {"dry_w_per_m2_k", [](C& c, double v) { c.heat.dry_transfer = v; }},
+            {"necrosis_temperature_c", [](C& c, double v) { c.heat.necrosis_temperature = v; }},
+            {"necrosis_time_s", [](C& c, double v) { c.heat.necrosis_time = v; }},
+        });
+    }
+    std::unique_ptr<HapticEffect> make(const EffectNeeds& needs) const;
+
+    double heat_share;         // of the cutting power
+    double irrigation_radius;  // m
+    HeatConfig heat;
+};
+
+}  // namespace bonemill
