@@ -136,7 +136,7 @@ class LimitedAttempts : public TaskWatching {
         topics::Command order;
         order.set_start_attempt(trainee);
         const auto answer = attempts.start(order);
-        return answer ? *answer : "later";
+        return answer ? answer->text : "later";
     }
 
     SpscRing<TickRecord> ring_;
