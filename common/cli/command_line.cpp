@@ -28,10 +28,10 @@ void addLogLevelOption(CLI::App& app, std::string& log_level) {
 }
 
 void addRealtimeOptions(CLI::App& app, const std::string& loop, bool& is_strict, int& core) {
-    constexpr int kMostCores = 4096;
+    constexpr int kMaxCores = 4096;
     app.add_flag("--strict-rt", is_strict, "Refuse to go on without real-time scheduling and locked memory");
     app.add_option("--rt-core", core, "Processor core for " + loop + " (-1: any)")
-        ->check(CLI::Range(-1, kMostCores - 1))
+        ->check(CLI::Range(-1, kMaxCores - 1))
         ->capture_default_str();
 }
 

@@ -5,7 +5,7 @@
 
 namespace bonemill {
 
-inline constexpr double kMostSeconds = 1e7;  // 115 days, which still fits into 64 bits of nanoseconds
+inline constexpr double kMaxSeconds = 1e7;  // 115 days, which still fits into 64 bits of nanoseconds
 
 inline CLI::Validator within(double low, double high) {
     return {[=](std::string& text) -> std::string {

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMostHeaderBytes = size_t(1) << 20;
-constexpr size_t kMostFiles = 10'000;
+constexpr size_t kMaxFiles = 10'000;
 
 std::string withoutBlanks(const std::string& text) {
     std::string name;
@@ -45,7 +45,7 @@ std::vector<std::string> namesOfPattern(const std::string& text) {
     const size_t width = flags.empty() ? 0 : std::stoul(flags);
     const char filling = flags.starts_with('0') ? '0' : ' ';
     std::vector<std::string> names;
-    for (int64_t n = first; (step > 0 ? n <= last : n >= last) && names.size() <= kMostFiles; n += step) {
+    for (int64_t n = first; (step > 0 ? n <= last : n >= last) && names.size() <= kMaxFiles; n += step) {
         std::string number = std::to_string(n);
         number.insert(0, width > number.size() ? width - number.size() : 0, filling);
         names.push_back(pattern.substr(0, percent) + number + pattern.substr(letter + 1));
@@ -59,7 +59,7 @@ std::vector<std::string> namesOf(const std::string& value, std::istream& rest) {
     if (value.find('%') != std::string::npos) return namesOfPattern(value);
     if (!value.starts_with("LIST")) return {value};
     std::vector<std::string> names;
-    for (std::string line; std::getline(rest, line) && names.size() <= kMostFiles;)
+    for (std::string line; std::getline(rest, line) && names.size() <= kMaxFiles;)
         if (!trimmed(line).empty()) names.push_back(trimmed(line));
     return names;
 }
@@ -98,8 +98,8 @@ std::vector<fs::path> detachedDataOf(const fs::path& volume) {
     std::vector<fs::path> files;
     for (const std::string& name : namesInHeader(header))
         files.push_back((volume.parent_path() / name).lexically_normal());
-    if (files.size() > kMostFiles)
-        throw UserError(volume.string() + ": names more than " + std::to_string(kMostFiles) +
+    if (files.size() > kMaxFiles)
+        throw UserError(volume.string() + ": names more than " + std::to_string(kMaxFiles) +
                         " files of voxels; put them into one");
     return files;
 }

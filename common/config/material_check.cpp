@@ -7,7 +7,7 @@
 namespace bonemill {
 namespace {
 
-constexpr int kMostMaterials = 255;
+constexpr int kMaxMaterials = 255;
 
 std::string pathOf(int index) {
     return "material[" + std::to_string(index) + "]";
@@ -50,9 +50,9 @@ void checkProtection(const scene::Scene& scene, const RefuseField& refuse) {
 }  // namespace
 
 void checkMaterials(const scene::Scene& scene, const RefuseField& refuse) {
-    if (scene.material_size() > kMostMaterials)
-        refuse(pathOf(kMostMaterials),
-               "is one material too many: a scene has at most " + std::to_string(kMostMaterials));
+    if (scene.material_size() > kMaxMaterials)
+        refuse(pathOf(kMaxMaterials),
+               "is one material too many: a scene has at most " + std::to_string(kMaxMaterials));
     for (int index = 0; index < scene.material_size(); ++index) {
         checkName(scene, index, refuse);
         checkWhere(scene, index, refuse);

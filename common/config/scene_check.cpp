@@ -133,8 +133,8 @@ void SceneChecker::checkAccuracy(const scene::Accuracy& accuracy) const {
 
 void SceneChecker::checkTools(const scene::Scene& scene) const {
     const auto pathOf = [](int index) { return "tool[" + std::to_string(index) + "]"; };
-    if (scene.tool_size() > kMostTools)
-        refuse(pathOf(kMostTools), "is one tool too many: a scene has at most " + std::to_string(kMostTools));
+    if (scene.tool_size() > kMaxTools)
+        refuse(pathOf(kMaxTools), "is one tool too many: a scene has at most " + std::to_string(kMaxTools));
     const std::vector<std::string> names = toolNamesOf(scene);
     for (int i = 0; i < scene.tool_size(); ++i) {
         checkTool(scene.tool(i), pathOf(i));

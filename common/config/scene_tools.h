@@ -8,7 +8,7 @@
 
 namespace bonemill {
 
-inline constexpr int kMostTools = 16;
+inline constexpr int kMaxTools = 16;
 
 // There is at least one: a scene without tools has the default one. The pointers lead into `scene`.
 std::vector<const scene::Tool*> toolsOf(const scene::Scene& scene);

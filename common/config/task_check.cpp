@@ -10,7 +10,7 @@ namespace bonemill {
 namespace {
 
 constexpr const char* kTask = "assessment";
-constexpr int kMostZoneShapes = 64;
+constexpr int kMaxZoneShapes = 64;
 
 std::string pathIn(const std::string& list, int index) {
     return std::string(kTask) + "." + list + "[" + std::to_string(index) + "]";
@@ -32,14 +32,14 @@ class TaskChecker {
         : scene_(scene), task_(scene.assessment()), refuse_(refuse) {}
 
     void checkZones() const {
-        requireFew("zone", task_.zone_size(), kMostZones, "zones");
+        requireFew("zone", task_.zone_size(), kMaxZones, "zones");
         for (int n = 0; n < task_.zone_size(); ++n) checkZone(n);
         // Both get a colour of their own in the viewer, by one number.
-        constexpr int kMostColours = 255;
-        if (task_.zone_size() + scene_.material_size() > kMostColours)
+        constexpr int kMaxColours = 255;
+        if (task_.zone_size() + scene_.material_size() > kMaxColours)
             refuse_(pathIn("zone", 0), "and what follows are too many beside " +
                                            std::to_string(scene_.material_size()) + " materials: all are " +
-                                           std::to_string(kMostColours) + " at most");
+                                           std::to_string(kMaxColours) + " at most");
     }
 
     void checkReference() const {
@@ -59,7 +59,7 @@ class TaskChecker {
     }
 
     void checkGates() const {
-        requireFew("gate", task_.gate_size(), kMostTaskRules, "gates");
+        requireFew("gate", task_.gate_size(), kMaxTaskRules, "gates");
         for (int n = 0; n < task_.gate_size(); ++n) {
             const scene::Task::Gate& gate = task_.gate(n);
             checkFigure(gate.figure(), pathIn("gate", n));
@@ -69,7 +69,7 @@ class TaskChecker {
     }
 
     void checkSubScores() const {
-        requireFew("sub_score", task_.sub_score_size(), kMostTaskRules, "sub-scores");
+        requireFew("sub_score", task_.sub_score_size(), kMaxTaskRules, "sub-scores");
         for (int n = 0; n < task_.sub_score_size(); ++n) {
             const scene::Task::SubScore& score = task_.sub_score(n);
             const std::string path = pathIn("sub_score", n);
@@ -127,9 +127,9 @@ class TaskChecker {
 
     template <class Shapes>
     void checkShapes(const Shapes& shapes, const std::string& path) const {
-        if (shapes.size() > kMostZoneShapes)
-            refuse_(path + ".shape[" + std::to_string(kMostZoneShapes) + "]",
-                    "is one too many: it is " + std::to_string(kMostZoneShapes) + " shapes at most");
+        if (shapes.size() > kMaxZoneShapes)
+            refuse_(path + ".shape[" + std::to_string(kMaxZoneShapes) + "]",
+                    "is one too many: it is " + std::to_string(kMaxZoneShapes) + " shapes at most");
         for (int n = 0; n < shapes.size(); ++n) {
             const std::string at = path + ".shape[" + std::to_string(n) + "]";
             if (shapes[n].kind_case() == scene::Task::Shape::KIND_NOT_SET)

@@ -5,8 +5,8 @@
 
 namespace bonemill {
 
-inline constexpr int kMostZones = 32;
-inline constexpr int kMostTaskRules = 64;  // gates, and sub-scores
+inline constexpr int kMaxZones = 32;
+inline constexpr int kMaxTaskRules = 64;  // gates, and sub-scores
 
 // It knows how figures are named, and which zones and structures there are, but not which figures are
 // measured.

@@ -26,7 +26,7 @@ Entity createTopic(int32_t participant, const TopicDescription& description) {
 // A hostile peer that makes endpoints without end must not fill the log.
 bool mayNameMismatch() {
     static std::atomic<uint64_t> named = 0;
-    return named.fetch_add(1, std::memory_order_relaxed) < kMostNamedMismatches;
+    return named.fetch_add(1, std::memory_order_relaxed) < kMaxNamedMismatches;
 }
 
 void logOffered(dds_entity_t, const dds_offered_incompatible_qos_status_t status, void* topic) {

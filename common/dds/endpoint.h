@@ -15,7 +15,7 @@
 namespace bonemill::dds {
 
 // How many peers that do not match a process logs.
-inline constexpr uint64_t kMostNamedMismatches = 20;
+inline constexpr uint64_t kMaxNamedMismatches = 20;
 
 struct SampleInfo {
     bool has_data = false;     // false: only the key fields of the sample are set

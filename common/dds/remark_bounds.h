@@ -9,9 +9,9 @@
 
 namespace bonemill {
 
-inline constexpr uint32_t kMostRemarks = 256;  // at once; places are counted from 0
-inline constexpr int kMostRemarkPoints = 300;  // of a stroke
-inline constexpr size_t kMostNoteLetters = 300;
+inline constexpr uint32_t kMaxRemarks = 256;  // at once; places are counted from 0
+inline constexpr int kMaxRemarkPoints = 300;  // of a stroke
+inline constexpr size_t kMaxNoteLetters = 300;
 
 // Returns the letters of UTF-8 text: bytes that go on with one do not count.
 inline size_t lettersOf(const std::string& text) {

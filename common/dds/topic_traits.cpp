@@ -21,7 +21,7 @@ Qos stateQos() {
 // Only the newest sample counts, but for what is counted since the sample before.
 Qos streamQos(int depth) {
     Qos qos;
-    qos.bestEffort().keepLast(depth).atMostKeys(kMostStreamKeys);
+    qos.bestEffort().keepLast(depth).atMostKeys(kMaxStreamKeys);
     return qos;
 }
 
@@ -58,7 +58,7 @@ TopicDescription describeTopic<StructureMeshSample>() {
 template <>
 TopicDescription describeTopic<ToolStateSample>() {
     return {"bonemill_tool_state", &bonemill_dds_ToolStateSample_desc, streamQos(kQueuedToolStates),
-            kMostStreamKeys / 2};
+            kMaxStreamKeys / 2};
 }
 
 template <>
@@ -83,17 +83,17 @@ TopicDescription describeTopic<RemarkSample>() {
 
 template <>
 TopicDescription describeTopic<ViewerSample>() {
-    return {"bonemill_viewer", &bonemill_dds_ViewerSample_desc, streamQos(1), kMostStreamKeys / 2};
+    return {"bonemill_viewer", &bonemill_dds_ViewerSample_desc, streamQos(1), kMaxStreamKeys / 2};
 }
 
 template <>
 TopicDescription describeTopic<HandPointerSample>() {
-    return {"bonemill_hand_pointer", &bonemill_dds_HandPointerSample_desc, streamQos(1), kMostStreamKeys / 2};
+    return {"bonemill_hand_pointer", &bonemill_dds_HandPointerSample_desc, streamQos(1), kMaxStreamKeys / 2};
 }
 
 template <>
 TopicDescription describeTopic<CommandSample>() {
-    return {"bonemill_command", &bonemill_dds_CommandSample_desc, commandQos(), kMostCommandKeys};
+    return {"bonemill_command", &bonemill_dds_CommandSample_desc, commandQos(), kMaxCommandKeys};
 }
 
 template <>
@@ -103,7 +103,7 @@ TopicDescription describeTopic<DensityBrickSample>() {
 
 template <>
 TopicDescription describeTopic<DensityWishSample>() {
-    return {"bonemill_density_wish", &bonemill_dds_DensityWishSample_desc, streamQos(1), kMostStreamKeys / 2};
+    return {"bonemill_density_wish", &bonemill_dds_DensityWishSample_desc, streamQos(1), kMaxStreamKeys / 2};
 }
 
 }  // namespace bonemill::dds

@@ -34,9 +34,9 @@ struct TopicDescription {
 // How many senders of a stream a reader knows at once: far more than there are viewers, and a bound for the
 // memory that invented ones can take. It forgets them when half of that is used, so that there is room for
 // others.
-inline constexpr int kMostStreamKeys = 1024;
+inline constexpr int kMaxStreamKeys = 1024;
 // The same bound for senders of commands: an honest client repeats a command that gets lost.
-inline constexpr int kMostCommandKeys = 16384;
+inline constexpr int kMaxCommandKeys = 16384;
 
 template <class Sample>
 TopicDescription describeTopic();

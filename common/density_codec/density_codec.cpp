@@ -107,7 +107,7 @@ void DensityEncoder::compress(std::string& out) {
 }
 
 std::string DensityEncoder::scanned(std::span<const uint16_t> densities, int edge) {
-    BONEMILL_ASSERT(edge >= 1 && edge <= kMostBrickEdge && densities.size() == voxelsOf(edge));
+    BONEMILL_ASSERT(edge >= 1 && edge <= kMaxBrickEdge && densities.size() == voxelsOf(edge));
     const uint16_t first = densities[0];
     if (std::ranges::all_of(densities, [first](uint16_t density) { return density == first; })) {
         std::string out(1, char(kUniform));
@@ -173,7 +173,7 @@ bool DensityDecoder::decompress(std::string_view bytes, size_t least, size_t mos
 }
 
 std::optional<std::vector<uint16_t>> DensityDecoder::scanned(std::string_view bytes, int edge) {
-    if (edge < 1 || edge > kMostBrickEdge || bytes.size() < kUniformSize) return {};
+    if (edge < 1 || edge > kMaxBrickEdge || bytes.size() < kUniformSize) return {};
     const size_t count = voxelsOf(edge);
     const uint16_t steps = numberAt(bytes, 1);
     if (bytes[0] == kUniform && bytes.size() == kUniformSize) return std::vector<uint16_t>(count, steps);

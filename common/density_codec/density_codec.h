@@ -18,7 +18,7 @@
 
 namespace bonemill {
 
-inline constexpr int kMostBrickEdge = 64;
+inline constexpr int kMaxBrickEdge = 64;
 
 class DensityEncoder {
   public:
@@ -27,7 +27,7 @@ class DensityEncoder {
     explicit DensityEncoder(uint16_t steps);
     ~DensityEncoder();
 
-    // `densities` has edge³ values; edge is 1 to kMostBrickEdge.
+    // `densities` has edge³ values; edge is 1 to kMaxBrickEdge.
     std::string scanned(std::span<const uint16_t> densities, int edge);
     // Both are of the same brick. It is empty if they are the same.
     std::string change(std::span<const uint16_t> scanned, std::span<const uint16_t> present);

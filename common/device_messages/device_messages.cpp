@@ -22,11 +22,11 @@ bool isNoneOrWithin(double value, double least, double most) noexcept {
 }
 
 bool isPlausible(const HandleDynamics& handle) noexcept {
-    constexpr double kMostTime = 1;  // s
+    constexpr double kMaxTime = 1;  // s
     return isNoneOrWithin(handle.mass, 1e-4, 1e3) && isNoneOrWithin(handle.inertia, 1e-9, 1e2) &&
            isNoneOrWithin(handle.damping, 0, 1e5) && isNoneOrWithin(handle.angular_damping, 0, 1e4) &&
-           isNoneOrWithin(handle.amplifier_time, 0, kMostTime) &&
-           isNoneOrWithin(handle.delay, 0, kMostTime) && isNoneOrWithin(handle.encoder_step, 1e-12, 1e-2) &&
+           isNoneOrWithin(handle.amplifier_time, 0, kMaxTime) &&
+           isNoneOrWithin(handle.delay, 0, kMaxTime) && isNoneOrWithin(handle.encoder_step, 1e-12, 1e-2) &&
            isNoneOrWithin(handle.encoder_angle, 1e-12, 1);
 }
 
@@ -35,9 +35,9 @@ bool isPlausible(const HandleDynamics& handle) noexcept {
 bool isPlausible(const DeviceSample& sample) noexcept {
     double squared_norm = 0.0;
     for (const double component : sample.q_DT) squared_norm += component * component;
-    return isWithin(sample.p_DT, kLargestDeviceReach) &&
+    return isWithin(sample.p_DT, kMaxDeviceReach) &&
            std::abs(std::sqrt(squared_norm) - 1.0) <= kQuaternionNormTolerance &&
-           isWithin(sample.v_DT, kLargestDeviceSpeed) && isWithin(sample.w_DT, kLargestDeviceSpin) &&
+           isWithin(sample.v_DT, kMaxDeviceSpeed) && isWithin(sample.w_DT, kMaxDeviceSpin) &&
            sample.state < kSafetyStateCount && sample.stop_cause < kStopCauseCount;
 }
 

@@ -144,10 +144,10 @@ static_assert(sizeof(HandleDynamics) == 64 && sizeof(DeviceCapabilities) == 160 
 inline constexpr double kQuaternionNormTolerance = 1e-3;
 // No device of this world reaches farther from its base than this (m). It refuses garbage that is
 // finite by chance.
-inline constexpr double kLargestDeviceReach = 10.0;
+inline constexpr double kMaxDeviceReach = 10.0;
 // And none is so fast (m/s, rad/s).
-inline constexpr double kLargestDeviceSpeed = 100.0;
-inline constexpr double kLargestDeviceSpin = 1000.0;
+inline constexpr double kMaxDeviceSpeed = 100.0;
+inline constexpr double kMaxDeviceSpin = 1000.0;
 
 // Tells whether the server may act on it: it is finite, a rotation, within reach, and in a state that there
 // is.

@@ -12,10 +12,10 @@
 namespace bonemill::mcap {
 namespace {
 
-constexpr uint64_t kMostHeader = 4096;
-constexpr uint64_t kMostPlain = kMostChunk + kMostMessage;
-constexpr uint64_t kMostPacked = kMostPlain + kMostPlain / 128;  // more than zstd ever makes of it
-constexpr uint64_t kMostTorn = uint64_t(1) << 20;                // of one chunk
+constexpr uint64_t kMaxHeader = 4096;
+constexpr uint64_t kMaxPlain = kMaxChunk + kMaxMessage;
+constexpr uint64_t kMaxPacked = kMaxPlain + kMaxPlain / 128;  // more than zstd ever makes of it
+constexpr uint64_t kMaxTorn = uint64_t(1) << 20;                // of one chunk
 
 // The rest of the file, of which no more is read than is there.
 class Input {
@@ -63,7 +63,7 @@ class FileReader {
         if (out_.problem.empty()) readEnding();
         out_.is_whole = out_.problem.empty();
         out_.lost_bytes = out_.is_whole ? 0 : size_ - out_.index.size();
-        out_.is_torn_chunk = out_.is_whole || (is_cut_off_ && out_.lost_bytes <= kMostTorn);
+        out_.is_torn_chunk = out_.is_whole || (is_cut_off_ && out_.lost_bytes <= kMaxTorn);
         return std::move(out_);
     }
 
@@ -93,7 +93,7 @@ class FileReader {
     void readHeader() {
         std::string magic;
         if (!input_.take(kMagic.size(), magic) || magic != kMagic) return fail("this is no MCAP file");
-        if (!takeRecord(kMostHeader) || op_ != kHeader) return fail("the header is torn or changed");
+        if (!takeRecord(kMaxHeader) || op_ != kHeader) return fail("the header is torn or changed");
         Taker taker(content_);
         out_.profile = taker.text(), out_.library = taker.text();
         if (!taker.isDone()) return fail("the header is torn or changed");
@@ -104,7 +104,7 @@ class FileReader {
     void readRecord() {
         is_cut_off_ = input_.left() == 0;
         if (is_cut_off_) return fail("the end is missing: whoever wrote it was stopped");
-        if (!takeRecord(kMostPacked)) return fail("the file is torn");
+        if (!takeRecord(kMaxPacked)) return fail("the file is torn");
         if (op_ == kDataEnd) {
             is_at_end_ = true;
             return;
@@ -123,7 +123,7 @@ class FileReader {
         const auto crc = taker.number<uint32_t>();
         const bool is_zstd = taker.text() == kZstd;
         const std::string_view packed = taker.bytes(taker.number<uint64_t>());
-        if (!taker.isDone() || !is_zstd || plain_size > kMostPlain) return false;
+        if (!taker.isDone() || !is_zstd || plain_size > kMaxPlain) return false;
         if (ZSTD_getFrameContentSize(packed.data(), packed.size()) != plain_size) return false;
         chunk.plain.resize(size_t(plain_size));
         const size_t unpacked =
@@ -156,8 +156,8 @@ class FileReader {
 
     // They are kept, and looked through for each message.
     bool hasRoomFor(const OpenChunk& chunk) const {
-        return out_.index.recordBytes() + chunk.record_bytes <= kMostRecordBytes &&
-               out_.index.records() + chunk.schemas.size() + chunk.channels.size() <= kMostRecords;
+        return out_.index.recordBytes() + chunk.record_bytes <= kMaxRecordBytes &&
+               out_.index.records() + chunk.schemas.size() + chunk.channels.size() <= kMaxRecords;
     }
 
     bool takeChannel(std::string_view content, std::string_view record, OpenChunk& chunk) {

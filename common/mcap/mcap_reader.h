@@ -14,7 +14,7 @@
 namespace bonemill::mcap {
 
 // Schemas and channels are kept to the end of the file, whoever made it: no more of them are taken.
-constexpr uint64_t kMostRecordBytes = uint64_t(1) << 20, kMostRecords = 1024;
+constexpr uint64_t kMaxRecordBytes = uint64_t(1) << 20, kMaxRecords = 1024;
 
 struct Reading {
     bool is_whole = false;    // from the first byte to the last, with its end

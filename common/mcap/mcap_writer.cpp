@@ -55,8 +55,8 @@ void Writer::addChannel(const Channel& channel) {
 }
 
 void Writer::addMessage(uint16_t channel, uint64_t time_ns, std::string_view data) {
-    BONEMILL_ASSERT(data.size() <= kMostMessage);
-    if (!chunk_.empty() && chunk_.size() + data.size() > kMostChunk) closeChunk();
+    BONEMILL_ASSERT(data.size() <= kMaxMessage);
+    if (!chunk_.empty() && chunk_.size() + data.size() > kMaxChunk) closeChunk();
     first_ns_ = places_.empty() ? time_ns : std::min(first_ns_, time_ns);
     last_ns_ = places_.empty() ? time_ns : std::max(last_ns_, time_ns);
     places_[channel].push_back({time_ns, chunk_.size()});

@@ -14,8 +14,8 @@ namespace bonemill::mcap {
 
 // A chunk holds no more than this many bytes before they are packed, but for a message that is larger by
 // itself.
-constexpr size_t kMostChunk = size_t(16) << 20;
-constexpr size_t kMostMessage = size_t(64) << 20;
+constexpr size_t kMaxChunk = size_t(16) << 20;
+constexpr size_t kMaxMessage = size_t(64) << 20;
 
 class Writer {
   public:
@@ -27,7 +27,7 @@ class Writer {
     // covers them.
     void addSchema(const Schema& schema);
     void addChannel(const Channel& channel);
-    // `data` has kMostMessage bytes at most.
+    // `data` has kMaxMessage bytes at most.
     void addMessage(uint16_t channel, uint64_t time_ns, std::string_view data);
     // What the chunk under way holds, before it is packed.
     size_t chunkSize() const { return chunk_.size(); }

@@ -56,12 +56,12 @@ std::string codedMaterials(const std::vector<uint8_t>& materials) {
 
 // Decodes as many as there are vertices, or returns false.
 bool decodeMaterials(std::string_view coded, size_t vertices, std::vector<uint8_t>& materials) {
-    constexpr int kMostShift = 28;  // a length has 32 bits
+    constexpr int kMaxShift = 28;  // a length has 32 bits
     for (size_t at = 0; at < coded.size();) {
         const auto material = uint8_t(coded[at++]);
         uint64_t length = 0;
         for (int shift = 0;; shift += 7) {
-            if (at == coded.size() || shift > kMostShift) return false;
+            if (at == coded.size() || shift > kMaxShift) return false;
             const auto byte = uint8_t(coded[at++]);
             length |= uint64_t(byte & 0x7f) << shift;
             if (byte < 0x80) break;

@@ -17,13 +17,13 @@ namespace bonemill {
 // Takes all the files that this user may open at once. Throws UserError where these are too few for the
 // network, the sound and a scan together.
 inline void requireFileHandles() {
-    constexpr rlim_t kLeast = 64;
+    constexpr rlim_t kMin = 64;
     rlimit limit{};
-    if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kLeast) return;
-    limit.rlim_cur = std::min(limit.rlim_max, 16 * kLeast);
-    if (limit.rlim_cur >= kLeast && setrlimit(RLIMIT_NOFILE, &limit) == 0) return;
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kMin) return;
+    limit.rlim_cur = std::min(limit.rlim_max, 16 * kMin);
+    if (limit.rlim_cur >= kMin && setrlimit(RLIMIT_NOFILE, &limit) == 0) return;
     throw UserError("may open only " + std::to_string(limit.rlim_max) + " files at once, and needs " +
-                    std::to_string(kLeast) + "; type: ulimit -n 1024");
+                    std::to_string(kMin) + "; type: ulimit -n 1024");
 }
 
 // Throws UserError where so much more memory cannot be asked for. `what` needs it: "the network".

@@ -12,8 +12,8 @@ namespace bonemill {
 
 // How many at a time: one more than there are processors, so that none waits for what is being taken.
 inline size_t mostAtATime() {
-    constexpr size_t kMost = 9;
-    return std::clamp<size_t>(size_t(std::thread::hardware_concurrency()) + 1, 2, kMost);
+    constexpr size_t kMax = 9;
+    return std::clamp<size_t>(size_t(std::thread::hardware_concurrency()) + 1, 2, kMax);
 }
 
 // Calls work(item) for each item, then take(item, what it returned), the latter on this thread. What work()

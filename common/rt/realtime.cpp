@@ -156,8 +156,8 @@ RealtimeReport lockMemory() {
 
 [[gnu::noinline]] void prefaultStack() noexcept {
     volatile char* const pages = static_cast<volatile char*>(alloca(kPrefaultedStackBytes));
-    constexpr size_t kSmallestPage = 4096;
-    for (size_t i = 0; i < kPrefaultedStackBytes; i += kSmallestPage) pages[i] = 0;
+    constexpr size_t kMinPage = 4096;
+    for (size_t i = 0; i < kPrefaultedStackBytes; i += kMinPage) pages[i] = 0;
 }
 
 }  // namespace bonemill

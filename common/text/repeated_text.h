@@ -8,11 +8,11 @@
 namespace bonemill {
 
 inline std::string repeatedText(const std::string& text) {
-    constexpr size_t kMost = 32;  // longer than any preset's name
-    std::string start = text.substr(0, kMost);
+    constexpr size_t kMax = 32;  // longer than any preset's name
+    std::string start = text.substr(0, kMax);
     std::replace_if(
         start.begin(), start.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-    return text.size() > kMost ? start + "..." : start;
+    return text.size() > kMax ? start + "..." : start;
 }
 
 // Returns whether UTF-8 text has control characters.

@@ -36,7 +36,7 @@ void makeRoomIn(const fs::path& dir) {
     for (fs::directory_iterator entry(dir, error), end; !error && entry != end; entry.increment(error))
         if (isStopFile(*entry)) files.emplace_back(lastWriteTime(*entry), entry->path());
     std::sort(files.begin(), files.end());
-    for (size_t i = 0; i + kMostStopFiles <= files.size(); ++i) fs::remove(files[i].second, error);
+    for (size_t i = 0; i + kMaxStopFiles <= files.size(); ++i) fs::remove(files[i].second, error);
 }
 
 }  // namespace

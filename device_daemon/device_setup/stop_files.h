@@ -12,7 +12,7 @@ namespace bonemill {
 std::filesystem::path defaultStopDir();
 
 // A device that stops again and again fills no disk: the newest N files stay in the folder.
-inline constexpr size_t kMostStopFiles = 100;
+inline constexpr size_t kMaxStopFiles = 100;
 
 // Returns a new name in the folder, which is made if need be: stop_SESSION_TIME_CAUSE.csv. Makes room for it
 // by removing the oldest files of such names. Never throws: a folder that cannot be made shows when the file

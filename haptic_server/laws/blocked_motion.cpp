@@ -14,7 +14,7 @@ constexpr double kLongestStep = 0.5;  // thinnest radii
 constexpr double kMarginGrowth = 2;   // of the last tick's motion, and from gathering to gathering
 constexpr double kRounding = 1e-9;
 constexpr double kTouching = 1e-6;  // m: a point so near counts as a contact
-constexpr int kMostCuts = 8;
+constexpr int kMaxCuts = 8;
 constexpr double kShortestCut = 0.02;  // of a step
 
 double reachOf(const ToolField& tool, const Vector6d& motion) noexcept {
@@ -54,8 +54,8 @@ void BlockedMotion::takePlanes(const ToolField& tool, const Pose& X_VT, const Wi
         out.contacts += at.distance < kTouching;
         out.max_penetration = std::max(out.max_penetration, -at.distance);
     }
-    const double of_points = double(points_.count()) / kMostPoints,
-                 of_rows = double(planes_.count()) / kMostRows;
+    const double of_points = double(points_.count()) / kMaxPoints,
+                 of_rows = double(planes_.count()) / kMaxRows;
     out.budget_share = std::max({out.budget_share, of_points, of_rows});
 }
 
@@ -65,7 +65,7 @@ double BlockedMotion::allowedShare(const ToolField& tool, const Pose& X_VT, cons
                                    double bite) noexcept {
     for (size_t n = 0; n < points_.count(); ++n) lowest_[n] = float(std::min(-bite, points_.distance(n)));
     double share = 1;
-    for (int cut = 0; cut < kMostCuts; ++cut) {
+    for (int cut = 0; cut < kMaxCuts; ++cut) {
         points_.measure(tool, X_VT.incremented(share * motion.head<3>(), share * motion.tail<3>()), 0);
         double deepest = 0;
         for (size_t n = 0; n < points_.count(); ++n)

@@ -21,9 +21,9 @@ class BlockedMotion {
   public:
     static constexpr double kTolerance = 2e-6;  // m
     static constexpr double kRecovery = 10e-3;  // m/s
-    static constexpr size_t kMostPoints = 16384, kMostRows = 4096;
+    static constexpr size_t kMaxPoints = 16384, kMaxRows = 4096;
 
-    BlockedMotion() : points_(kMostPoints), planes_(kMostRows) {}
+    BlockedMotion() : points_(kMaxPoints), planes_(kMaxRows) {}
 
     struct Wish {
         Pose X_VT;      // where the hand wants the tool: all the way, or balance would be sought elsewhere
@@ -50,7 +50,7 @@ class BlockedMotion {
     NearPoints points_;
     LeastConstraint planes_;
     double last_reach_ = 0;  // m: how far the last tick's motion moved any of the tool's points
-    std::vector<float> lowest_ = std::vector<float>(kMostPoints);  // m: how near each point may come
+    std::vector<float> lowest_ = std::vector<float>(kMaxPoints);  // m: how near each point may come
 };
 
 }  // namespace bonemill

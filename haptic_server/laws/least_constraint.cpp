@@ -13,9 +13,9 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // The rows in force, in coordinates in which K is the identity, with their multipliers.
 class ActiveSet {
   public:
-    static constexpr int kMost = 6;
-    using Small = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
-    using SmallSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
+    static constexpr int kMax = 6;
+    using Small = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMax, 1>;
+    using SmallSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMax, kMax>;
 
     int count() const noexcept { return count_; }
     const Vector6d& row(int n) const noexcept { return row_[n]; }
@@ -65,9 +65,9 @@ class ActiveSet {
     }
 
   private:
-    Vector6d row_[kMost];
-    size_t index_[kMost] = {};
-    double multiplier_[kMost] = {};
+    Vector6d row_[kMax];
+    size_t index_[kMax] = {};
+    double multiplier_[kMax] = {};
     int count_ = 0;
 };
 
@@ -75,11 +75,11 @@ class ActiveSet {
 // on the way. False: it cannot hold together with the active ones.
 bool enforce(ActiveSet& active, Vector6d& x, const Vector6d& row, double bound, size_t index) noexcept {
     double multiplier = 0;
-    for (int n = 0; n <= ActiveSet::kMost; ++n) {
+    for (int n = 0; n <= ActiveSet::kMax; ++n) {
         ActiveSet::Small share;
         const Vector6d rest = active.across(row, share);
         const bool is_free =
-            active.count() < ActiveSet::kMost && rest.squaredNorm() > kDependent * row.squaredNorm();
+            active.count() < ActiveSet::kMax && rest.squaredNorm() > kDependent * row.squaredNorm();
         int blocking = -1;
         const double longest = active.longestStep(share, blocking);
         const double whole = is_free ? (bound - row.dot(x)) / rest.dot(row) : kInfinite;
@@ -109,7 +109,7 @@ LeastConstraint::Result LeastConstraint::solve(const Vector6d& free, const Matri
     }
     ActiveSet active;
     Vector6d x = factors.matrixU() * free;
-    for (int pivot = 0; pivot < kMostPivots; ++pivot) {
+    for (int pivot = 0; pivot < kMaxPivots; ++pivot) {
         result.motion = factors.matrixU().solve(x);
         size_t worst = 0;
         double most = kSlack;

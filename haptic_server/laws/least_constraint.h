@@ -4,7 +4,7 @@
 //
 //   min ½ (Δ - Δ_free)ᵀ K (Δ - Δ_free)   subject to   J_i Δ >= b_i
 //
-// It is RT-safe but for construction: at most kMostPivots passes over the rows. For one thread at a time.
+// It is RT-safe but for construction: at most kMaxPivots passes over the rows. For one thread at a time.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,7 @@ namespace bonemill {
 
 class LeastConstraint {
   public:
-    static constexpr int kMostPivots = 40;
+    static constexpr int kMaxPivots = 40;
     static constexpr double kSlack = 1e-9;  // m: less is not violated
 
     explicit LeastConstraint(size_t most_rows) : rows_(most_rows), bounds_(most_rows) {}

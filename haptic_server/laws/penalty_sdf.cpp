@@ -39,7 +39,7 @@ SpoStep PenaltySdf::advance(const Pose& X_VT, const Pose& X_VT_device) noexcept 
     const ContactWrench contact = contactAt(X_VT, has_room);
     step.has_contact_overflow = !has_room;
     step.candidates = uint32_t(points_.count());
-    step.budget_share = double(points_.count()) / kMostPoints;
+    step.budget_share = double(points_.count()) / kMaxPoints;
     const EnergyTerm pull = couplingEnergy(coupling(), X_VT, X_VT_device, way());
     const Pose X_VT_end = quasiStaticStep(contact, pull, config().steps, X_VT, dt(), step);
     feel(step, X_VT_end, X_VT_device);

@@ -17,13 +17,13 @@ namespace bonemill {
 
 class PenaltySdf final : public ComparedLaw {
   public:
-    static constexpr size_t kMostPoints = 16384;  // in the tool
+    static constexpr size_t kMaxPoints = 16384;  // in the tool
 
     PenaltySdf(const LawConfig& config, const SpoWorld& world, const SpoTool& tool, double dt)
-        : ComparedLaw(config, world, tool, dt), points_(kMostPoints) {}
+        : ComparedLaw(config, world, tool, dt), points_(kMaxPoints) {}
 
     SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept override;
-    // The contacts at this pose, by the live bone; `has_room` is false if there were more than kMostPoints.
+    // The contacts at this pose, by the live bone; `has_room` is false if there were more than kMaxPoints.
     ContactWrench contactAt(const Pose& X_VT, bool& has_room) noexcept;
 
   private:

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kClusterCells = 4;  // per axis: as many cells as a batch has points
 static_assert(kClusterCells * kClusterCells * kClusterCells == PointBatch<float>::kCapacity);
-constexpr double kMostCells = 8e6;  // of the tool's box: what takes a tenth of a second
+constexpr double kMaxCells = 8e6;  // of the tool's box: what takes a tenth of a second
 constexpr double kWider = 1.05;
 constexpr double kOffGrid = 0.7071;  // of a cell
 
@@ -16,9 +16,9 @@ constexpr double kOffGrid = 0.7071;  // of a cell
 
 ToolPoints::ToolPoints(const ToolField& tool, double spacing) : spacing_(spacing) {
     const double box = tool.box().sizes().prod();
-    while (box > kMostCells * spacing_ * spacing_ * spacing_) spacing_ *= kWider;
-    for (sample(tool); points_.size() > kMost; sample(tool))
-        spacing_ *= kWider * std::sqrt(double(points_.size()) / double(kMost));
+    while (box > kMaxCells * spacing_ * spacing_ * spacing_) spacing_ *= kWider;
+    for (sample(tool); points_.size() > kMax; sample(tool))
+        spacing_ *= kWider * std::sqrt(double(points_.size()) / double(kMax));
 }
 
 void ToolPoints::sample(const ToolField& tool) {

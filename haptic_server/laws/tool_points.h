@@ -20,9 +20,9 @@ struct ToolPoint {
 
 class ToolPoints {
   public:
-    static constexpr size_t kMost = 16384;
+    static constexpr size_t kMax = 16384;
 
-    // Cells of `spacing`; wider ones if there would be more than kMost points. It allocates.
+    // Cells of `spacing`; wider ones if there would be more than kMax points. It allocates.
     ToolPoints(const ToolField& tool, double spacing);
 
     // Points that lie beside each other, with a ball around them.

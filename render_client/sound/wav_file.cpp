@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-constexpr uint64_t kMostBytes = 0xffff0000u;
+constexpr uint64_t kMaxBytes = 0xffff0000u;
 constexpr uint32_t kHeaderBytes = 44;
 
 void put(std::vector<char>& bytes, uint32_t value, int count) {
@@ -53,7 +53,7 @@ void WavFile::writeHeader() {
 }
 
 void WavFile::write(std::span<const float> samples) {
-    if (is_finished_ || bytes_ + 2 * samples.size() > kMostBytes) return;
+    if (is_finished_ || bytes_ + 2 * samples.size() > kMaxBytes) return;
     packed_.clear();
     for (const float sample : samples) {
         const auto value = int16_t(std::lround(std::clamp(sample, -1.0f, 1.0f) * 32767));

@@ -45,7 +45,7 @@ CLI::Option* addServeOptions(CLI::App& app, RawServe& raw, const std::vector<CLI
         ->capture_default_str()
         ->needs(serve);
     app.add_option("--guests-at-once", options.most_guests, "So many guests at most")
-        ->check(CLI::Range(1u, gateway::kMostGuestsOfGateway))
+        ->check(CLI::Range(1u, gateway::kMaxGuestsOfGateway))
         ->capture_default_str()
         ->needs(serve);
     return serve;

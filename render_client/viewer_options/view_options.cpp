@@ -75,7 +75,7 @@ std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
     auto* no_hud = app.add_flag("--no-hud", raw.no_hud, "Nothing but the picture: no panel, list or scale");
     auto* text =
         app.add_option("--text-scale", raw.text_scale, "Text so much larger than what suits the picture")
-            ->check(within(ViewSettings::kLeastText, ViewSettings::kMostText))
+            ->check(within(ViewSettings::kMinText, ViewSettings::kMaxText))
             ->type_name("FACTOR");
     auto* slices = app.add_flag("--slices", raw.slices, "Three slices through the scan beside the picture");
     auto* scan = app.add_option("--scan-on", raw.scan_on,

@@ -137,16 +137,16 @@ void addCameraOptions(CLI::App& app, RawOptions& raw) {
 }
 
 void addVideoOptions(CLI::App& app, VideoOptions& video, CLI::Option* offscreen) {
-    constexpr double kFewestFrames = 1, kMostFrames = 120;  // per second
+    constexpr double kMinFrames = 1, kMaxFrames = 120;  // per second
     auto* file = app.add_option("--video", video.path, "Write a video (.mp4) instead of PNG pictures")
                      ->type_name("FILE")
                      ->needs(offscreen);
     app.add_option("--fps", video.fps, "Frames per second of the video")
-        ->check(within(kFewestFrames, kMostFrames))
+        ->check(within(kMinFrames, kMaxFrames))
         ->capture_default_str()
         ->needs(file);
     app.add_option("--seconds", video.seconds, "The video is so long at most; 0: until the session ends")
-        ->check(within(0, kMostSeconds))
+        ->check(within(0, kMaxSeconds))
         ->capture_default_str()
         ->needs(file);
 }

@@ -7,7 +7,7 @@ namespace bonemill::bench {
 namespace {
 
 constexpr double kFaceOffset = 0.3;       // voxels: not in step with the grid
-constexpr double kLargestHeading = 1.05;  // rad to either side
+constexpr double kMaxHeading = 1.05;  // rad to either side
 constexpr double kWindingTime = 1.0;      // s
 
 double faceHeight(int edge) {
@@ -45,7 +45,7 @@ std::vector<DeviceInput> weave(const VoxelVolume& volume, const WeaveConfig& con
             p_VT.z() -= descent;
         } else {
             const double t = (n - config.approach_ticks) * config.dt;
-            const double heading = kLargestHeading * std::sin(2 * M_PI * t / kWindingTime);
+            const double heading = kMaxHeading * std::sin(2 * M_PI * t / kWindingTime);
             p_VT += config.speed * config.dt * Eigen::Vector3d(std::cos(heading), std::sin(heading), 0);
         }
         DeviceInput& input = inputs[size_t(n)];

@@ -78,7 +78,7 @@ void askByTheClock(int64_t period_ns, int exchanges, LinkRun& run, const Ask& as
 // Two threads throw datagrams of the packets' sizes to and fro.
 void pingPong(Threads& threads, int64_t period_ns, int exchanges, LinkRun& run) {
     wire::UdpSocket asking, answering;
-    using Buffer = std::array<std::byte, wire::kLargestPacket>;
+    using Buffer = std::array<std::byte, wire::kMaxPacket>;
     const auto answer = [&](const std::atomic<bool>& is_over) {
         while (!is_over) {
             Buffer buffer;

@@ -39,7 +39,7 @@ namespace {
 
 constexpr double kResolution = 1.03;
 constexpr double kRates_hz[] = {500, 1000, 2000, 4000};
-constexpr double kMostDrag = 3, kDragSlack = 1e-3;  // N·s/m; share, of rounding
+constexpr double kMaxDrag = 3, kDragSlack = 1e-3;  // N·s/m; share, of rounding
 constexpr double kContactFactors[] = {1, 4, 16, 64};
 constexpr double kScanFrom = 1.0 / 64, kScanTo = 256;  // of the default stiffness
 
@@ -118,9 +118,9 @@ ZwidthRow zwidth(const Setup& setup) {
     ZwidthRow best;
     for (const double contact : kContactFactors) {
         const double coupling =
-            largestStable([&](double f) { return setup.isStable(f, contact, kMostDrag); });
+            largestStable([&](double f) { return setup.isStable(f, contact, kMaxDrag); });
         const ZwidthRow row = setup.row(setup.tunes_baseline ? "tuned" : "zwidth", coupling,
-                                        contact * (coupling > 0), kMostDrag);
+                                        contact * (coupling > 0), kMaxDrag);
         if (best.variant.empty() || row.rendered > best.rendered) best = row;
     }
     return best;

@@ -19,7 +19,7 @@ namespace bonemill {
 namespace {
 
 constexpr int kShareWidth = 1280, kShareHeight = 800;
-constexpr double kMostShare = 1.0 / 6;
+constexpr double kMaxShare = 1.0 / 6;
 constexpr uint32_t kEveryEvent = 0x1f;
 
 topics::ToolState toolWithDamage(uint32_t events) {
@@ -83,7 +83,7 @@ class FigureShare : public testing::Test {
     void expectQuiet(const std::string& what) {
         const double part = share();
         EXPECT_GT(part, 0.01) << what << ": nothing is shown";
-        EXPECT_LT(part, kMostShare) << what;
+        EXPECT_LT(part, kMaxShare) << what;
         const char* const folder = std::getenv("BONEMILL_SHOW_FIGURES");
         if (!folder) return;
         std::printf("%-40s %.1f %%\n", what.c_str(), 100 * part);

@@ -10,7 +10,7 @@ namespace bonemill::test {
 namespace {
 
 constexpr double kPush = 2;            // N, by the hand's spring or, with no hand, a weight
-constexpr double kLargestBuzz = 0.05;  // N RMS
+constexpr double kMaxBuzz = 0.05;  // N RMS
 
 template <class Kind>
 struct Named {
@@ -117,7 +117,7 @@ DelayFigures withDelay(const Variant& variant, const GridScene& grid, int delay_
         const double figure = buzz(scene, point.config, grid.start, grid.push);
         if (!(figure <= figures.worst)) figures.worst = figure;
         ++count;
-        if (figure <= kLargestBuzz) continue;
+        if (figure <= kMaxBuzz) continue;
         ++buzzing;
         std::printf("  %-28s damping ratio %5.2f  %8.4f N rms\n", point.name.c_str(), point.damping_ratio,
                     figure);
@@ -149,13 +149,13 @@ double holeThreeTicks(const Variant& variant) {
 const std::vector<std::string> kEveryVariant{"thesis_2012", "fast", "balanced", "exact"};
 
 const std::vector<StabilityCase> kClosedLoopGridCases{
-    {"loop_grid_plane_passive", "N_rms_worst", kLargestBuzz, planePassive, {}},
-    {"loop_grid_plane_one_tick", "N_rms_worst", kLargestBuzz, planeOneTick, {}, everyDevice()},
+    {"loop_grid_plane_passive", "N_rms_worst", kMaxBuzz, planePassive, {}},
+    {"loop_grid_plane_one_tick", "N_rms_worst", kMaxBuzz, planeOneTick, {}, everyDevice()},
     {"loop_grid_plane_three_ticks", "percent_buzzing", 0, planeThreeTicks, kEveryVariant},
-    {"loop_grid_hole_passive", "N_rms_worst", kLargestBuzz, holePassive, {}},
+    {"loop_grid_hole_passive", "N_rms_worst", kMaxBuzz, holePassive, {}},
     {"loop_grid_hole_one_tick",
      "N_rms_worst",
-     kLargestBuzz,
+     kMaxBuzz,
      holeOneTick,
      {"thesis_2012"},
      Names{"cutting_force", "surface_friction", "all_felt"} + everyDevice()},

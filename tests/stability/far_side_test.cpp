@@ -7,7 +7,7 @@
 namespace bonemill::test {
 namespace {
 
-constexpr int kMostTicks = 500;
+constexpr int kMaxTicks = 500;
 constexpr double kClear = 0.5e-3;  // m: how far outside, beyond touching, the hand waits
 
 // These are the walls, and where in them the burr's centre starts, of the wall's thickness from
@@ -30,15 +30,15 @@ struct Start {
 };
 
 struct Course {
-    double ticks = 0;       // until it is out; kMostTicks: never
+    double ticks = 0;       // until it is out; kMaxTicks: never
     double most_force = 0;  // N
 };
 
 // `step(n)` runs one tick, after one at Start::inside().
 template <class Step>
 Course follow(const Start& start, const Stepper& stepper, Step&& step) {
-    Course course{kMostTicks, 0};
-    for (int n = 1; n <= kMostTicks; ++n) {
+    Course course{kMaxTicks, 0};
+    for (int n = 1; n <= kMaxTicks; ++n) {
         step();
         if (!stepper.isFinite()) return {kNan, kNan};
         course.most_force = std::max(course.most_force, stepper.wrenchOnHand().force.norm());

@@ -25,7 +25,7 @@ JoltBench::JoltBench(VoxelVolume volume, const Variant& variant, const Vector3d&
     : scene_(
           std::move(volume), burr(), variant, kDt,
           [&](FixedTickConfig& config) {
-              config.tool.saturation_force = kMostPull;
+              config.tool.saturation_force = kMaxPull;
               if (edit) edit(config);
           },
           true),
@@ -33,8 +33,8 @@ JoltBench::JoltBench(VoxelVolume volume, const Variant& variant, const Vector3d&
       small_(ballModel(kSmall)),
       large_(ballModel(kLarge)),
       tools_({scene_.spoTool(),
-              {&small_, withRadius(scene_.config.tool.burr, kSmall), kMostPull},
-              {&large_, withRadius(scene_.config.tool.burr, kLarge), kMostPull}}),
+              {&small_, withRadius(scene_.config.tool.burr, kSmall), kMaxPull},
+              {&large_, withRadius(scene_.config.tool.burr, kLarge), kMaxPull}}),
       stepper_(scene_, &tools_, &history_),
       quick_stiffness_(scene_.handSide().spring.stiffness),
       drag_(scene_.config.gradient.coupling.damping_time *

@@ -18,7 +18,7 @@ class JoltBench {
     static constexpr double kDt = 1e-3;                        // s
     static constexpr double kSmall = 0.5e-3, kLarge = 1.5e-3;  // m, beside kBurrRadius
     static constexpr size_t kBurr = 0, kSmallBurr = 1, kLargeBurr = 2;
-    static constexpr double kMostPull = 11.5;  // N: what a scene allows this burr
+    static constexpr double kMaxPull = 11.5;  // N: what a scene allows this burr
 
     JoltBench(VoxelVolume volume, const Variant& variant, const Eigen::Vector3d& start,
               const std::function<void(FixedTickConfig&)>& edit = {});

@@ -10,7 +10,7 @@ constexpr double kInertiaPerMass = 2e-4, kAngularPerLinear = 2e-3, kAngularFrict
 constexpr double kAnglePerStep = 35;  // rad/m: 0.01° at 5 µm
 constexpr double kAmplifiers_hz = 1000;
 constexpr double kPush = 2, kTwist = 5e-4;  // N, N·m
-constexpr int kMostWindows = 8;
+constexpr int kMaxWindows = 8;
 constexpr double kWindow = 0.5;  // s
 
 // A hole that the tool cannot drift out of along its axis, for there is nothing that would brake it.
@@ -93,7 +93,7 @@ LoopVerdict tryLoop(const LoopPoint& point, const Variant& variant, bool declare
     loop.run(kWindow);
     Residual r = residual(loop, kWindow);
     double swing = r.rms + r.torque_rms;
-    for (int n = 2; n < kMostWindows && r.is_finite && !isQuiet(r); ++n) {
+    for (int n = 2; n < kMaxWindows && r.is_finite && !isQuiet(r); ++n) {
         r = residual(loop, kWindow);
         const double now = r.rms + r.torque_rms;
         if (now > 0.9 * swing && n > 3) break;

@@ -77,7 +77,7 @@ double apartByIterations(const Variant& variant, int from) {
         };
         Scene scene(groove.volume, burr(), variant, 1e-3, limitTo(kFour));
         Scene reference_scene(groove.volume, burr(), variant, 1e-3,
-                              limitTo(AccuracySettings::kMostIterations));
+                              limitTo(AccuracySettings::kMaxIterations));
         Stepper stepper(scene), reference(reference_scene);
         for (int n = 0; n < kTicks; ++n) {
             const double s = std::min(1.0, double(n) / kPressTicks);

@@ -48,7 +48,7 @@ double removalUnderLoad(const Variant& variant) {
 
 // Removal by time works through the burr's diameter in 20 ms: the tool gains 0.1 mm per tick, with which the
 // coupling alone would fall by 0.3 N and, with its relaxing spring, 0.6 N.
-constexpr double kMostStep = 0.3;  // N per tick
+constexpr double kMaxStep = 0.3;  // N per tick
 
 const std::vector<StabilityCase> kSmoothnessCases{
     {"grazing_slide",
@@ -58,7 +58,7 @@ const std::vector<StabilityCase> kSmoothnessCases{
      {"thesis_2012", "vps", "penalty_sdf"},
      feltEffectsBut({"burr_vibration", "material_stiffness", "virtual_fixture"}) + everyDevice() +
          everyLaw()},
-    {"removal_under_load", "N_per_tick", kMostStep, removalUnderLoad, {}, everyLaw()},
+    {"removal_under_load", "N_per_tick", kMaxStep, removalUnderLoad, {}, everyLaw()},
 };
 BONEMILL_STABILITY_CASES(Smoothness, kSmoothnessCases);
 

@@ -7,7 +7,7 @@ namespace bonemill::test {
 namespace {
 
 // The largest stable k_t of the table, N/m, in the order of pressPlaces() and pressHands().
-constexpr double kLargestStable[2][2] = {{18.1e3, 9.3e3}, {16.3e3, 9.1e3}};
+constexpr double kMaxStable[2][2] = {{18.1e3, 9.3e3}, {16.3e3, 9.1e3}};
 constexpr double kBelow = 0.95, kBeyond = 1.1;
 
 struct PressedRun {
@@ -24,7 +24,7 @@ TEST(ZwidthBand, EndsWhereTheTableSays) {
         for (size_t hand = 0; hand < 2; ++hand) {
             const PressPlace& at = pressPlaces()[place];
             const PressHand& by = pressHands()[hand];
-            const double most = kLargestStable[place][hand];
+            const double most = kMaxStable[place][hand];
             EXPECT_TRUE(PressedRun(at, by, kBelow * most).pressed.isStable()) << at.name << " " << by.name;
             EXPECT_FALSE(PressedRun(at, by, kBeyond * most).pressed.isStable()) << at.name << " " << by.name;
         }

@@ -27,11 +27,11 @@ std::optional<DaemonOptions> parseOptions(int argc, char** argv) {
         ->capture_default_str();
     dds::addNetworkOptions(app, options.network);
     app.add_option("--seconds", options.seconds, "Leave after so many s with haptic_server")
-        ->check(within(1e-3, kMostSeconds));
+        ->check(within(1e-3, kMaxSeconds));
     app.add_option(
            "--wait-seconds", options.wait_seconds,
            "Leave with an error if haptic_server has not answered after so many s (default: wait for ever)")
-        ->check(within(1e-3, kMostSeconds));
+        ->check(within(1e-3, kMaxSeconds));
     app.add_flag("--hold", options.hold, "The scripted hand rests at its last waypoint instead of leaving");
     app.add_flag("!--no-enabling-switch", options.has_enabling_switch,
                  "The device has no switch that must be held: it engages by itself while the force is small");

@@ -58,7 +58,7 @@ class StuckCheck {
 // be frozen with the rest. Weight and what holds it do not count: they push nothing.
 class FrozenCheck {
   public:
-    explicit FrozenCheck(double friction) noexcept : least_push_(2 * friction + kLeastPush) {}
+    explicit FrozenCheck(double friction) noexcept : least_push_(2 * friction + kMinPush) {}
 
     // Begins a new stretch of stillness at the next call.
     void restart() noexcept { has_last_ = false; }
@@ -67,7 +67,7 @@ class FrozenCheck {
 
     static constexpr double kChangedTime = 0.1;  // s, after the push has changed
     static constexpr double kSteadyTime = 10;    // s
-    static constexpr double kLeastPush = 1;      // N, beyond twice the friction
+    static constexpr double kMinPush = 1;      // N, beyond twice the friction
 
   private:
     double least_push_;  // N

@@ -8,11 +8,11 @@
 namespace bonemill {
 namespace {
 
-constexpr JumpCheck kLargestWay(PoseGuard::kLargestSpeed, PoseGuard::kSlack);
+constexpr JumpCheck kMaxWay(PoseGuard::kLargestSpeed, PoseGuard::kSlack);
 constexpr JumpCheck kLargestTurn(PoseGuard::kLargestSpin, PoseGuard::kAngularSlack);
 
 bool isPose(const Pose& X_DT) noexcept {
-    return X_DT.position.norm() <= kLargestDeviceReach &&
+    return X_DT.position.norm() <= kMaxDeviceReach &&
            std::abs(X_DT.rotation.norm() - 1) <= kQuaternionNormTolerance;
 }
 
@@ -43,7 +43,7 @@ void PoseGuard::reset() noexcept {
 
 bool PoseGuard::hasJumped(const Pose& X_DT, int64_t stamp_ns) const noexcept {
     const double elapsed = secondsOfNs(nsBetween(stamp_ns_, stamp_ns));
-    return kLargestWay.isJump((X_DT.position - X_DT_.position).norm(), elapsed) ||
+    return kMaxWay.isJump((X_DT.position - X_DT_.position).norm(), elapsed) ||
            kLargestTurn.isJump(X_DT.rotation.angularDistance(X_DT_.rotation), elapsed);
 }
 

@@ -92,7 +92,7 @@ void Emulator::listenUntil(int64_t instant_ns) noexcept {
 
 void Emulator::takeDatagrams(int64_t now_ns) noexcept {
     for (int i = 0; i < wire::kDatagramsAtOnce; ++i) {
-        std::array<std::byte, wire::kLargestPacket> buffer;
+        std::array<std::byte, wire::kMaxPacket> buffer;
         wire::Endpoint source;
         const auto bytes = socket_.receive(buffer, source);
         if (bytes.empty()) return;

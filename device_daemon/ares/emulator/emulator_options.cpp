@@ -21,7 +21,7 @@ std::optional<EmulatorOptions> parseOptions(int argc, char** argv) {
     app.add_option("--rate", options.rate_hz, "States per second (default: the scene's loop.rate_hz)")
         ->check(within(100, 10000));
     app.add_option("--seconds", options.seconds, "Leave after this much of the scenario, in s")
-        ->check(within(1e-3, kMostSeconds));
+        ->check(within(1e-3, kMaxSeconds));
     app.add_flag("--hold", options.hold, "Rest at the last waypoint instead of leaving");
     app.add_option("--watchdog-ms", options.watchdog_ms,
                    "The motors brake when the host is silent for so long, unless it asks for another time")

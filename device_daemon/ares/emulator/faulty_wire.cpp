@@ -9,13 +9,13 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostUnderWay = 1024;
+constexpr size_t kMaxUnderWay = 1024;
 constexpr double kOvertakenPeriods = 1.5;
 
 }  // namespace
 
 FaultyWire::FaultyWire(const std::vector<FaultSpec>& faults, uint32_t seed, int64_t period_ns)
-    : random_(seed), period_ns_(period_ns), under_way_(kMostUnderWay) {
+    : random_(seed), period_ns_(period_ns), under_way_(kMaxUnderWay) {
     std::copy_if(faults.begin(), faults.end(), std::back_inserter(faults_),
                  [](const FaultSpec& fault) { return fault.isOfPackets(); });
 }

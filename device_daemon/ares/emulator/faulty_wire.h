@@ -22,7 +22,7 @@ class FaultyWire {
         int64_t due_ns = 0;
         wire::Endpoint other;  // who sent it, or gets it
         size_t size = 0;
-        std::array<std::byte, wire::kLargestPacket> bytes{};
+        std::array<std::byte, wire::kMaxPacket> bytes{};
 
         std::span<const std::byte> content() const noexcept { return std::span(bytes).first(size); }
     };
@@ -30,7 +30,7 @@ class FaultyWire {
     // Faults that are not of packets are ignored.
     FaultyWire(const std::vector<FaultSpec>& faults, uint32_t seed, int64_t period_ns);
 
-    // A datagram, of kLargestPacket bytes at most, enters the wire.
+    // A datagram, of kMaxPacket bytes at most, enters the wire.
     void put(std::span<const std::byte> bytes, const wire::Endpoint& other, double engaged_s,
              int64_t now_ns) noexcept;
     // Takes the next one that is due out of the wire. False says that there is none now.

@@ -10,7 +10,7 @@ template <class Packets>
 bool ControllerLink<Packets>::poll(int64_t now_ns) noexcept {
     bool has_command = false;
     for (int i = 0; i < kDatagramsAtOnce; ++i) {
-        std::array<std::byte, kLargestPacket> buffer;
+        std::array<std::byte, kMaxPacket> buffer;
         Endpoint source;
         const auto bytes = socket_.receive(buffer, source);
         if (bytes.empty()) break;

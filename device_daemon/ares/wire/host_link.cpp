@@ -27,7 +27,7 @@ template <class Packets>
 bool HostLink<Packets>::poll(int64_t now_ns) noexcept {
     bool has_new = false;
     for (int i = 0; i < kDatagramsAtOnce; ++i) {
-        std::array<std::byte, kLargestPacket> buffer;
+        std::array<std::byte, kMaxPacket> buffer;
         Endpoint source;
         const auto bytes = socket_.receive(buffer, source);
         if (bytes.empty()) break;

@@ -17,7 +17,7 @@ static_assert(std::endian::native == std::endian::little);
 
 inline constexpr uint32_t kMagic = 0x4c4d4342;  // "BCML" in memory
 inline constexpr uint8_t kVersion = 1;
-inline constexpr size_t kLargestPacket = 256;  // bytes
+inline constexpr size_t kMaxPacket = 256;  // bytes
 
 enum class PacketType : uint8_t {
     kJointState = 1,

@@ -5,13 +5,13 @@
 namespace bonemill::bridge {
 
 std::optional<Eigen::Quaterniond> repairedRotation(const Eigen::Matrix3d& matrix) noexcept {
-    constexpr double kLargestStretch =
+    constexpr double kMaxStretch =
         0.1;  // a rotation stretches nothing; vendors' are wrong by less than 1e-3
     if (!matrix.allFinite()) return std::nullopt;
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
     if (svd.info() != Eigen::Success) return std::nullopt;
     const Eigen::Array3d stretches = svd.singularValues();
-    if ((stretches - 1).abs().maxCoeff() > kLargestStretch || matrix.determinant() <= 0) return std::nullopt;
+    if ((stretches - 1).abs().maxCoeff() > kMaxStretch || matrix.determinant() <= 0) return std::nullopt;
     const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
     return Eigen::Quaterniond(rotation).normalized();
 }

@@ -65,7 +65,7 @@ void SafetyStates::update(const SafetyInput& input) noexcept {
         was_enabled_ = input.reading.status & kStatusEnabled;
         was_reset_pressed_ = input.reading.status & kStatusResetPressed;
         const double step = std::min(dt, kLongestStep) / kWarmTime;
-        const double share = MotionWatch::warmShare(input.reading.load);
+        const double share = MotionMonitor::warmShare(input.reading.load);
         warm_share_ = std::clamp(share, warm_share_ - step, warm_share_ + step);
     }
     moveFactor(input);

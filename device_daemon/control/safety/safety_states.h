@@ -12,7 +12,7 @@
 #pragma once
 
 #include "device_daemon/control/haptic_device/haptic_device.h"
-#include "device_daemon/control/safety/motion_watch.h"
+#include "device_daemon/control/safety/motion_monitor.h"
 
 namespace bonemill {
 
@@ -96,7 +96,7 @@ class SafetyStates {
     void moveFactor(const SafetyInput& input) noexcept;
 
     SafetyConfig config_;
-    MotionWatch watch_;
+    MotionMonitor watch_;
     SafetyState state_;
     StopCause cause_;
     uint32_t fault_code_;

@@ -23,7 +23,7 @@ uint16_t levelOf(double share) noexcept {
 }  // namespace
 
 RumbleLevel rumbleOf(double force, bool is_cutting) noexcept {
-    const double share = force > RumbleMotors::kLeastForce ? force / RumbleMotors::kFullForce : 0;
+    const double share = force > RumbleMotors::kMinForce ? force / RumbleMotors::kFullForce : 0;
     return {.strong = levelOf(share), .weak = levelOf(is_cutting ? kTurningShare + share : 0)};
 }
 

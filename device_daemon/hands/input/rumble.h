@@ -21,7 +21,7 @@ RumbleLevel rumbleOf(double force, bool is_cutting) noexcept;
 class RumbleMotors {
   public:
     static constexpr double kFullForce = 8;     // N
-    static constexpr double kLeastForce = 0.3;  // N; below it the strong motor rests
+    static constexpr double kMinForce = 0.3;  // N; below it the strong motor rests
 
     RumbleMotors() = default;
     // The file is that of an input device with FF_RUMBLE, open for writing.

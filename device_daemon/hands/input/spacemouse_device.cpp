@@ -21,7 +21,7 @@ constexpr std::array<float, 6> kSigns{1, 1, -1, 1, 1, -1};
 
 float FullScale::shareOf(int32_t counts) noexcept {
     const float value = static_cast<float>(counts);
-    if (std::abs(value) > kMostCounts) return 0;
+    if (std::abs(value) > kMaxCounts) return 0;
     full_counts_ = std::max(full_counts_, std::abs(value));
     return value / full_counts_;
 }

@@ -26,7 +26,7 @@ struct SpaceMouseButtons {
 class FullScale {
   public:
     static constexpr float kUsualCounts = 350;
-    static constexpr float kMostCounts = 3500;  // more than any model gives: nonsense
+    static constexpr float kMaxCounts = 3500;  // more than any model gives: nonsense
 
     // Returns -1 to 1; 0 for what is not believed.
     float shareOf(int32_t counts) noexcept;

@@ -11,13 +11,13 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostWishBytes = 4u << 10;  // what a sane message needs many times over
+constexpr size_t kMaxWishBytes = 4u << 10;  // what a sane message needs many times over
 
 std::optional<Pose> poseIn(const topics::HandPointer& message) {
     if (message.p_wt_m_size() != 3 || message.q_wt_size() != 4) return std::nullopt;
     const auto& q = message.q_wt();
     Pose X_WT{Eigen::Vector3d(message.p_wt_m().data()), Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
-    if (!X_WT.isFinite() || X_WT.position.norm() > kLargestDeviceReach ||
+    if (!X_WT.isFinite() || X_WT.position.norm() > kMaxDeviceReach ||
         std::abs(X_WT.rotation.norm() - 1) > kQuaternionNormTolerance)
         return std::nullopt;
     X_WT.rotation.normalize();
@@ -29,7 +29,7 @@ std::optional<Pose> poseIn(const topics::HandPointer& message) {
 std::optional<HandWish> parseHandWish(std::span<const uint8_t> payload, uint64_t sender) {
     const google::protobuf::LogSilencer silencer;  // a hostile peer must not fill the log
     topics::HandPointer message;
-    if (payload.size() > kMostWishBytes || sender == 0 ||
+    if (payload.size() > kMaxWishBytes || sender == 0 ||
         !message.ParseFromArray(payload.data(), static_cast<int>(payload.size())) ||
         message.sender() != sender || message.sequence() == 0 || message.epoch() == 0)
         return std::nullopt;

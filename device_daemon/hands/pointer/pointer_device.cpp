@@ -12,8 +12,8 @@ namespace bonemill {
 namespace {
 
 constexpr std::chrono::milliseconds kStopDelay{50};  // how late the thread may notice that it shall end
-constexpr size_t kMostWishesAtOnce = 256;            // more are a flood of foreign sessions
-constexpr uint64_t kMostNamedWishes = 4;             // malformed ones in the log
+constexpr size_t kMaxWishesAtOnce = 256;            // more are a flood of foreign sessions
+constexpr uint64_t kMaxNamedWishes = 4;             // malformed ones in the log
 // So often the log says at once who holds, and so often beyond that: hostile viewers must not fill it.
 constexpr int64_t kNamedAtOnce = 100, kNameEveryNs = kNsPerSecond;
 
@@ -92,12 +92,12 @@ void PointerDevice::listen() {
 }
 
 void PointerDevice::takeWishes() {
-    reader_.take(kMostWishesAtOnce,
+    reader_.take(kMaxWishesAtOnce,
                  [this](const dds::HandPointerSample& sample, const dds::SampleInfo& info) {
                      if (!info.has_data || sample.session != config_.session) return;
                      const auto wish = parseHandWish(dds::payloadOf(sample), sample.sender);
                      if (!wish) {
-                         if (++malformed_ <= kMostNamedWishes)
+                         if (++malformed_ <= kMaxNamedWishes)
                              spdlog::warn("dropped a malformed wish of viewer {}", sample.sender);
                          return;
                      }

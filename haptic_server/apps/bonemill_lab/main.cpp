@@ -44,7 +44,7 @@ void addReplayOptions(CLI::App& app, ReplayOptions& replay) {
     app.add_option("--session", replay.session, "session number under which it is shown");
     app.add_option("--domain", replay.domain, "DDS domain, 0 to 230");
     dds::addNetworkOptions(app, replay.network);
-    app.add_option("--at", replay.at_s, "begin at this moment, s")->check(within(0, kMostSeconds));
+    app.add_option("--at", replay.at_s, "begin at this moment, s")->check(within(0, kMaxSeconds));
     app.add_option("--speed", replay.speed, "so many times as fast as it was")
         ->check(within(Player::kSlowest, Player::kFastest))
         ->capture_default_str();

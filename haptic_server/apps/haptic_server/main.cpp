@@ -39,7 +39,7 @@ void addServerOptions(CLI::App& app, ServerOptions& server) {
                    "go on from that moment of a recording: FILE.mcap@SECONDS (docs/teach/replay.md)");
     app.add_option("--seconds", server.seconds,
                    "stop this long after the first tick; 0: run until SIGINT or SIGTERM")
-        ->check(within(0, kMostSeconds));
+        ->check(within(0, kMaxSeconds));
     app.add_option(
         "--accuracy", server.accuracy,
         "accuracy.json of accuracy-report, to show errors; default: SCENE.accuracy.json if it exists");

@@ -94,9 +94,9 @@ BlockLayer layerOf(const std::string& text, bool is_last) {
 }
 
 BlockPhantom blockOf(const BlockArguments& arguments) {
-    constexpr size_t kMostLayers = 255;  // labels of 8 bit
+    constexpr size_t kMaxLayers = 255;  // labels of 8 bit
     constexpr double kMostVoxels = 1u << 30;
-    if (arguments.layers.size() > kMostLayers) throw UserError("--layers: 255 at most");
+    if (arguments.layers.size() > kMaxLayers) throw UserError("--layers: 255 at most");
     BlockPhantom block;
     block.size = Eigen::Vector3d(arguments.size_mm.data()) * kMillimetre;
     block.layers.clear();

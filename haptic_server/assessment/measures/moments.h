@@ -11,12 +11,12 @@ namespace bonemill {
 
 class WorstMoments {
   public:
-    static constexpr size_t kMostKept = 64;
+    static constexpr size_t kMaxKept = 64;
 
     // When there are too many, the mildest goes.
     void add(Moment moment) {
         kept_.push_back(std::move(moment));
-        if (kept_.size() <= kMostKept) return;
+        if (kept_.size() <= kMaxKept) return;
         kept_.erase(std::ranges::min_element(kept_, {}, &Moment::severity));
     }
     std::vector<Moment> inOrder() const {

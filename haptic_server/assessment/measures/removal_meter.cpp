@@ -28,7 +28,7 @@ void RemovalMeter::add(const MotionSample& sample) noexcept {
 // The force on the hand points away from the bone, but for friction.
 void RemovalMeter::addAngle(const TickStep& step) noexcept {
     const double force = step.force();
-    if (!step.isInContact() || force < kLeastForce) return;
+    if (!step.isInContact() || force < kMinForce) return;
     const double cosine = std::clamp(step.f_W().dot(step.axis_W()) / force, -1.0, 1.0);
     const double angle = std::acos(cosine) / kDegree;
     angle_.add(angle, step.dt);

@@ -26,7 +26,7 @@ class RemovalMeter {
 
   private:
     static constexpr double kNear = 2e-3;       // m from a structure
-    static constexpr double kLeastForce = 0.2;  // N: below, the force has no direction that counts
+    static constexpr double kMinForce = 0.2;  // N: below, the force has no direction that counts
     static constexpr double kSide = 45;         // degrees from the bone's normal: beyond, the side cuts
 
     void addAngle(const TickStep& step) noexcept;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kHighestFrequency = 10;  // Hz
-constexpr double kLeastMagnitude = 0.05;  // of the largest
+constexpr double kMinMagnitude = 0.05;  // of the largest
 constexpr int kPadding = 4;               // powers of two
 
 using Complex = std::complex<double>;
@@ -67,7 +67,7 @@ double sparc(std::span<const double> speed, double rate) {
     while (magnitude.size() > 1 && double(magnitude.size() - 1) * spectrum.df > kHighestFrequency)
         magnitude.pop_back();
     for (double& value : magnitude) value /= largest;
-    const auto is_large = [](double value) { return value >= kLeastMagnitude; };
+    const auto is_large = [](double value) { return value >= kMinMagnitude; };
     const auto first = std::ranges::find_if(magnitude, is_large);
     const auto last = std::find_if(magnitude.rbegin(), magnitude.rend(), is_large).base();
     const auto steps = double(last - first - 1);

@@ -30,14 +30,14 @@ struct StepSums {
 
 class StepTable {
   public:
-    static constexpr size_t kMostRows = 2048;
+    static constexpr size_t kMaxRows = 2048;
 
     // A row is `step` wide, > 0, at first.
     explicit StepTable(double step) : step_(step) {}
 
     // `at` >= 0; what is smaller than before belongs to the newest row.
     void add(double at, const StepSums& sums) {
-        while (at / step_ >= double(kMostRows)) widen();
+        while (at / step_ >= double(kMaxRows)) widen();
         const size_t row = std::max(size_t(at / step_), rows_.empty() ? 0 : rows_.size() - 1);
         if (row >= rows_.size()) rows_.resize(row + 1);
         rows_[row].add(sums);

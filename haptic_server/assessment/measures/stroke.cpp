@@ -8,7 +8,7 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kLeastSmoothnessSamples = 5;  // 0.1 s: below that a spectrum says nothing
+constexpr size_t kMinSmoothnessSamples = 5;  // 0.1 s: below that a spectrum says nothing
 
 std::vector<double> speedsOf(std::span<const MotionSample> samples) {
     std::vector<double> speeds(samples.size());
@@ -37,7 +37,7 @@ StrokeMeasures measuresOf(std::span<const MotionSample> samples) {
         stroke.mean_force += sample.force / double(samples.size());
         stroke.removed += sample.removed;
     }
-    if (samples.size() < kLeastSmoothnessSamples) return stroke;
+    if (samples.size() < kMinSmoothnessSamples) return stroke;
     const std::vector<double> speeds = speedsOf(samples);
     stroke.sparc = sparc(speeds, MotionSample::kRate);
     stroke.ldlj = logDimensionlessJerk(speeds, MotionSample::kRate);

@@ -32,11 +32,11 @@ StrokeMeasures measuresOf(std::span<const MotionSample> samples);
 // Of each definition of a stroke, those of a session: as many as this exactly, and of the rest their number.
 class StrokeList {
   public:
-    static constexpr size_t kMostKept = 20'000;
+    static constexpr size_t kMaxKept = 20'000;
 
     void add(const StrokeMeasures& stroke) {
         ++count_;
-        if (kept_.size() < kMostKept) kept_.push_back(stroke);
+        if (kept_.size() < kMaxKept) kept_.push_back(stroke);
     }
     size_t count() const noexcept { return count_; }
     // Of those that have it; NaN if none has.

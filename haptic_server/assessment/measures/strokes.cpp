@@ -6,7 +6,7 @@
 namespace bonemill {
 namespace {
 
-constexpr double kLeastReach = 5e-5;  // m: a hand that rests does not turn
+constexpr double kMinReach = 5e-5;  // m: a hand that rests does not turn
 constexpr auto kGapSamples = size_t(TurnStrokes::kLongestGap * MotionSample::kRate);
 
 }  // namespace
@@ -18,13 +18,13 @@ void TurnStrokes::add(const MotionSample& sample) {
     samples_.push_back(sample);
     if (is_cutting) last_cutting_ = samples_.size() - 1;
     if (samples_.size() > 2 * kReach) judge(samples_.size() - 1 - kReach);
-    if (samples_.size() == kMostSamples) cutAt(samples_.size() - 1);
+    if (samples_.size() == kMaxSamples) cutAt(samples_.size() - 1);
 }
 
 void TurnStrokes::judge(size_t at) {
     const Eigen::Vector3d before = samples_[at].p_W - samples_[at - kReach].p_W;
     const Eigen::Vector3d after = samples_[at + kReach].p_W - samples_[at].p_W;
-    const bool is_turn = before.dot(after) < 0 && before.norm() > kLeastReach && after.norm() > kLeastReach;
+    const bool is_turn = before.dot(after) < 0 && before.norm() > kMinReach && after.norm() > kMinReach;
     if (!is_turn) {
         if (slowest_ != 0) cutAt(slowest_);
         return;
@@ -81,7 +81,7 @@ void MinimumStrokes::add(const MotionSample& sample) {
     speeds_.push_back(speed);
     peak_ = std::max(peak_, speed);
     slow_ = speed < kShare * peak_ ? slow_ + 1 : 0;
-    if (slow_ < kLeastSamples && samples_.size() < kMostSamples) return;
+    if (slow_ < kMinSamples && samples_.size() < kMaxSamples) return;
     const auto first = speeds_.end() - std::max(slow_, 1);
     endAt(size_t(std::min_element(first, speeds_.end()) - speeds_.begin()));
 }

@@ -18,7 +18,7 @@ class TurnStrokes {
   public:
     static constexpr int kReach = 3;              // samples, 60 ms
     static constexpr double kLongestGap = 0.2;    // s without removal
-    static constexpr size_t kMostSamples = 1000;  // of a stroke, 20 s: there it is cut
+    static constexpr size_t kMaxSamples = 1000;  // of a stroke, 20 s: there it is cut
 
     void add(const MotionSample& sample);
     void finish() { endPeriod(); }
@@ -60,8 +60,8 @@ class ContactBouts {
 class MinimumStrokes {
   public:
     static constexpr double kShare = 0.15;
-    static constexpr int kLeastSamples = 3;
-    static constexpr size_t kMostSamples = 1000;
+    static constexpr int kMinSamples = 3;
+    static constexpr size_t kMaxSamples = 1000;
 
     void add(const MotionSample& sample);
     void finish();

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kCavityVersion = 1;
 constexpr double kWalkStepsPerVoxel = 4;
-constexpr size_t kMostSteps = 40'000'000;  // of all walks; a second
+constexpr size_t kMaxSteps = 40'000'000;  // of all walks; a second
 
 // Something was taken away right in front of it: it is no part of the surface as it was.
 bool isCut(const ChangeGrid& changes, const CutPiece& piece) {
@@ -64,7 +64,7 @@ void addCavityFigures(const ChangeGrid& changes, const std::vector<CutPiece>& pi
     double undercut = 0;
     bool is_hollow = false;
     // Of very many pieces every n-th stands for the others.
-    const size_t stride = 1 + pieces.size() * size_t(walk.steps()) / kMostSteps;
+    const size_t stride = 1 + pieces.size() * size_t(walk.steps()) / kMaxSteps;
     for (size_t n = 0; n < pieces.size(); n += stride) {
         const CutPiece& piece = pieces[n];
         if (!piece.is_judged || !isCut(changes, piece)) continue;

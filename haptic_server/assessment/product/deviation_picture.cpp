@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-constexpr int kMostPixels = 480;  // per side
+constexpr int kMaxPixels = 480;  // per side
 constexpr double kFineScale = 1e-3, kScaleVoxels = 3;
 
 using Colour = std::array<double, 3>;
@@ -98,7 +98,7 @@ DeviationPicture drawDeviation(const Deviation& deviation, const std::vector<Cut
     for (const CutPiece& piece : deviation.pieces) window.extend(view.place(piece.center_V));
     const Eigen::Vector2d rim = Eigen::Vector2d::Constant(6 * voxel);
     window = {window.min() - rim, window.max() + rim};
-    const double pixel = std::max(voxel / 16, window.sizes().maxCoeff() / kMostPixels);
+    const double pixel = std::max(voxel / 16, window.sizes().maxCoeff() / kMaxPixels);
     Canvas canvas(window, pixel);
     const double radius = std::max(0.8 * voxel, pixel);
     const auto draw = [&](const CutPiece& piece, const Colour& colour) {

@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kPlanVersion = 1;
 constexpr double kBeside = 10e-3;  // m from the line; what was removed farther off is no part of the hole
-constexpr int64_t kFewestVoxels = 30;
-constexpr double kLeastSlenderness = 1.5;  // standard deviations along and across
+constexpr int64_t kMinVoxels = 30;
+constexpr double kMinSlenderness = 1.5;  // standard deviations along and across
 
 struct Hole {
     Eigen::Vector3d start_V, end_V;  // of its axis
@@ -41,12 +41,12 @@ std::optional<Hole> holeOf(const ChangeGrid& changes, const PlannedLine& line) {
         sum += p;
         squares += p * p.transpose();
     });
-    if (count < kFewestVoxels) return std::nullopt;
+    if (count < kMinVoxels) return std::nullopt;
     const Eigen::Vector3d middle = sum / double(count);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> moments(squares / double(count) -
                                                                  middle * middle.transpose());
     const Eigen::Vector3d& variance = moments.eigenvalues();  // ascending
-    if (variance[2] < kLeastSlenderness * kLeastSlenderness * variance[1]) return std::nullopt;
+    if (variance[2] < kMinSlenderness * kMinSlenderness * variance[1]) return std::nullopt;
     Eigen::Vector3d axis = moments.eigenvectors().col(2);
     if (axis.dot(line.tip_V - line.entry_V) < 0) axis = -axis;
     const Eigen::Vector3d middle_V = line.entry_V + middle;

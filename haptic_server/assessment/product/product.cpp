@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-constexpr int64_t kMostGridVoxels = 16'000'000;  // time and memory are bounded
+constexpr int64_t kMaxGridVoxels = 16'000'000;  // time and memory are bounded
 constexpr double kMargin = 4e-3;                 // m around what is gone or shall be
 
 IndexBox gridBoxOf(const IndexBox& changed, const VoxelVolume& volume) {
@@ -48,7 +48,7 @@ Product measureProduct(const ProductInput& input) {
     addZoneFigures(counts, input.task, voxel_volume, product.figures);
     if (input.breach) addBreachFigures(*input.breach, product.figures);
     if (!counts.changed.isEmpty()) {
-        if (gridBoxOf(counts.changed, input.now).count() <= kMostGridVoxels)
+        if (gridBoxOf(counts.changed, input.now).count() <= kMaxGridVoxels)
             measureShape(input, counts.changed, product);
         else
             product.left_out.push_back(

@@ -10,8 +10,8 @@ namespace bonemill {
 namespace {
 
 constexpr double kNoiseShare = 1e-3;  // of the largest piece: less is noise
-constexpr double kLeastOutwards = 0.1;
-constexpr size_t kMostListed = 8;
+constexpr double kMinOutwards = 0.1;
+constexpr size_t kMaxListed = 8;
 constexpr double kMetalShare = 0.2;  // of a piece: the rest is its rim, which is blurred
 
 std::optional<Eigen::Vector3d> pointOf(const std::vector<double>& mm) {
@@ -70,7 +70,7 @@ void describePieces(const BonePieces& pieces, const VolumeGeometry& geometry, ui
     const auto noise =
         std::ranges::count_if(pieces.list(), [&](const BonePiece& piece) { return piece.voxels < smallest; });
     const size_t count = pieces.list().size() - size_t(noise);
-    for (size_t n = 0; n < std::min(count, kMostListed); ++n)
+    for (size_t n = 0; n < std::min(count, kMaxListed); ++n)
         remarks.push_back(textOf(pieces.list()[n], n + 1, geometry));
     if (noise > 0) remarks.push_back(std::to_string(noise) + " smaller pieces are taken for noise");
     if (count > 1) remarks.push_back("--drop-piece NUMBER leaves one out: a head holder, a cable");
@@ -165,7 +165,7 @@ CasePlan planCase(const CaseBone& bone, const CaseRequest& request) {
         within = half.x();
     }
     const Eigen::Vector3d from = pointOf(request.from_mm).value_or(2 * middle - bone.middle) - middle;
-    if (from.norm() > kLeastOutwards * kMillimetre) plan.outwards = from.normalized();
+    if (from.norm() > kMinOutwards * kMillimetre) plan.outwards = from.normalized();
     plan.start = scan.surface(middle, plan.outwards, within);
     if (plan.region && !scan.isBone(plan.start))
         throw UserError("there is no bone at --at " + textOf(middle) + " for a hand that comes from " +

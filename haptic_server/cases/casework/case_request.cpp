@@ -17,7 +17,7 @@ CaseLabel numberAndName(const std::string& word) {
     uint32_t number = 0;
     const char* const end = word.data() + equals;
     const auto read = std::from_chars(word.data(), end, number);
-    if (read.ec != std::errc() || read.ptr != end || number > kMostLabel)
+    if (read.ec != std::errc() || read.ptr != end || number > kMaxLabel)
         throw UserError("--label " + word +
                         ": write NUMBER=NAME, or the NAME of a segment, and :protected or :target behind it");
     return {.labels = {number}, .name = word.substr(equals + 1)};

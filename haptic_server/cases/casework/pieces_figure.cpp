@@ -12,14 +12,14 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostColours = 8;   // pieces: those that make-case lists; the others are grey
-constexpr double kMostPixels = 420;  // along the longest edge
+constexpr size_t kMaxColours = 8;   // pieces: those that make-case lists; the others are grey
+constexpr double kMaxPixels = 420;  // along the longest edge
 constexpr double kPale = 0.7;        // how white a piece is that is left out
 constexpr double kDrawn = 780, kAround = 80, kBetween = 110, kLegend = 380;  // pixels of the figure
 constexpr double kMargin = 0.03;                                             // of the longest edge
-constexpr size_t kMostMetal = 20;
+constexpr size_t kMaxMetal = 20;
 
-const std::array<Colour, kMostColours + 1> kColours = {{{222, 190, 130},
+const std::array<Colour, kMaxColours + 1> kColours = {{{222, 190, 130},
                                                         {70, 130, 220},
                                                         {210, 70, 60},
                                                         {80, 170, 80},
@@ -54,7 +54,7 @@ Eigen::AlignedBox3d boxOfDrawn(const BonePieces& pieces, const VolumeGeometry& g
 }
 
 uint8_t colourOf(size_t piece) {
-    return uint8_t(std::min(piece, kMostColours));
+    return uint8_t(std::min(piece, kMaxColours));
 }
 
 std::vector<PieceView> viewsOf(const CasePlan& plan, const VolumeGeometry& geometry,
@@ -121,7 +121,7 @@ std::string regionIn(const ViewSide& side, const Eigen::AlignedBox3d& region) {
 
 std::string metalIn(const ViewSide& side, const Metal& metal, const VolumeGeometry& geometry) {
     std::ostringstream text;
-    for (size_t n = 0; n < std::min(metal.pieces.size(), kMostMetal); ++n) {
+    for (size_t n = 0; n < std::min(metal.pieces.size(), kMaxMetal); ++n) {
         const Eigen::Vector3d at = geometry.X_WV *
                                    Eigen::Vector3d(metal.pieces[n].middle.cwiseProduct(geometry.spacing)) *
                                    kPerMillimetre;
@@ -144,13 +144,13 @@ std::string legendOf(const CasePlan& plan, const VolumeGeometry& geometry, const
         line -= 24;
     };
     next(nullptr, "{/:Bold Pieces of bone}, by the numbers of --drop-piece");
-    for (size_t n = 0; n < std::min(count, kMostColours); ++n) {
+    for (size_t n = 0; n < std::min(count, kMaxColours); ++n) {
         const double volume = double(plan.pieces->list()[n].voxels) * geometry.spacing.prod();
         next(&kColours[n],
              std::to_string(n + 1) + ":  " + volumeText(volume) + (plan.is_dropped[n] ? ", left out" : ""));
     }
-    if (count > kMostColours)
-        next(&kColours[kMostColours], std::to_string(count - kMostColours) + " smaller ones");
+    if (count > kMaxColours)
+        next(&kColours[kMaxColours], std::to_string(count - kMaxColours) + " smaller ones");
     if (plan.region) next(nullptr, "dashed: the part that is milled");
     if (!plan.metal.pieces.empty()) next(nullptr, "crosses: metal");
     return text.str();
@@ -165,10 +165,10 @@ PiecesFigure piecesFigure(const RawVolume& scan, const CasePlan& plan) {
     });
     const size_t count = plan.pieces->list().size() - size_t(noise);
     const Eigen::AlignedBox3d box = boxOfDrawn(*plan.pieces, geometry, count);
-    const double pixel = std::max(box.sizes().maxCoeff() / kMostPixels, geometry.spacing.minCoeff());
+    const double pixel = std::max(box.sizes().maxCoeff() / kMaxPixels, geometry.spacing.minCoeff());
     const std::vector<PieceView> views = viewsOf(plan, geometry, box, pixel, count);
     std::vector<Colour> colours(kColours.begin(), kColours.end());
-    for (size_t n = 0; n < std::min(count, kMostColours); ++n)
+    for (size_t n = 0; n < std::min(count, kMaxColours); ++n)
         if (plan.is_dropped[n]) colours[n] += kPale * (Colour::Constant(255) - colours[n]);
     const Layout layout(box.sizes() * kPerMillimetre);
     PiecesFigure figure;
@@ -190,7 +190,7 @@ PiecesFigure piecesFigure(const RawVolume& scan, const CasePlan& plan) {
         if (plan.region) script << regionIn(side, *plan.region);
         script << metalIn(side, plan.metal, geometry);
         const std::vector<PieceView::Pixel> labels =
-            views[n].labelsOf(uint8_t(std::min(count, kMostColours)));
+            views[n].labelsOf(uint8_t(std::min(count, kMaxColours)));
         for (size_t piece = 0; piece < labels.size(); ++piece)
             if (labels[piece].column >= 0)
                 script << "set label \"" << piece + 1 << "\" at "

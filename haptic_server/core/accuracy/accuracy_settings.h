@@ -48,10 +48,10 @@ struct AccuracySettings {
     ToolDistance tool_distance = ToolDistance::kAnalytic;
     int sdf_refinement = 2;  // the scene's distance grid with nodes this many times as dense
     Precision precision = Precision::kFloat;
-    int iterations = 6;                // of the equilibrium solve, 1 .. kMostIterations; thesis_2012 has one
+    int iterations = 6;                // of the equilibrium solve, 1 .. kMaxIterations; thesis_2012 has one
     bool continuous_collision = true;  // long steps are swept; without, they are cut to the trust radius
 
-    static constexpr int kMostIterations = 16;
+    static constexpr int kMaxIterations = 16;
     bool operator==(const AccuracySettings&) const = default;
 };
 

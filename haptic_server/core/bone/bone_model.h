@@ -8,12 +8,12 @@ namespace bonemill {
 
 struct BoneModel {
     // How many bricks milling can open in a session: 34 million voxels, 34 cm³ at 0.1 mm, in 110 MB.
-    static constexpr size_t kMostSpareBricks = 8192;
+    static constexpr size_t kMaxSpareBricks = 8192;
 
     // leaf_cells is per axis, as for LeafLattice. It allocates.
     BoneModel(VoxelVolume bone, const Eigen::Vector3i& leaf_cells, const ShellConfig& shell_config)
         : volume(std::move(bone)), lattice(volume, leaf_cells), shell(volume, lattice, shell_config) {
-        volume.makeSpareBricks(std::min(kMostSpareBricks, volume.bricks().sharedCount()));
+        volume.makeSpareBricks(std::min(kMaxSpareBricks, volume.bricks().sharedCount()));
     }
 
     VoxelVolume volume;

@@ -13,7 +13,7 @@ namespace bonemill {
 
 class Checkpoints {
   public:
-    static constexpr size_t kMost = 8;
+    static constexpr size_t kMax = 8;
     static constexpr uint32_t kScannedBone = 0;  // as an id
 
     struct Checkpoint {
@@ -28,14 +28,14 @@ class Checkpoints {
     // Saves the bone as it is now, and returns the id; the oldest one goes if there are too many.
     uint32_t save(double session_s) {
         kept_.push_back({++last_id_, session_s, history_.snapshot(bone_)});
-        if (kept_.size() > kMost) kept_.pop_front();
+        if (kept_.size() > kMax) kept_.pop_front();
         return last_id_;
     }
     // One that was saved before, in another run: it is the newest now.
     void keep(Checkpoint checkpoint) {
         last_id_ = std::max(last_id_, checkpoint.id);
         kept_.push_back(std::move(checkpoint));
-        if (kept_.size() > kMost) kept_.pop_front();
+        if (kept_.size() > kMax) kept_.pop_front();
     }
     bool has(uint32_t id) const {
         return id == kScannedBone || std::ranges::find(kept_, id, &Checkpoint::id) != kept_.end();

@@ -8,8 +8,8 @@
 namespace bonemill {
 namespace {
 
-constexpr int kMostAdvances = 64;
-constexpr double kSmallestAdvance = 1e-3;  // of the step
+constexpr int kMaxAdvances = 64;
+constexpr double kMinAdvance = 1e-3;  // of the step
 constexpr double kRounding = 2e-7;  // m, of two distances in single precision some cm from the tool point
 
 }  // namespace
@@ -61,11 +61,11 @@ double GradientContact::advance(const ToolField& tool, const Pose& X_VT, const V
     point_tests_ += candidates_.count;
     double t = 0;
     size_t tests = 0;
-    for (int n = 0; n < kMostAdvances && t < 1 && tests <= most_tests; ++n) {
+    for (int n = 0; n < kMaxAdvances && t < 1 && tests <= most_tests; ++n) {
         tests += candidates_.count;
         const double share = sweptShare(tool, X_VT.incremented(t * step.head<3>(), t * step.tail<3>()));
         t += share;
-        if (share < kSmallestAdvance) break;
+        if (share < kMinAdvance) break;
     }
     point_tests_ += tests;
     return std::min(t, 1.0);

@@ -111,9 +111,9 @@ class GradientContact {
     double margin() const noexcept { return margin_; }
 
   private:
-    static constexpr size_t kMostPieces = 65536;
+    static constexpr size_t kMaxPieces = 65536;
     // What was sampled as finely as asked for may come to N times most_samples.
-    static constexpr size_t kMostTimes = 2;
+    static constexpr size_t kMaxTimes = 2;
     // To cut the surface into samples and to solve with them takes as long as N point tests, each.
     static constexpr size_t kTestsPerSample = 20;
     // A contact counts for the stiffness cap in proportion to its depth, so that a new one comes in smoothly.
@@ -167,7 +167,7 @@ class GradientContact {
     GradientContactConfig config_;
     ContactWeights* weights_ = nullptr;
     Candidates candidates_;
-    SurfacePieces pieces_{kMostPieces};
+    SurfacePieces pieces_{kMaxPieces};
     PatchMemory patch_memory_{4096};
     std::vector<uint32_t>
         split_;  // ascending: the first split_count_ are candidates whose pieces take their place

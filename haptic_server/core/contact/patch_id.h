@@ -14,7 +14,7 @@ namespace bonemill {
 // blocks: x fastest.
 struct BlockKey {
     static constexpr int kAxisBits = 10;
-    static constexpr int kMostPerAxis = 1 << kAxisBits;  // blocks of a leaf
+    static constexpr int kMaxPerAxis = 1 << kAxisBits;  // blocks of a leaf
 
     uint32_t packed = 0;
 
@@ -22,7 +22,7 @@ struct BlockKey {
         return {uint32_t(index.x() | index.y() << kAxisBits | index.z() << 2 * kAxisBits)};
     }
     Eigen::Vector3i index() const noexcept {
-        constexpr uint32_t kMask = kMostPerAxis - 1;
+        constexpr uint32_t kMask = kMaxPerAxis - 1;
         return {int(packed & kMask), int(packed >> kAxisBits & kMask), int(packed >> 2 * kAxisBits & kMask)};
     }
     auto operator<=>(const BlockKey&) const = default;

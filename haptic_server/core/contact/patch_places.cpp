@@ -74,7 +74,7 @@ void GradientContact::refine(const ShellView& bone, const ToolField& tool, const
     const size_t affordable = std::min(most_tests / kTestsPerSample, bone.affordable_samples);
     const size_t asked_for = size_t(bone.most_samples);
     const size_t most_of_new = std::min(asked_for, affordable),
-                 most = std::min(kMostTimes * asked_for, affordable);
+                 most = std::min(kMaxTimes * asked_for, affordable);
     if (2 * split_count_ > most_of_new) {  // there are points enough
         has_fewer_samples_ = 2 * split_count_ <= asked_for;
         split_count_ = 0;
@@ -82,7 +82,7 @@ void GradientContact::refine(const ShellView& bone, const ToolField& tool, const
     }
     for (size_t n = 0; n < split_count_; ++n) cutPatch(bone, split_[n]);
     const uint8_t level_of_new = pieces_.cut(most_of_new, most);
-    has_fewer_samples_ = pieces_.isCoarse() && affordable < kMostTimes * asked_for &&
+    has_fewer_samples_ = pieces_.isCoarse() && affordable < kMaxTimes * asked_for &&
                          (most_of_new < asked_for || pieces_.count() > most);
     for (size_t n = 0; n < split_count_; ++n)
         if (uint8_t& level = patch_memory_.levelOf(candidates_.patch[split_[n]]); level == PatchMemory::kNew)

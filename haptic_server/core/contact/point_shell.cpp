@@ -11,7 +11,7 @@ constexpr uint32_t kNoPatch = ~0u;
 
 size_t blocksPerLeaf(const LeafLattice& lattice, int factor) {
     const Eigen::Vector3i blocks = (lattice.leafCells().array() + (factor - 1)) / factor;
-    if (blocks.maxCoeff() > BlockKey::kMostPerAxis)
+    if (blocks.maxCoeff() > BlockKey::kMaxPerAxis)
         throw std::invalid_argument("PointShell: leaves of more than 1024 blocks per axis");
     return size_t(blocks.x()) * size_t(blocks.y()) * size_t(blocks.z());
 }

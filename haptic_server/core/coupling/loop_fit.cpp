@@ -17,7 +17,7 @@ constexpr int kCandidates = 1 + int(std::size(kShares) * std::size(kTimes));
 // Of the coupling's stiffness: from a wall to soft bone that is hardly touched, and free air.
 constexpr double kWalls[] = {std::numeric_limits<double>::infinity(), 4, 1, 0.3, 0};
 constexpr int kLoopsPerAdvance = 6;
-constexpr double kLeastStiffness = 1e-3;  // of the wish
+constexpr double kMinStiffness = 1e-3;  // of the wish
 constexpr double kStep = 0.92;            // from stiffness to stiffness
 // A larger share is felt in the flicker of the encoders: it must be worth so much stiffness per unit.
 constexpr double kShareIsWorth = 1.03;
@@ -95,7 +95,7 @@ int LoopFit::soften() noexcept {
     springs.stiffness = tried_;
     tried_ *= kStep;
     const double least =
-        std::max(kLeastStiffness * wish_.stiffness,
+        std::max(kMinStiffness * wish_.stiffness,
                  found_ * pinned::pow(kShareIsWorth, springs.relaxing_share - best_.relaxing_share));
     const bool is_worth_it = springs.stiffness > least;
     if (is_worth_it && !isStable(springs, loops)) return loops;
@@ -108,7 +108,7 @@ int LoopFit::soften() noexcept {
     if (!is_done_)
         tried_ = shape().stiffness;
     else if (found_ == 0)
-        best_.stiffness = kLeastStiffness * wish_.stiffness;
+        best_.stiffness = kMinStiffness * wish_.stiffness;
     return loops;
 }
 

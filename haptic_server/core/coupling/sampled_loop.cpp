@@ -14,10 +14,10 @@ namespace {
 // The states are place and speed of the handle, force of the amplifier, tool's lag behind the handle,
 // what the relaxing spring follows, and the forces on their way.
 enum State { kPlace, kSpeed, kForce, kLag, kFollowed, kPipe };
-constexpr int kMostDelay = 7;
-constexpr int kMostStates = kPipe + kMostDelay + 1;
-using LoopMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostStates, kMostStates>;
-using LoopRow = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kMostStates>;
+constexpr int kMaxDelay = 7;
+constexpr int kMaxStates = kPipe + kMaxDelay + 1;
+using LoopMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStates, kMaxStates>;
+using LoopRow = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kMaxStates>;
 
 // The device under a force that is held: (place, speed, force, command), exact by scaling and squaring.
 Eigen::Matrix4d heldFor(const HandleAxis& axis, double time) noexcept {
@@ -39,7 +39,7 @@ Eigen::Matrix4d heldFor(const HandleAxis& axis, double time) noexcept {
 }  // namespace
 
 double growthPerTick(const HandleAxis& axis, const LoopSprings& springs, double wall, double dt) noexcept {
-    const int whole = std::clamp(int(axis.delay_s / dt + 1e-9), 0, kMostDelay - 1);
+    const int whole = std::clamp(int(axis.delay_s / dt + 1e-9), 0, kMaxDelay - 1);
     const double part = std::clamp(axis.delay_s - whole * dt, 0.0, dt);
     const int pipe = whole + 1;
     const int states = kPipe + pipe;
@@ -88,7 +88,7 @@ double growthPerTick(const HandleAxis& axis, const LoopSprings& springs, double 
         A.col(kPlace).setZero();
     }
     // Same units for all: N.
-    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostStates, 1> scale(states);
+    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxStates, 1> scale(states);
     scale.setOnes();
     scale[kPlace] = scale[kLag] = scale[kFollowed] = k;
     scale[kSpeed] = std::sqrt(k * axis.inertia);

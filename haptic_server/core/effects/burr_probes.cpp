@@ -14,7 +14,7 @@ BurrProbes::BurrProbes(const Burr& burr) noexcept {
     }
     const double half = burr.length / 2;
     const double radii = burr.length / std::max(burr.radius, 1e-6);
-    const auto balls = size_t(std::clamp(std::ceil(radii), double(kLeastBalls), double(kMostBalls)));
+    const auto balls = size_t(std::clamp(std::ceil(radii), double(kMinBalls), double(kMaxBalls)));
     for (size_t n = 0; n < balls; ++n) {
         const double y = half * (2.0 * (double(n) + 0.5) / double(balls) - 1);
         const Eigen::Vector3d center(0, y, 0);

@@ -15,7 +15,7 @@ struct BurrProbe {
 };
 
 // A ball is one probe. A cylinder or cone has balls inside of it along the axis, a radius apart (more, if it
-// is longer than kMostBalls radii), and points on both rims.
+// is longer than kMaxBalls radii), and points on both rims.
 class BurrProbes {
   public:
     BurrProbes() = default;
@@ -25,14 +25,14 @@ class BurrProbes {
     const BurrProbe* end() const noexcept { return probes_.data() + count_; }
     size_t size() const noexcept { return count_; }
 
-    static constexpr size_t kLeastBalls = 5, kMostBalls = 24, kRim = 8;
-    static constexpr size_t kMost = kMostBalls + 2 * kRim;
+    static constexpr size_t kMinBalls = 5, kMaxBalls = 24, kRim = 8;
+    static constexpr size_t kMax = kMaxBalls + 2 * kRim;
 
   private:
     void add(const BurrProbe& probe) noexcept { probes_[count_++] = probe; }
     void addRim(double y, double radius) noexcept;
 
-    std::array<BurrProbe, kMost> probes_;
+    std::array<BurrProbe, kMax> probes_;
     size_t count_ = 0;
 };
 

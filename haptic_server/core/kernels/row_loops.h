@@ -41,7 +41,7 @@ void fromWay(const BurrPlane& b, const RowPlace& place, const Floats& x, Floats&
 template <int kDirection, bool kIsSwept>
 void millRow(const BurrPlane& b, const RowPlace& place, const uint16_t* row, int count, uint16_t* out,
              MilledLanes& milled) {
-    constexpr float kMost = 65535, kCore = kDirection < 0 ? 0 : kMost;
+    constexpr float kMax = 65535, kCore = kDirection < 0 ? 0 : kMax;
     Ints lane;
     for (int l = 0; l < kWidth; ++l) lane[l] = l;
     for (int i = 0; i < kBrickCells; i += kWidth) {
@@ -55,7 +55,7 @@ void millRow(const BurrPlane& b, const RowPlace& place, const uint16_t* row, int
         rootOf(squared, distance);
         const Floats ramp = float(b.iso) - float(kDirection) * b.slope * (distance - b.radius);
         const Floats low = ramp < 0 ? Floats{} : ramp;
-        const Floats clamped = (low > kMost ? Floats{} + kMost : low) + 0.5f;
+        const Floats clamped = (low > kMax ? Floats{} + kMax : low) + 0.5f;
         const Ints limit =
             __builtin_convertvector(squared < b.core_squared ? Floats{} + kCore : clamped, Ints);
         const Ints step = old + kDirection * b.amount;

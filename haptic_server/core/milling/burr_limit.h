@@ -40,7 +40,7 @@ class BurrLimit {
   public:
     // The ramp ends here (in largest spacings outside the burr) also where a low or high iso-value would let
     // it go on: the work of a tick stays bounded.
-    static constexpr double kLargestReach = 3;
+    static constexpr double kMaxReach = 3;
 
     BurrLimit(const VoxelVolume& volume, double burr_radius, MillingShape shape, int direction) noexcept
         : radius_(burr_radius), iso_(volume.iso()) {
@@ -55,7 +55,7 @@ class BurrLimit {
         slope_ = std::max(1.0, std::min(below, above)) / unit;
         const double inside = is_ramp ? (direction < 0 ? below : above) / slope_ : 0;
         const double outside = is_ramp ? (direction < 0 ? above : below) / slope_ : 0;
-        reach_ = radius_ + std::min(outside, kLargestReach * unit);
+        reach_ = radius_ + std::min(outside, kMaxReach * unit);
         const double core = std::max(0.0, radius_ - inside);
         core_squared_ = core * core;
     }

@@ -17,7 +17,7 @@ using Eigen::Vector3i;
 
 // Slopes flatter than this share of that of a ramp from air, or from full density, to the iso-value in one
 // voxel count as this, so that a surface on a plateau moves on.
-constexpr double kLeastSlope = 0.02;
+constexpr double kMinSlope = 0.02;
 constexpr double kGoldenRatio = 0.6180339887498949;  // spreads the roundings evenly
 constexpr int kUnclampedRounds = 3;                  // of corners that come to rest at zero
 
@@ -204,7 +204,7 @@ SurfaceShift::Wish SurfaceShift::wishOf(const VoxelVolume& volume, const Vector3
     const Vector3f t = target - target_cell.cast<float>();
     const CellCorners corners = readCorners(volume, target_cell);
     const int to_iso = std::min(int(volume.iso()), kMaxDensity - volume.iso());
-    const double least = kLeastSlope * to_iso / volume.spacing().maxCoeff() * recession;
+    const double least = kMinSlope * to_iso / volume.spacing().maxCoeff() * recession;
     // The point itself is on the surface but for its projection's tolerance.
     const float excess = std::max(sampleField(corners, t).excess - here.excess, float(least));
     return {target, equalDrop(corners, float(volume.iso()), t, excess)};
@@ -312,7 +312,7 @@ double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double shar
     if (patch_count_ == 0 || !(share > 0)) return 0;
     is_too_fast_ = false;
     findPatches(bone);
-    spreadWishes(bone, u, share, kMostShift * double(ticks) * bone.volume.spacing().minCoeff());
+    spreadWishes(bone, u, share, kMaxShift * double(ticks) * bone.volume.spacing().minCoeff());
     result.is_cut_short |= is_too_fast_;
     if (touched_.isEmpty()) return 0;
     spreadRest(bone);

@@ -27,7 +27,7 @@ namespace bonemill {
 class SurfaceShift {
   public:
     // The surface moves no farther than this share of the thinnest voxel in a tick, times `ticks` of apply().
-    static constexpr double kMostShift = 0.25;
+    static constexpr double kMaxShift = 0.25;
 
     // There is room for contacts no farther from the burr's centre than `largest_reach`, in m. most_cells is
     // that of MillingConfig.

@@ -26,7 +26,7 @@ class CurvatureSecant {
     // The `step` changed the energy's gradient by `change`; `gauss_newton` is J'J behind it.
     void learn(const Vector6d& step, const Vector6d& change, const Matrix6d& gauss_newton) noexcept {
         const double along = step.dot(change), length = step.norm() * change.norm();
-        if (!(along > kLeastCosine * length)) return;
+        if (!(along > kMinCosine * length)) return;
         const Vector6d wanted = change - gauss_newton * step;
         const double so_far = std::abs(step.dot(S_ * step));
         if (so_far > 0) S_ *= std::min(1.0, std::abs(step.dot(wanted)) / so_far);
@@ -39,7 +39,7 @@ class CurvatureSecant {
 
   private:
     // A gradient that has turned away from the step says nothing of a minimum.
-    static constexpr double kLeastCosine = 1e-3;
+    static constexpr double kMinCosine = 1e-3;
     Matrix6d S_ = Matrix6d::Zero();
 };
 

@@ -15,10 +15,10 @@ namespace {
 constexpr double kRotationLength = 0.03;  // m
 constexpr double kSmallestReach = 1e-9;   // m: a shorter step is no step
 constexpr double kShortestLesson = 1e-7;  // m: over a shorter one the forces change mostly by rounding
-constexpr int kMostCuts = 4;              // of a step that goes uphill
+constexpr int kMaxCuts = 4;              // of a step that goes uphill
 // One cut leaves so much of a step's length: one that goes deep into a hard wall must become short.
 constexpr double kLongestCut = 0.5, kShortestCut = 0.05;
-constexpr double kFirstLambda = 1e-2, kMostLambda = 1e6;
+constexpr double kFirstLambda = 1e-2, kMaxLambda = 1e6;
 // Rounding of the depths must not refuse a step. It makes this share of the energy, some 10 roundings each.
 constexpr double kFloatNoise = 1e-6, kDoubleNoise = 1e-13;
 // The rounding of a place is this share of the tool's reach.
@@ -152,7 +152,7 @@ bool GradientModel::moveDown(State& state, const Vector6d& step, const Tick& tic
     const double noise = settings_.precision == Precision::kDouble ? kDoubleNoise : kFloatNoise;
     const double slope = stacked(state.total.wrench).dot(step);
     double share = 1;
-    for (int n = 0; n <= kMostCuts && (n == 0 || pointTestsLeft() > 0); ++n) {
+    for (int n = 0; n <= kMaxCuts && (n == 0 || pointTestsLeft() > 0); ++n) {
         const State next = evaluate(moved(state.X_VT, share * step), tick);
         if (next.isFinite() &&
             next.total.energy <= state.total.energy + noise * std::abs(state.total.energy)) {
@@ -218,7 +218,7 @@ bool GradientModel::tryOtherwise(const State& state, const Tick& tick, bool is_l
     const bool has_learnt = !curvature_.isEmpty();
     curvature_.forget();
     if (has_learnt && !is_last) return true;
-    if (!has_learnt) lambda_ = std::min(std::max(kFirstLambda, lambda_ * 10), kMostLambda);
+    if (!has_learnt) lambda_ = std::min(std::max(kFirstLambda, lambda_ * 10), kMaxLambda);
     tick.out->has_stalled = outOfBalance(state) > std::max(kFelt, kFeltBesideForce * state.contact_force);
     return false;
 }

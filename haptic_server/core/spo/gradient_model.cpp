@@ -8,19 +8,19 @@
 namespace bonemill {
 namespace {
 
-constexpr double kLeastMargin = 20e-6;  // m: what a hand moves in a millisecond when it works
+constexpr double kMinMargin = 20e-6;  // m: what a hand moves in a millisecond when it works
 constexpr double kMotionGrowth = 2;     // of the reach from tick to tick
 // A new tool grows by this much per time, m/s, which the hand feels as less than its coupling times that,
 // and only while it is not deeper in the bone than this share of its thinnest radius: squeezed more than that
 // by a hole that is too narrow, it could not be drawn out.
 constexpr double kGrowth = 0.01;
-constexpr double kMostDepthToGrow = 0.05;
+constexpr double kMaxDepthToGrow = 0.05;
 // Of the thinnest radius: where contact becomes so deep, and by so much deeper between two ticks in which the
 // tool has not moved, bone has appeared in the tool.
 constexpr double kDeepBone = GradientContact::kGuardFrom, kSuddenDepth = 0.2;
 // m/s: at this speed the tool's damping would take all that it may be pulled with.
 constexpr double kSpeedHeldBack = 0.4;
-constexpr size_t kMostCandidates = 65'536;
+constexpr size_t kMaxCandidates = 65'536;
 
 }  // namespace
 
@@ -38,7 +38,7 @@ GradientModel::GradientModel(const GradientConfig& config, const SpoWorld& world
       coupling_{config.coupling, tool.saturation_force},
       dt_(dt),
       field_(&tool_.model->field(settings_)),
-      contact_(config.contact, std::min(kMostCandidates, config.most_point_tests / 4)),
+      contact_(config.contact, std::min(kMaxCandidates, config.most_point_tests / 4)),
       relaxing_(coupling_, dt) {
     saturate();
     setAccuracy(settings_);
@@ -98,7 +98,7 @@ void GradientModel::fitTool(const Tick& tick) noexcept {
     is_new_tool_ = false;
     growing_.setOffset(0);
     useTool();
-    gather(tick.X_VT_start, kLeastMargin, *tick.out);
+    gather(tick.X_VT_start, kMinMargin, *tick.out);
     makeRoom(evaluate(tick.X_VT_start, tick).max_depth);
 }
 
@@ -121,7 +121,7 @@ bool GradientModel::hasBoneAppeared(const State& state) const noexcept {
 GradientModel::State GradientModel::begin(const Tick& tick) noexcept {
     is_new_tool_ ? fitTool(tick) : growTool();
     // What the last tick moved is a good guess of what this one will; a longer step gathers anew.
-    const double margin = std::min(trustRadius(), std::max(kLeastMargin, kMotionGrowth * last_reach_));
+    const double margin = std::min(trustRadius(), std::max(kMinMargin, kMotionGrowth * last_reach_));
     gather(tick.X_VT_start, margin, *tick.out);
     const State state = evaluate(tick.X_VT_start, tick);
     if (!hasBoneAppeared(state)) return state;
@@ -131,7 +131,7 @@ GradientModel::State GradientModel::begin(const Tick& tick) noexcept {
 }
 
 void GradientModel::growTool() noexcept {
-    if (growing_.offset() == 0 || last_depth_ > kMostDepthToGrow * growing_.whole().thinnestRadius()) return;
+    if (growing_.offset() == 0 || last_depth_ > kMaxDepthToGrow * growing_.whole().thinnestRadius()) return;
     growing_.setOffset(growing_.offset() - kGrowth * dt_);
     useTool();
 }

@@ -23,7 +23,7 @@ enum class RunSummary {
     kNone,
     kLargest,
     kLargestSize,  // of the absolute value
-    kLeast,
+    kMin,
     kSum,
     kLast,
 };

@@ -8,7 +8,7 @@
 namespace bonemill {
 namespace {
 
-constexpr int kMostGiven = 5;
+constexpr int kMaxGiven = 5;
 constexpr double kHalf = 0.5;
 constexpr double kComesBackAfter = 1;  // s in the air
 // A fit that is nearly as stiff as the wish is in force at once.
@@ -70,7 +70,7 @@ bool HandCoupling::takeAccount(const Pose& X_VT_device, const SpoStep& step) noe
 
 void HandCoupling::give(bool turns) noexcept {
     int& given = turns ? given_turns_ : given_;
-    given = std::min(given + 1, kMostGiven);
+    given = std::min(given + 1, kMaxGiven);
     use();
 }
 

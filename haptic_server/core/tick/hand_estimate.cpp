@@ -17,7 +17,7 @@ constexpr double kSpeedGain = 0.3, kPushGain = 0.01, kPushGainOfDamping = 0.02;
 // all: a hand that weighs as much as the device and its own late forces would else keep it swinging.
 constexpr double kGoodModel = 0.05, kBadModel = 0.15, kLately = 0.03;  // s
 constexpr double kHandMass = 0.1, kHandDamping = 8;                    // kg, N·s/m
-constexpr double kFarthestSteps = 100, kLeastFarthest = 1e-3;          // m
+constexpr double kFarthestSteps = 100, kMinFarthest = 1e-3;          // m
 
 }  // namespace
 
@@ -79,7 +79,7 @@ HandEstimate::HandEstimate(const HandleDynamics& handle, const HandSpring& sprin
       rotation_({handle.inertia, handle.angular_damping, handle.encoder_angle, spring.rotation_stiffness},
                 handle.amplifier_time, dt),
       space_(space),
-      farthest_(space.wayAtTool(std::max(kFarthestSteps * handle.encoder_step, kLeastFarthest))) {
+      farthest_(space.wayAtTool(std::max(kFarthestSteps * handle.encoder_step, kMinFarthest))) {
     const double ticks = std::min(handle.delay / dt, double(kRoom - 2));
     delay_ticks_ = size_t(ticks + 1e-9);
     delay_rest_ = std::max(ticks - double(delay_ticks_), 0.0);

@@ -9,16 +9,16 @@ namespace {
 
 // These are the least that a scene may ask for of coupling.max_force_n, max_torque_nmm and the stiffnesses. A
 // device that says less, and not 0, gives nothing that could be felt or would hold the tool.
-constexpr double kLeastForce = 0.1;                             // N
-constexpr double kLeastTorque = 0.1 * kMillimetre;              // N·m
-constexpr double kLeastStiffness = 1e-3 / kMillimetre;          // N/m
-constexpr double kLeastRotationStiffness = 0.05 * kMillimetre;  // N·m/rad
+constexpr double kMinForce = 0.1;                             // N
+constexpr double kMinTorque = 0.1 * kMillimetre;              // N·m
+constexpr double kMinStiffness = 1e-3 / kMillimetre;          // N/m
+constexpr double kMinRotationStiffness = 0.05 * kMillimetre;  // N·m/rad
 
 double forceOf(const DeviceCapabilities& device) noexcept {
-    return device.abilities & kAbilityForce && device.max_force >= kLeastForce ? device.max_force : 0;
+    return device.abilities & kAbilityForce && device.max_force >= kMinForce ? device.max_force : 0;
 }
 double torqueOf(const DeviceCapabilities& device) noexcept {
-    return device.abilities & kAbilityTorque && device.max_torque >= kLeastTorque ? device.max_torque : 0;
+    return device.abilities & kAbilityTorque && device.max_torque >= kMinTorque ? device.max_torque : 0;
 }
 
 // It is as stiff as the quicker of the two laws.
@@ -51,7 +51,7 @@ void fitForce(HandSide& side, const DeviceCapabilities& device, const HandSpace&
     if (side.limits.max_force == 0) return;
     side.most_pull = side.limits.max_force;
     if (device.max_stiffness > 0)
-        limitStiffness(side, space.forcePerWayAtTool(std::max(device.max_stiffness, kLeastStiffness)));
+        limitStiffness(side, space.forcePerWayAtTool(std::max(device.max_stiffness, kMinStiffness)));
 }
 
 void fitTorque(HandSide& side, const DeviceCapabilities& device, const HandSpace& space) noexcept {
@@ -59,7 +59,7 @@ void fitTorque(HandSide& side, const DeviceCapabilities& device, const HandSpace
     if (side.limits.max_torque == 0) return;
     if (device.max_rotation_stiffness > 0)
         limitRotationStiffness(
-            side, space.torqueAtTool(std::max(device.max_rotation_stiffness, kLeastRotationStiffness)));
+            side, space.torqueAtTool(std::max(device.max_rotation_stiffness, kMinRotationStiffness)));
     side.gradient.saturation_torque =
         std::min(side.gradient.saturation_torque, space.torqueAtTool(side.limits.max_torque));
 }

@@ -219,14 +219,14 @@ void HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept
 // might be caught behind bone. In bone it has no place; then it begins beside it, on the side that its shaft
 // comes from.
 void HapticTick::placeTool() noexcept {
-    constexpr int kMostSteps = 64;  // of a burr's radius: some cm
+    constexpr int kMaxSteps = 64;  // of a burr's radius: some cm
     Pose X_VT = X_VT_device_;
     const double radius = tools_[tool_].burr.radius;
     const Eigen::Vector3d step = radius * (X_VT.rotation * Eigen::Vector3d::UnitY());
     int steps = 0;
-    for (; steps < kMostSteps && isInBone(X_VT, radius); ++steps) X_VT.position += step;
+    for (; steps < kMaxSteps && isInBone(X_VT, radius); ++steps) X_VT.position += step;
     noteSuddenChange(SuddenChange::kHandJumps);
-    if (steps == kMostSteps) return;  // it comes as it can
+    if (steps == kMaxSteps) return;  // it comes as it can
     X_VT_ = X_VT;
     model_->restart();
     models_.forEach([](SpoModel& model) { model.expectOtherBone(); });

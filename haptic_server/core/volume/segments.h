@@ -22,7 +22,7 @@ struct Segments {
     bool are_layered = false;
 };
 
-inline constexpr size_t kMostSegments = 256;
+inline constexpr size_t kMaxSegments = 256;
 inline constexpr size_t kLongestSegmentName = 64;  // bytes
 
 }  // namespace bonemill

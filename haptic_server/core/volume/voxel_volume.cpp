@@ -18,7 +18,7 @@ VoxelVolume::VoxelVolume(const VolumeGeometry& geometry, Density iso, BrickStore
 void VoxelVolume::readRow(const Eigen::Vector3i& first, int count, Density* out) const noexcept {
     forEachRun(first, count, [&](size_t offset, int n) {
         // Always as many as a brick can have: a copy of known size is a few moves.
-        std::memcpy(out, ownerData() + offset, kMostInBrick * sizeof(Density));
+        std::memcpy(out, ownerData() + offset, kMaxInBrick * sizeof(Density));
         out += n;
     });
 }
@@ -80,8 +80,8 @@ bool VoxelVolume::hasOwn(BrickId brick, const Density* densities, int count) noe
 }
 
 void VoxelVolume::set(int i, int j, int k, Density density) {
-    constexpr size_t kMostHolding = 8;
-    if (bricks_.spareCount() < kMostHolding) bricks_.makeSpare(bricks_.ownCount() / 4 + kMostHolding);
+    constexpr size_t kMaxHolding = 8;
+    if (bricks_.spareCount() < kMaxHolding) bricks_.makeSpare(bricks_.ownCount() / 4 + kMaxHolding);
     writeRow({i, j, k}, 1, &density);
 }
 

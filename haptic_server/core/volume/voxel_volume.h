@@ -56,8 +56,8 @@ class VoxelVolume {
     // Copies `count` voxels along x to `out`, and up to kReadSlack more behind them. Only the owner may call
     // it; it is RT-safe.
     void readRow(const Eigen::Vector3i& first, int count, Density* out) const noexcept;
-    static constexpr int kMostInBrick = kBrickCells + kBrickHigh;  // of a row, from its own first cell on
-    static constexpr int kReadSlack = kMostInBrick - 1;
+    static constexpr int kMaxInBrick = kBrickCells + kBrickHigh;  // of a row, from its own first cell on
+    static constexpr int kReadSlack = kMaxInBrick - 1;
 
     // Calls visit(offset, n) for runs that make up this row of voxels, each in one brick: n voxels from
     // `offset` on. It is RT-safe, for any thread.
@@ -104,7 +104,7 @@ class VoxelVolume {
     static int stretch(int index, int last, int most) noexcept {
         return std::min(most - ((index + 1) & (kBrickCells - 1)), last - index + 1);
     }
-    template <int kMost, class Visit>
+    template <int kMax, class Visit>
     void forEachPiece(const IndexBox& voxels, Visit&& visit) const noexcept;
     // Bricks that hold any of these voxels, copies included.
     IndexBox bricksHolding(const IndexBox& voxels) const noexcept;
@@ -124,7 +124,7 @@ class VoxelVolume {
 template <class Visit>
 void VoxelVolume::forEachRun(const Eigen::Vector3i& first, int count, Visit&& visit) const noexcept {
     for (int i = first.x(); count > 0;) {
-        const int n = stretch(i, i + count - 1, kMostInBrick);
+        const int n = stretch(i, i + count - 1, kMaxInBrick);
         visit(offset(i, first.y(), first.z()), n);
         i += n;
         count -= n;
@@ -133,7 +133,7 @@ void VoxelVolume::forEachRun(const Eigen::Vector3i& first, int count, Visit&& vi
 
 template <class Visit>
 void VoxelVolume::forEachPart(const IndexBox& voxels, Visit&& visit) const noexcept {
-    forEachPiece<kMostInBrick>(voxels, visit);
+    forEachPiece<kMaxInBrick>(voxels, visit);
 }
 
 template <class Visit>
@@ -141,15 +141,15 @@ void VoxelVolume::forEachOwnedPart(const IndexBox& voxels, Visit&& visit) const 
     forEachPiece<kBrickCells>(voxels, visit);
 }
 
-template <int kMost, class Visit>
+template <int kMax, class Visit>
 void VoxelVolume::forEachPiece(const IndexBox& voxels, Visit&& visit) const noexcept {
     Eigen::Vector3i low, n;
     for (low.z() = voxels.min.z(); low.z() <= voxels.max.z(); low.z() += n.z()) {
-        n.z() = stretch(low.z(), voxels.max.z(), kMost);
+        n.z() = stretch(low.z(), voxels.max.z(), kMax);
         for (low.y() = voxels.min.y(); low.y() <= voxels.max.y(); low.y() += n.y()) {
-            n.y() = stretch(low.y(), voxels.max.y(), kMost);
+            n.y() = stretch(low.y(), voxels.max.y(), kMax);
             for (low.x() = voxels.min.x(); low.x() <= voxels.max.x(); low.x() += n.x()) {
-                n.x() = stretch(low.x(), voxels.max.x(), kMost);
+                n.x() = stretch(low.x(), voxels.max.x(), kMax);
                 visit(IndexBox{low, low + n - Eigen::Vector3i::Ones()}, offset(low.x(), low.y(), low.z()));
             }
         }

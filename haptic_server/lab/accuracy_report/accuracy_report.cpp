@@ -17,7 +17,7 @@ namespace bonemill {
 namespace {
 
 const std::vector<int> kRefinements{2, 4};
-constexpr int kMostThreads = 4;
+constexpr int kMaxThreads = 4;
 
 using SteadyClock = std::chrono::steady_clock;
 
@@ -108,7 +108,7 @@ ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::os
     if (removal && removal->rate > 0) milling = millingPath(places.front(), tick);
 
     progress << "truth along " << strokes.size() << " strokes" << std::endl;
-    const int threads = std::clamp(int(std::thread::hardware_concurrency()), 1, kMostThreads);
+    const int threads = std::clamp(int(std::thread::hardware_concurrency()), 1, kMaxThreads);
     const auto truth = computeTruth(strokes, tick, bone, probe, threads);
 
     AnalyticProbe plane({.tick = tick,

@@ -13,12 +13,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kLeastTicks = 3000, kMostTicks = 12'000;
+constexpr int kMinTicks = 3000, kMaxTicks = 12'000;
 constexpr double kDepth = 0.8, kSideways = 1;  // burr radii
 constexpr double kFrontThickness = 0.13;  // burr radii that the burr advances while a full voxel vanishes
 constexpr double kRestTimes = 1.5;        // times what a full voxel needs to vanish
 constexpr int kRefinement = 4;
-constexpr size_t kMostSamples = 4'000'000;
+constexpr size_t kMaxSamples = 4'000'000;
 constexpr double kPathStep =
     0.02;  // burr radii between the kept poses: ridges between their spheres are below 1e-4 R
 
@@ -78,7 +78,7 @@ PosePath millingPath(const ProbingPlace& place, const FixedTickConfig& tick) {
     const double length = (start - bottom).norm() + (end - bottom).norm();
     const double rest = kRestTimes * vanishingTime(tick);
     const double time = length / (kFrontThickness * radius / vanishingTime(tick)) + rest;
-    const double ticks = std::clamp(time / tick.dt, double(kLeastTicks), double(kMostTicks));
+    const double ticks = std::clamp(time / tick.dt, double(kMinTicks), double(kMaxTicks));
     const double rest_ticks = std::min(std::max(rest / tick.dt, 100.0), ticks / 3);
     std::vector<PathKnot> knots;
     constexpr int kKnots = 8;
@@ -95,7 +95,7 @@ MillingRun millAndRestore(const FixedTickConfig& tick, BoneModel& bone, BoneHist
     const double radius = tick.tool.burr.radius;
     const double margin = radius + 2 * bone.volume.spacing().maxCoeff();
     const IndexBox part = voxelsAround(bone.volume, boxOfPath(path, X_WV.inverse()), margin);
-    const int times = affordableRefinement(part, kRefinement, kMostSamples);
+    const int times = affordableRefinement(part, kRefinement, kMaxSamples);
     const VoxelVolume before = refinedPart(bone.volume, part, times);
     MillingRun run;
     run.records = runPath(tick, bone, inputsOf(path, tick.dt, kButtonRemove));

@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-constexpr double kSmallestError = 1e-3;  // %, for the logarithm
+constexpr double kMinError = 1e-3;  // %, for the logarithm
 
 std::string quoted(const std::string& text) {
     std::string out = "\"";
@@ -21,7 +21,7 @@ std::string quoted(const std::string& text) {
 }
 
 double errorPercent(const SettingFigures& f) {
-    return std::max(kSmallestError, 100 * f.errors.force_vector);
+    return std::max(kMinError, 100 * f.errors.force_vector);
 }
 
 bool isPreset(const SettingFigures& f) {

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kPush = 20e-6;  // m: how deep the tool is pushed to learn where the bone pushes back
-constexpr size_t kMostScenarioPlaces = 2;
+constexpr size_t kMaxScenarioPlaces = 2;
 constexpr int kAzimuths = 8;
 constexpr double kLyingHeight = 6;  // burr radii over the place: where the laid tool starts
 constexpr double kBeyond = 4;       // burr radii from the place to the laid tool's burr
@@ -30,9 +30,9 @@ struct Approach {
         const Vector3d normal = probe.pushOn(pose_at(*way + kPush));
         if (normal.isZero(0)) return false;
         const Pose X_WT = pose_at(*way);
-        const auto back = probe.freeWay(X_WT, normal, 2 * ProbingPlace::kMostRoom);
+        const auto back = probe.freeWay(X_WT, normal, 2 * ProbingPlace::kMaxRoom);
         const double room =
-            std::min(ProbingPlace::kMostRoom, 0.5 * back.value_or(2 * ProbingPlace::kMostRoom));
+            std::min(ProbingPlace::kMaxRoom, 0.5 * back.value_or(2 * ProbingPlace::kMaxRoom));
         if (room < kPush) return false;
         places.push_back({name, X_WT, normal, room});
         return true;
@@ -48,7 +48,7 @@ struct Approach {
 };
 
 void addScenarioPlaces(const scene::SimulatedOperator& scenario, Approach& approach) {
-    for (int n = 0; n + 1 < scenario.waypoint_size() && approach.places.size() < kMostScenarioPlaces; ++n) {
+    for (int n = 0; n + 1 < scenario.waypoint_size() && approach.places.size() < kMaxScenarioPlaces; ++n) {
         const Pose from = poseOf(scenario.waypoint(n)), to = poseOf(scenario.waypoint(n + 1));
         const double length = (to.position - from.position).norm();
         if (length == 0) continue;
@@ -66,7 +66,7 @@ void addFacePlaces(const BoneModel& bone, Approach& approach) {
     const VolumeGeometry& geometry = bone.volume.geometry();
     const Vector3d size = geometry.spacing.cwiseProduct(geometry.dims.cast<double>());
     const Vector3d middle = geometry.X_WV * (size / 2);
-    for (int face = 0; face < 6 && approach.places.size() < kMostScenarioPlaces; ++face) {
+    for (int face = 0; face < 6 && approach.places.size() < kMaxScenarioPlaces; ++face) {
         const Vector3d outward =
             geometry.X_WV.rotation * ((face & 1 ? 1.0 : -1.0) * Vector3d::Unit(2 - face / 2));
         const double way = size.norm();

@@ -95,7 +95,7 @@ std::string csvOf(const std::vector<Columns>& rows) {
 
 TruthSummary summaryOf(const std::vector<ProbingStroke>& strokes, const std::vector<Truth>& truth) {
     TruthSummary summary;
-    summary.refinement = kMostRefinement;
+    summary.refinement = kMaxRefinement;
     summary.closed_energy = INFINITY;
     NoiseSum noise;
     ErrorSum coarser;

@@ -72,8 +72,8 @@ Truth computeOne(const ProbingStroke& stroke, const FixedTickConfig& tick, const
 int wantedRefinement(double spacing, const FixedTickConfig& tick) noexcept {
     const double width =
         contactWidth(tick.gradient.contact.stiffness_per_area, tick.tool.burr.radius, kLightForce);
-    return int(std::clamp(std::ceil(kVoxelsAcross * spacing / width), double(kLeastRefinement),
-                          double(kMostRefinement)));
+    return int(std::clamp(std::ceil(kVoxelsAcross * spacing / width), double(kMinRefinement),
+                          double(kMaxRefinement)));
 }
 
 AccuracySettings truthSettings() noexcept {
@@ -84,7 +84,7 @@ AccuracySettings truthSettings() noexcept {
             .tool_distance = ToolDistance::kAnalytic,
             .sdf_refinement = kToolRefinement,
             .precision = Precision::kDouble,
-            .iterations = AccuracySettings::kMostIterations,
+            .iterations = AccuracySettings::kMaxIterations,
             .continuous_collision = true};
 }
 

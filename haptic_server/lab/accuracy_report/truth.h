@@ -13,7 +13,7 @@ struct Truth {
     int refinement = 0;           // of the voxels; wantedRefinement() unless memory forbade it
     std::vector<Answer> coarser;  // the same with half that refinement: how far the truth can be off
 };
-inline constexpr int kLeastRefinement = 4, kMostRefinement = 16;
+inline constexpr int kMinRefinement = 4, kMaxRefinement = 16;
 
 // The voxels are denser by so much that the burr on a plane touches some 8 of them across already with 1
 // N: then the sums over the contact points are good to 0.1 % (patch.csv).

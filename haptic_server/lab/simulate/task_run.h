@@ -31,7 +31,7 @@ class TaskRun {
 
   private:
     std::shared_ptr<const JudgedTask> task_;
-    std::optional<BreachWatch> breach_;
+    std::optional<BreachMonitor> breach_;
     std::unique_ptr<Technique> technique_;
 };
 

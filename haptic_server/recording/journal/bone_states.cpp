@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostDensityBytes = size_t(4)
+constexpr size_t kMaxDensityBytes = size_t(4)
                                      << 20;  // of a message, but for a leaf that is larger by itself
 
 std::vector<Density> scannedDensities(const ScannedBone& scanned, LeafId leaf) {
@@ -36,7 +36,7 @@ class Messages {
     explicit Messages(journal::Bone::Kind kind) { begin(kind); }
 
     void add(LeafId leaf, const std::vector<Density>& now, const std::vector<Density>& base) {
-        if (!codes_.empty() && (codes_.size() + now.size()) * sizeof(Density) > kMostDensityBytes) {
+        if (!codes_.empty() && (codes_.size() + now.size()) * sizeof(Density) > kMaxDensityBytes) {
             finish();
             all_.back().set_goes_on(true);
             begin(all_.back().kind() == journal::Bone::KEY ? journal::Bone::CURRENT : all_.back().kind());

@@ -263,7 +263,7 @@ void encodeInputs(std::span<const JournalTick> ticks, journal::Inputs& out) {
 }
 
 bool decodeInputs(const journal::Inputs& inputs, std::vector<JournalTick>& ticks) {
-    if (inputs.count() == 0 || inputs.count() > kMostTicksPerInputs) return false;
+    if (inputs.count() == 0 || inputs.count() > kMaxTicksPerInputs) return false;
     if (inputs.first_tick() > UINT64_MAX - inputs.count()) return false;
     const size_t before = ticks.size();
     ticks.resize(before + inputs.count());

@@ -25,7 +25,7 @@ struct JournalTick {
 JournalTick journalTickOf(const TickRecord& record, int64_t first_start_ns, uint16_t check) noexcept;
 
 // So many ticks make one message at most.
-inline constexpr size_t kMostTicksPerInputs = 1024;
+inline constexpr size_t kMaxTicksPerInputs = 1024;
 
 // The ticks are consecutive, and not more than that.
 void encodeInputs(std::span<const JournalTick> ticks, journal::Inputs& out);

@@ -20,7 +20,7 @@ constexpr int64_t kKeyNs = 30 * kNsPerSecond;
 constexpr double kKeyShare = 0.25;
 constexpr double kPosesPerSecond = 25;
 // So long keys the ticks of a message wait at most; a chunk comes earlier at the usual rates.
-constexpr size_t kTicksPerMessage = kMostTicksPerInputs;
+constexpr size_t kTicksPerMessage = kMaxTicksPerInputs;
 
 int64_t realMinusMonotonicNs() {
     const auto real = std::chrono::system_clock::now().time_since_epoch();

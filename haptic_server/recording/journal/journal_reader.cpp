@@ -11,7 +11,7 @@ namespace bonemill {
 namespace {
 
 // As hostile files could unpack to far more than they are.
-constexpr uint64_t kMostKept = uint64_t(4) << 30;
+constexpr uint64_t kMaxKept = uint64_t(4) << 30;
 
 template <class Message>
 bool parse(const mcap::Message& bytes, Message& out) {
@@ -40,7 +40,7 @@ class Keeper {
     bool keep(const mcap::Message& bytes, Message& message) {
         if (!parse(bytes, message)) return false;
         kept_ += message.SpaceUsedLong();
-        if (kept_ > kMostKept) fail("holds more than can be kept in memory");
+        if (kept_ > kMaxKept) fail("holds more than can be kept in memory");
         return true;
     }
     template <class Message>
@@ -79,7 +79,7 @@ class Keeper {
     bool takeInputs(const mcap::Message& message) {
         journal::Inputs inputs;
         if (!(keeps_inputs_ ? keep(message, inputs) : parse(message, inputs)) || inputs.count() == 0 ||
-            inputs.count() > kMostTicksPerInputs)
+            inputs.count() > kMaxTicksPerInputs)
             return false;
         if (inputs.first_tick() == content_.ticks) content_.ticks += inputs.count();
         if (keeps_inputs_) content_.inputs.push_back(std::move(inputs));

@@ -56,11 +56,11 @@ class Recording {
         std::string problem;  // for people, if some of them cannot be used; else empty
     };
     // Whoever made the journal: so much memory may its bones take.
-    static constexpr size_t kMostBoneBytes = size_t(4) << 30;
+    static constexpr size_t kMaxBoneBytes = size_t(4) << 30;
     // Reads the file once more. `bone` is the scanned one of the scene. Throws UserError if the session began
     // with another bone than the scanned one, or put it back to one, and that is not there; and if its
     // bones take more memory.
-    Bones readBones(const BoneModel& bone, size_t most_bytes = kMostBoneBytes) const;
+    Bones readBones(const BoneModel& bone, size_t most_bytes = kMaxBoneBytes) const;
 
   private:
     bool isNext(const journal::Inputs& inputs, std::vector<JournalTick>& ticks) const;

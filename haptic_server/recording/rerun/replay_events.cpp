@@ -13,7 +13,7 @@ namespace bonemill {
 namespace {
 
 constexpr double kPauseS = 0.5;
-constexpr size_t kMostText = 2000;  // of one tick
+constexpr size_t kMaxText = 2000;  // of one tick
 
 std::string textOf(const journal::Event& event) {
     switch (event.what_case()) {
@@ -56,7 +56,7 @@ ReplayEvents::ReplayEvents(const Recording& recording)
 void ReplayEvents::add(uint64_t tick, const std::string& text) {
     const std::lock_guard lock(mutex_);
     std::string& there = events_[tick];
-    if (there.size() + text.size() > kMostText) return;
+    if (there.size() + text.size() > kMaxText) return;
     there += (there.empty() ? "" : "; ") + text;
 }
 

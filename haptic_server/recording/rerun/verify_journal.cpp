@@ -27,7 +27,7 @@ namespace {
 
 // Hostile files could unpack to far more than they are: N leaves are compared, and N poses wait
 // for their tick.
-constexpr size_t kMostLeafHashes = size_t(1) << 27, kMostWaitingPoses = 100'000;
+constexpr size_t kMaxLeafHashes = size_t(1) << 27, kMaxWaitingPoses = 100'000;
 
 template <class Message>
 Message parsed(const mcap::Message& bytes) {
@@ -75,7 +75,7 @@ class BonePass {
         for (const uint32_t step : bone.leaf_steps()) changed_.push_back(LeafId(leaf += step));
         leaf = 0;
         for (const uint32_t step : bone.as_scanned_steps()) changed_.push_back(LeafId(leaf += step));
-        if ((leaf_count_ += size_t(bone.leaf_steps_size() + bone.as_scanned_steps_size())) > kMostLeafHashes)
+        if ((leaf_count_ += size_t(bone.leaf_steps_size() + bone.as_scanned_steps_size())) > kMaxLeafHashes)
             throw UserError("the journal has more leaves of bone than can be compared; it is damaged");
         if (bone.goes_on()) return;
         if (bone.kind() != journal::Bone::OTHER) leaves_.emplace(bone.tick(), hashesOfChanged());
@@ -114,8 +114,8 @@ class BitComparison {
             poses_.push_back({message.time_ns, of(parsed<foxglove::PoseInFrame>(message).pose().position())});
         if (topic == JournalTopic::kWrench)
             forces_.push_back({message.time_ns, of(parsed<journal::WrenchInFrame>(message).force_n())});
-        if (poses_.size() > kMostWaitingPoses) poses_.pop_front();
-        if (forces_.size() > kMostWaitingPoses) forces_.pop_front();
+        if (poses_.size() > kMaxWaitingPoses) poses_.pop_front();
+        if (forces_.size() > kMaxWaitingPoses) forces_.pop_front();
     }
 
   private:

@@ -8,7 +8,7 @@ void DeviceHistory::add(double t_s, const DeviceReport& report) {
     if (is_same) return;
     last_ = report;
     ++count_;
-    if (kept_.size() < kMostKept) kept_.push_back({t_s, report});
+    if (kept_.size() < kMaxKept) kept_.push_back({t_s, report});
 }
 
 std::string causeText(const DeviceReport& report) {

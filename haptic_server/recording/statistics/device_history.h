@@ -18,12 +18,12 @@ struct DeviceChange {
 class DeviceHistory {
   public:
     // A device that comes and goes without end fills neither memory nor log.
-    static constexpr size_t kMostKept = 256;
+    static constexpr size_t kMaxKept = 256;
 
     // A run is taken to begin engaged. Reports come in the order of their ticks.
     void add(double t_s, const DeviceReport& report);
 
-    // The first kMostKept changes, and how many there were in all.
+    // The first kMaxKept changes, and how many there were in all.
     std::span<const DeviceChange> kept() const { return kept_; }
     uint64_t count() const { return count_; }
 

@@ -8,7 +8,7 @@ namespace {
 
 // What a run's figure is before its first tick.
 std::optional<double> startOf(RunSummary summary) noexcept {
-    if (summary == RunSummary::kLargest || summary == RunSummary::kLeast) return std::nullopt;
+    if (summary == RunSummary::kLargest || summary == RunSummary::kMin) return std::nullopt;
     return 0;
 }
 
@@ -18,7 +18,7 @@ double summedUp(RunSummary summary, std::optional<double> before, double value) 
             return std::max(before.value_or(value), value);
         case RunSummary::kLargestSize:
             return std::max(before.value_or(0), std::abs(value));
-        case RunSummary::kLeast:
+        case RunSummary::kMin:
             return std::min(before.value_or(value), value);
         case RunSummary::kSum:
             return before.value_or(0) + value;

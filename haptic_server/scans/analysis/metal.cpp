@@ -12,16 +12,16 @@
 namespace bonemill {
 namespace {
 
-constexpr double kMostShare = 0.05;  // of all voxels: what has more is no scan in Hounsfield units
-constexpr double kLeastNeighbours =
+constexpr double kMaxShare = 0.05;  // of all voxels: what has more is no scan in Hounsfield units
+constexpr double kMinNeighbours =
     3;  // of six that are metal, too, on average: half of them, as noise at the limit
-constexpr uint64_t kLeastStanding = 2;  // voxels
-constexpr double kMostAroundHu = 2200;  // mean of what a small piece touches: enamel is denser
-constexpr double kLeastClipped = 0.05;  // of the metal's voxels have the highest value
+constexpr uint64_t kMinStanding = 2;  // voxels
+constexpr double kMaxAroundHu = 2200;  // mean of what a small piece touches: enamel is denser
+constexpr double kMinClipped = 0.05;  // of the metal's voxels have the highest value
 constexpr size_t kMostNamed = 3;
 
 bool areTooMany(size_t metal, size_t all) {
-    return double(metal) > kMostShare * double(all);
+    return double(metal) > kMaxShare * double(all);
 }
 
 // The voxels at or above a value, in the order of their indices; no further than until they are too many.
@@ -79,9 +79,9 @@ struct Candidate {
     MetalPiece piece;
     double metal_neighbours = 0, other_neighbours = 0, sum_of_others = 0;  // HU
 
-    bool isSolid() const { return metal_neighbours >= kLeastNeighbours * double(piece.voxels); }
+    bool isSolid() const { return metal_neighbours >= kMinNeighbours * double(piece.voxels); }
     bool standsOut() const {
-        return piece.voxels >= kLeastStanding && sum_of_others < kMostAroundHu * other_neighbours;
+        return piece.voxels >= kMinStanding && sum_of_others < kMaxAroundHu * other_neighbours;
     }
 };
 
@@ -138,7 +138,7 @@ std::vector<MetalPiece> piecesOf(const RawVolume& scan, const std::vector<size_t
 bool isClipped(const RawVolume& scan, const std::vector<size_t>& voxels) {
     const auto high = float(scan.values.range().high);
     const auto count = std::ranges::count_if(voxels, [&](size_t n) { return scan.values[n] == high; });
-    return count >= 2 && double(count) >= kLeastClipped * double(voxels.size());
+    return count >= 2 && double(count) >= kMinClipped * double(voxels.size());
 }
 
 std::string sizeOf(uint64_t voxels, const VolumeGeometry& geometry) {

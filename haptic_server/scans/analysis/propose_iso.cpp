@@ -35,7 +35,7 @@ constexpr double kSoftTissueBinHu = 5;
 constexpr double kSoftTissueLowHu = -50;  // fat lies below: its peak would hide the width of muscle and brain
 constexpr double kSoftTissueHighHu = 150;
 constexpr double kHighestHu = 4000;  // metal beyond
-constexpr double kLeastSoftTissue = 0.01;
+constexpr double kMinSoftTissue = 0.01;
 constexpr double kBoneLowHu = 200;   // noise and contrast agent below
 constexpr double kBoneHighHu = 300;  // thin cortical walls vanish above
 constexpr double kNoiseSigmas = 3;
@@ -66,13 +66,13 @@ std::optional<double> halfWayFromSoftTissue(const ValueCounts& values, double wa
     h.count = smoothed(h.count, kSmoothingBins);
     const auto tissue_end =
         h.count.begin() + ptrdiff_t((kSoftTissueHighHu - kSoftTissueLowHu) / kSoftTissueBinHu);
-    if (std::accumulate(h.count.begin(), tissue_end, 0.0) < kLeastSoftTissue * h.total) return std::nullopt;
+    if (std::accumulate(h.count.begin(), tissue_end, 0.0) < kMinSoftTissue * h.total) return std::nullopt;
     const auto peak = size_t(std::max_element(h.count.begin(), tissue_end) - h.count.begin());
     const double bone = medianAbove(h, std::max(noiseEdge(h, peak), kBoneLowHu));
     return (h.centre(peak) + bone) / 2;
 }
 
-constexpr double kLeastMaterialShare =
+constexpr double kMinMaterialShare =
     0.15;  // of all that is denser than the background; less is an edge or a cavity
 
 // The background is the material with the most voxels.
@@ -83,7 +83,7 @@ std::optional<double> halfWayAboveBackground(const Histogram& h, const std::vect
     for (auto mode = background; mode != modes.end(); ++mode)
         mass_above += mode == background ? 0 : mode->mass;
     for (auto mode = background; mode != modes.end(); ++mode)
-        if (mode != background && mode->mass >= kLeastMaterialShare * mass_above)
+        if (mode != background && mode->mass >= kMinMaterialShare * mass_above)
             return (peakValue(h, *background) + peakValue(h, *mode)) / 2;
     return std::nullopt;
 }
@@ -91,9 +91,9 @@ std::optional<double> halfWayAboveBackground(const Histogram& h, const std::vect
 // Of a scan whose scale is not known: what is far denser than the main material above air, and of many
 // densities, is bone in soft tissue; enamel above dentine is of one. With air at -1000 HU and soft tissue at
 // 40, kBoneHighHu lies a quarter of the way further.
-constexpr double kBoneAboveTissue = 0.25, kLeastSpread = 0.6;  // of the way from the background to the tissue
+constexpr double kBoneAboveTissue = 0.25, kMinSpread = 0.6;  // of the way from the background to the tissue
 constexpr double kAirQuantile = 0.01;
-constexpr double kLeastTail = 0.003, kMostTail = 0.5;  // of the tissue's voxels
+constexpr double kMinTail = 0.003, kMaxTail = 0.5;  // of the tissue's voxels
 
 // The value below which that share of what lies above `from` is.
 double quantileAbove(const Histogram& h, double from, double share) {
@@ -106,9 +106,9 @@ double quantileAbove(const Histogram& h, double from, double share) {
 std::optional<double> boneAbove(const Histogram& h, double air, double tissue, double tissue_share) {
     const double bone = tissue + kBoneAboveTissue * (tissue - air);
     const double share = h.sumAbove(bone) / (tissue_share * h.total);
-    if (share < kLeastTail || share > kMostTail) return std::nullopt;
+    if (share < kMinTail || share > kMaxTail) return std::nullopt;
     const double spread = quantileAbove(h, bone, 0.9) - quantileAbove(h, bone, 0.1);
-    return spread >= kLeastSpread * (tissue - air) ? std::optional(bone) : std::nullopt;
+    return spread >= kMinSpread * (tissue - air) ? std::optional(bone) : std::nullopt;
 }
 
 // Bone denser than the scale goes piles up at its end, where it looks like a material. It is none if more of
@@ -172,7 +172,7 @@ IsoProposal proposal(const RawVolume& raw, const ValueCounts& values) {
             scale + ": half-way from soft tissue to bone, within 200 .. 300 HU"};
 }
 
-constexpr double kLeastBone = 5e-4, kMostBone = 0.6;  // of the voxels
+constexpr double kMinBone = 5e-4, kMaxBone = 0.6;  // of the voxels
 
 double shareAbove(const ValueCounts& values, double iso) {
     double above = 0;
@@ -205,8 +205,8 @@ std::string textOf(const IsoProposal& proposed) {
         std::snprintf(text, sizeof text, "; the next best is %.6g", *proposed.runner_up);
         all += text;
     }
-    if (proposed.bone_share < kLeastBone) all += "; that is hardly any: there may be no bone in this scan";
-    if (proposed.bone_share > kMostBone)
+    if (proposed.bone_share < kMinBone) all += "; that is hardly any: there may be no bone in this scan";
+    if (proposed.bone_share > kMaxBone)
         all += "; that is so much that it may not be bone: look at it, and set volume.iso_value";
     return all;
 }

@@ -14,11 +14,11 @@ constexpr double kSoftHu = 300;                    // tissue and fat, and what s
 constexpr double kStep = 3e-3, kGrid = 1e-3;       // m: between the two of a pair, and between pairs
 constexpr double kRing = 5e-3, kFarthest = 60e-3;  // m
 constexpr int kRings = int(kFarthest / kRing);
-constexpr int kMostSlices = 16, kMostBeside = 4;
-constexpr size_t kMostBoxes = 64;                   // more take minutes
-constexpr int kLeastApart = 2;                      // slices: what is nearer may show some of the metal
-constexpr double kLeastPairs = 100;                 // in a ring
-constexpr double kWorse = 1.5, kLeastIndexHu = 30;  // than slices without metal: anatomy differs by less
+constexpr int kMaxSlices = 16, kMaxBeside = 4;
+constexpr size_t kMaxBoxes = 64;                   // more take minutes
+constexpr int kMinApart = 2;                      // slices: what is nearer may show some of the metal
+constexpr double kMinPairs = 100;                 // in a ring
+constexpr double kWorse = 1.5, kMinIndexHu = 30;  // than slices without metal: anatomy differs by less
 
 // The differences of pairs in each ring, counted by whole HU.
 class Spreads {
@@ -26,7 +26,7 @@ class Spreads {
     void add(double distance, double difference_hu) {
         ++counts_[size_t(distance / kRing)][size_t(difference_hu)];
     }
-    bool isKnown(int ring) const { return pairs(ring) >= kLeastPairs; }
+    bool isKnown(int ring) const { return pairs(ring) >= kMinPairs; }
     // As a standard deviation, were they normal.
     double at(int ring) const {
         constexpr double kSigmaOfMedian = 1.4826;
@@ -103,14 +103,14 @@ struct Group {
         for (bool is_growing = true; is_growing;) {
             is_growing = false;
             for (const IndexBox& box : metal) {
-                if (box.min.z() > last + kLeastApart || box.max.z() < first - kLeastApart) continue;
+                if (box.min.z() > last + kMinApart || box.max.z() < first - kMinApart) continue;
                 is_growing = is_growing || box.min.z() < first || box.max.z() > last;
                 first = std::min(first, box.min.z());
                 last = std::max(last, box.max.z());
             }
         }
         for (const IndexBox& box : metal)
-            if (boxes.size() < kMostBoxes && box.min.z() >= first && box.max.z() <= last)
+            if (boxes.size() < kMaxBoxes && box.min.z() >= first && box.max.z() <= last)
                 boxes.push_back(box);
     }
 };
@@ -126,13 +126,13 @@ std::optional<Streaks> measureStreaks(const RawVolume& scan, double water, std::
     const Group group(metal);
     const Slices slices{scan, water};
     std::vector<Spreads> spreads(3);  // with metal, before it, behind it
-    const int count = group.last - group.first + 1, looked_at = std::min(count, kMostSlices);
+    const int count = group.last - group.first + 1, looked_at = std::min(count, kMaxSlices);
     for (int n = 0; n < looked_at; ++n)
         slices.addTo(spreads[0], group.boxes, group.first + (2 * n + 1) * count / (2 * looked_at));
     for (const int side : {-1, 1}) {
         int k = side < 0 ? group.first : group.last;
-        for (int n = 0; n < kMostBeside; ++n) {
-            k += side * (n == 0 ? kLeastApart : 1);
+        for (int n = 0; n < kMaxBeside; ++n) {
+            k += side * (n == 0 ? kMinApart : 1);
             if (k < 0 || k >= scan.geometry.dims.z() || hasMetal(metal, k)) break;
             slices.addTo(spreads[side < 0 ? 1 : 2], group.boxes, k);
         }
@@ -148,7 +148,7 @@ std::optional<Streaks> measureStreaks(const RawVolume& scan, double water, std::
         }
         const double spread = spreads[0].at(ring);
         if (streaks.usual_spread == 0) streaks.spread = spread, streaks.usual_spread = usual;
-        if (spread < kWorse * usual || spread * spread < usual * usual + kLeastIndexHu * kLeastIndexHu) break;
+        if (spread < kWorse * usual || spread * spread < usual * usual + kMinIndexHu * kMinIndexHu) break;
         streaks.reach = (ring + 1) * kRing;
         streaks.goes_further = ring + 1 == kRings;
     }

@@ -10,7 +10,7 @@
 namespace bonemill {
 namespace {
 
-constexpr double kLeastRise = 0.5;  // of the way from the higher end to the iso-value: noise rises less
+constexpr double kMinRise = 0.5;  // of the way from the higher end to the iso-value: noise rises less
 
 double meanAbove(std::span<const float> samples, double iso) {
     double sum = 0, count = 0;
@@ -40,7 +40,7 @@ double wallAt(Samples samples, size_t at, size_t stride, double iso, double bone
     std::array<double, 5> v{};
     for (size_t n = 0; n < 5; ++n) v[n] = double(samples[at + n * stride - 2 * stride]);
     const double base = std::max(v[0], v[4]);
-    if (!(v[2] > v[1] && v[2] > v[3] && v[2] < iso && v[2] - base >= kLeastRise * (iso - base))) return 0;
+    if (!(v[2] > v[1] && v[2] > v[3] && v[2] < iso && v[2] - base >= kMinRise * (iso - base))) return 0;
     double sum = 0;
     for (const double value : v) sum += std::max(0.0, value - base);
     return sum / (bone - base);

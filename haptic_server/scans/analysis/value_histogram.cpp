@@ -97,7 +97,7 @@ std::vector<double> smoothed(const std::vector<double>& count, double sigma_bins
 namespace {
 
 constexpr double kValleyRatio = 0.6;  // a valley must fall below this share of the lower of its two peaks
-constexpr double kLeastMass = 0.005;  // and a material must hold this share of the voxels
+constexpr double kMinMass = 0.005;  // and a material must hold this share of the voxels
 
 }  // namespace
 
@@ -128,7 +128,7 @@ std::vector<Mode> modesOf(const Histogram& h) {
         double mass = 0;
         for (size_t b = begin; b < end; ++b) mass += h.count[b];
         mass /= h.total;
-        if (mass >= kLeastMass) modes.push_back({peaks[p], s[peaks[p]], mass});
+        if (mass >= kMinMass) modes.push_back({peaks[p], s[peaks[p]], mass});
     }
     return modes;
 }

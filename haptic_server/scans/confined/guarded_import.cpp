@@ -32,7 +32,7 @@
 namespace bonemill {
 namespace {
 
-constexpr rlim_t kMostCpuSeconds = 600;  // The largest volumes take seconds.
+constexpr rlim_t kMaxCpuSeconds = 600;  // The largest volumes take seconds.
 
 // No enumeration, as no bool: the child may have been made to write anything.
 constexpr uint8_t kError = 0, kVolume = 1, kLines = 2;
@@ -55,8 +55,8 @@ struct Head {
 };
 static_assert(std::is_trivially_copyable_v<Head>);
 
-constexpr uint64_t kMostTextBytes = uint64_t(1) << 20;
-constexpr size_t kMostErrorBytes = 2048;  // it may quote a damaged header
+constexpr uint64_t kMaxTextBytes = uint64_t(1) << 20;
+constexpr size_t kMaxErrorBytes = 2048;  // it may quote a damaged header
 
 bool isWithin(std::span<const double> numbers, double low, double high) {
     return std::ranges::all_of(numbers, [&](double n) { return n >= low && n <= high; });
@@ -64,17 +64,17 @@ bool isWithin(std::span<const double> numbers, double low, double high) {
 
 // A volume's place, as far as any file of ours may say it (physical_frame.h).
 bool isPlace(const Head& head) {
-    constexpr double kLeastStep = 1e-10, kLongestStep = 10, kFarthest = 1e5, kUnit = 1e-9;
+    constexpr double kMinStep = 1e-10, kLongestStep = 10, kFarthest = 1e5, kUnit = 1e-9;
     double square = 0;
     for (const double q : head.rotation) square += q * q;
-    return isWithin(head.spacing, kLeastStep, kLongestStep) &&
+    return isWithin(head.spacing, kMinStep, kLongestStep) &&
            isWithin(head.position, -kFarthest, kFarthest) && std::abs(square - 1) <= kUnit;
 }
 
 // The child may have been damaged by what it read, and what it says is checked before memory is asked for.
 // Throws std::length_error.
 void checkHead(const Head& head, uint8_t wanted) {
-    if (head.text_bytes > kMostTextBytes || head.segments_bytes > kMostTextBytes)
+    if (head.text_bytes > kMaxTextBytes || head.segments_bytes > kMaxTextBytes)
         throw std::length_error("text");
     if (head.kind != kError && head.kind != wanted) throw std::length_error("kind");
     if (head.kind != kVolume) return;
@@ -190,7 +190,7 @@ bool receive(Incoming& from, uint8_t wanted, Received& received) {
     checkHead(head, wanted);
     std::string text(head.text_bytes, '\0');
     if (!from.read(text.data(), text.size())) return false;
-    if (head.kind == kError) received.error = oneLine(text.substr(0, kMostErrorBytes));
+    if (head.kind == kError) received.error = oneLine(text.substr(0, kMaxErrorBytes));
     if (head.kind == kLines) received.lines = linesOf(text);
     if (head.kind != kVolume) return true;
     RawVolume& raw = received.volume;
@@ -229,7 +229,7 @@ void handleSignals() {
                               const std::function<void()>& send) {
     handleSignals();
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // a reader without its parent would only hold on to what it inherited
-    const rlimit no_core{0, 0}, cpu{kMostCpuSeconds, kMostCpuSeconds};
+    const rlimit no_core{0, 0}, cpu{kMaxCpuSeconds, kMaxCpuSeconds};
     setrlimit(RLIMIT_CORE, &no_core);
     setrlimit(RLIMIT_CPU, &cpu);
     dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
@@ -260,9 +260,9 @@ std::string secondsText(std::chrono::milliseconds time) {
 int endOf(pid_t child) {
     kill(child, SIGKILL);  // one that has closed the pipe by ending has ended as it did
     constexpr timespec kBetween{0, 1'000'000};
-    constexpr int kMostTries = 10'000;  // a large process takes its time to go
+    constexpr int kMaxTries = 10'000;  // a large process takes its time to go
     int status = 0;
-    for (int tries = 0; tries < kMostTries; ++tries) {
+    for (int tries = 0; tries < kMaxTries; ++tries) {
         const pid_t ended = waitpid(child, &status, WNOHANG);
         if (ended == child || (ended < 0 && errno != EINTR)) break;
         nanosleep(&kBetween, nullptr);

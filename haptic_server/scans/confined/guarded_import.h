@@ -22,18 +22,18 @@ namespace bonemill {
 
 // It is measured by the clock on the wall, for a reader that waits for a disk or a network uses no processor
 // time. The largest volumes take a minute.
-inline constexpr std::chrono::milliseconds kMostImportTime = std::chrono::minutes(10);
+inline constexpr std::chrono::milliseconds kMaxImportTime = std::chrono::minutes(10);
 
 // Returns what `read` returns. Throws UserError: the one that `read` threw, or one that names the file it was
 // reading when it died or when `most` had gone by (file_being_read.h; `path`, if it did not say).
 RawVolume importGuarded(const std::filesystem::path& path, const std::function<RawVolume()>& read,
-                        std::chrono::milliseconds most = kMostImportTime);
+                        std::chrono::milliseconds most = kMaxImportTime);
 
 // Starts a process that calls readAsChild(), and returns its number, or -1. Its arguments are the ends for
 // the child: the pipe, and memory for the name of the file that it reads.
 using StartReader = std::function<pid_t(int pipe, int name)>;
 RawVolume importFrom(const std::filesystem::path& path, const StartReader& start,
-                     std::chrono::milliseconds most = kMostImportTime);
+                     std::chrono::milliseconds most = kMaxImportTime);
 
 // For the child: hands over what `read` returns, or why not, and ends the process.
 [[noreturn]] void readAsChild(int pipe, const std::filesystem::path& path,
@@ -42,9 +42,9 @@ RawVolume importFrom(const std::filesystem::path& path, const StartReader& start
 // The same for lines of text instead of a volume. Whatever the reader wrote, they are printable ASCII.
 using Lines = std::vector<std::string>;
 Lines linesGuarded(const std::filesystem::path& path, const std::function<Lines()>& read,
-                   std::chrono::milliseconds most = kMostImportTime);
+                   std::chrono::milliseconds most = kMaxImportTime);
 Lines linesFrom(const std::filesystem::path& path, const StartReader& start,
-                std::chrono::milliseconds most = kMostImportTime);
+                std::chrono::milliseconds most = kMaxImportTime);
 [[noreturn]] void readLinesAsChild(int pipe, const std::filesystem::path& path,
                                    const std::function<Lines()>& read);
 

@@ -65,7 +65,7 @@ class LabelReader {
 
 class MaterialsOfLabels {
   public:
-    explicit MaterialsOfLabels(std::span<const MaterialRule> rules) : of_label_(kMostLabel + 1) {
+    explicit MaterialsOfLabels(std::span<const MaterialRule> rules) : of_label_(kMaxLabel + 1) {
         for (size_t n = 0; n < rules.size(); ++n)
             for (const uint32_t label : rules[n].labels) of_label_[label].set(n + 1);
     }
@@ -85,16 +85,16 @@ class MaterialsOfLabels {
     }
 
   private:
-    using Ids = std::bitset<kMostMaterials + 1>;
+    using Ids = std::bitset<kMaxMaterials + 1>;
 
     static MaterialId last(const Ids& ids) {
         if (ids.none()) return kNoMaterial;
-        size_t id = kMostMaterials;
+        size_t id = kMaxMaterials;
         while (!ids[id]) --id;
         return MaterialId(id);
     }
     Ids ruledBy(double label) const {
-        return label >= 0 && label <= kMostLabel ? of_label_[size_t(label)] : Ids();
+        return label >= 0 && label <= kMaxLabel ? of_label_[size_t(label)] : Ids();
     }
 
     std::vector<Ids> of_label_;

@@ -35,7 +35,7 @@ constexpr struct {
     {"FC", 30, 35}, {"FC", 80, 85},                                  // Canon, Toshiba: bone, inner ear
 };
 
-constexpr double kMostThicker = 2;
+constexpr double kMaxThicker = 2;
 
 bool hasNumberWithin(const std::string& digits, int low, int high) {
     if (digits.size() < 2 || !std::isdigit(static_cast<unsigned char>(digits[0])) ||
@@ -99,7 +99,7 @@ bool isBoneKernel(const std::string& kernel) {
 
 BoneRecommendation recommendForBone(const std::vector<DicomStack>& stacks) {
     // Distances differ in their last digits by the rounding of the positions.
-    const double limit = kMostThicker * thinnestOf(stacks) * 1.001;
+    const double limit = kMaxThicker * thinnestOf(stacks) * 1.001;
     const auto rank = [&](const DicomStack& stack) {
         return std::tuple(canBeUsed(stack), isCt(stack),
                           hasBoneKernel(stack) && stack.slice_spacing_mm <= limit,

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kWidestGap = 3.2;  // distances: two slices in a row may be missing
 constexpr double kGap = 1.5;        // distances: one is missing
-constexpr double kMostLeaningDegrees =
+constexpr double kMaxLeaningDegrees =
     40;  // of its plane: a slice that leans further is a scout or another view
 constexpr double kTurnedDegrees = 0.05;
 constexpr size_t kMostNamed = 4;
@@ -41,7 +41,7 @@ std::vector<DicomSlice> strangersBetween(const DicomSlice& before, const DicomSl
                                          const std::vector<DicomSlice>& strangers) {
     std::vector<DicomSlice> found;
     for (const DicomSlice& stranger : strangers)
-        if (liesBetween(before, after, stranger) && leaningDegrees(before, stranger) <= kMostLeaningDegrees)
+        if (liesBetween(before, after, stranger) && leaningDegrees(before, stranger) <= kMaxLeaningDegrees)
             found.push_back(stranger);
     return found;
 }

@@ -28,7 +28,7 @@ namespace {
 const gdcm::Tag kCharacterSet(0x0008, 0x0005);
 const gdcm::Tag kRows(0x0028, 0x0010), kColumns(0x0028, 0x0011), kBitsAllocated(0x0028, 0x0100);
 const gdcm::Tag kNumberOfFrames(0x0028, 0x0008);
-const gdcm::Tag kSegmentationType(0x0062, 0x0001), kMostFraction(0x0062, 0x000e);
+const gdcm::Tag kSegmentationType(0x0062, 0x0001), kMaxFraction(0x0062, 0x000e);
 const gdcm::Tag kSegmentSequence(0x0062, 0x0002), kSegmentNumber(0x0062, 0x0004),
     kSegmentLabel(0x0062, 0x0005), kSegmentColor(0x0062, 0x000d);
 const gdcm::Tag kSegmentGroup(0x0062, 0x000a), kReferencedSegment(0x0062, 0x000b);
@@ -143,8 +143,8 @@ class SegmentationReader {
     void readSegments() {
         const DicomItems items = itemsOf(data(), kSegmentSequence);
         if (!items || items->GetNumberOfItems() == 0) refuseFile(file_, "says nothing of its segments");
-        if (items->GetNumberOfItems() > kMostSegments)
-            throw UserError(file_.string() + ": has more than " + std::to_string(kMostSegments) +
+        if (items->GetNumberOfItems() > kMaxSegments)
+            throw UserError(file_.string() + ": has more than " + std::to_string(kMaxSegments) +
                             " segments; export fewer of them");
         for (size_t n = 1; n <= items->GetNumberOfItems(); ++n)  // GDCM counts items from 1
             readSegment(items->GetItem(n).GetNestedDataSet(), n);
@@ -186,7 +186,7 @@ class SegmentationReader {
         return pixels;
     }
     uint8_t leastFraction() const {
-        const auto most = numberOf<uint16_t>(bytesOf(data(), kMostFraction));
+        const auto most = numberOf<uint16_t>(bytesOf(data(), kMaxFraction));
         if (!most || *most == 0 || *most > 255)
             refuseFile(file_, "its Maximum Fractional Value is not one of 1 to 255");
         return uint8_t((*most + 1) / 2);
@@ -266,7 +266,7 @@ class SegmentationReader {
         codes.listIn(segments_);
         segments_.are_layered = codes.anyOverlap();
         if (segments_.are_layered) return;
-        std::vector<uint16_t> number_of_code(kMostSegments + 1);
+        std::vector<uint16_t> number_of_code(kMaxSegments + 1);
         for (size_t n = 0; n < numbers_.size(); ++n) {
             for (const uint32_t code : segments_.list[n].labels) number_of_code[code] = numbers_[n];
             segments_.list[n].labels = {numbers_[n]};

@@ -16,7 +16,7 @@ namespace {
 // Headers carry decimal text; these are coarser than its rounding and finer than any real difference.
 constexpr double kSameDirection = 1e-3;
 constexpr double kSamePixelSpacingMm = 1e-4;
-constexpr size_t kMostScouts = 3;  // a series of so few pictures is no scan
+constexpr size_t kMaxScouts = 3;  // a series of so few pictures is no scan
 
 bool belongTogether(const DicomSlice& a, const DicomSlice& b) {
     const auto isNear = [](const auto& u, const auto& v, double most) {
@@ -76,10 +76,10 @@ std::string sizeAndTitle(const DicomStack& stack) {
 }
 
 std::string listOf(const std::vector<const DicomStack*>& stacks, std::string (*say)(const DicomStack&)) {
-    constexpr size_t kMostListed = 8;
+    constexpr size_t kMaxListed = 8;
     std::string text;
     for (size_t s = 0; s < stacks.size(); ++s) {
-        if (s == kMostListed) return text + "; ...";
+        if (s == kMaxListed) return text + "; ...";
         text += (text.empty() ? "" : "; ") + say(*stacks[s]);
     }
     return text;
@@ -109,7 +109,7 @@ bool holds(const DicomStack& stack, const std::filesystem::path& file) {
 
 auto rankOf(const DicomStack& stack, const DicomWish& wish) {
     const DicomTraits& traits = stack.slices.front().traits;
-    const bool is_scan = stack.slices.size() > kMostScouts;
+    const bool is_scan = stack.slices.size() > kMaxScouts;
     return std::tuple(isWanted(stack, wish), !wish.file.empty() && is_scan && holds(stack, wish.file),
                       stack.told_by.empty() || stack.problem.empty(), is_scan && stack.slices.front().isCt(),
                       stack.slices.size(), -acquisitionOf(stack).value_or(std::numeric_limits<double>::max()),
@@ -167,7 +167,7 @@ std::string titleOf(const DicomStack& stack) {
 }
 
 bool isScout(const DicomStack& stack) {
-    return stack.slices.size() <= kMostScouts ||
+    return stack.slices.size() <= kMaxScouts ||
            stack.slices.front().traits.image_type.find("LOCALIZER") != std::string::npos;
 }
 

@@ -17,13 +17,13 @@ namespace {
 constexpr double kSamePlaceMm = 1e-3;
 constexpr double kSpacingTolerance = 0.02;  // of the median distance: nothing to speak of
 constexpr double kMaxTiltDegrees = 0.1;
-constexpr double kMostGantryTiltDegrees = 45;  // gantries tilt by 30 at most
+constexpr double kMaxGantryTiltDegrees = 45;  // gantries tilt by 30 at most
 constexpr double kSaidRounding = 1e-3;         // 0.06 degrees
 // Scanners write positions in steps of 0.1 mm at most; so far a slice is from its place then, or this share
 // of a distance.
 constexpr double kRoundingMm = 0.055;
-constexpr double kMostRounding = 0.2;
-constexpr double kMostFiner = 4;  // so much finer than most distances a grid may get by the least
+constexpr double kMaxRounding = 0.2;
+constexpr double kMaxFiner = 4;  // so much finer than most distances a grid may get by the least
 
 void note(std::string& remark, const std::string& text) {
     remark += (remark.empty() || text.empty() ? "" : "; ") + text;
@@ -121,7 +121,7 @@ double unevennessOf(const std::vector<SlicePlace>& places) {
 }
 
 bool areEven(const std::vector<SlicePlace>& places, const SliceDistances& distances) {
-    return unevennessOf(places) <= std::min(kRoundingMm, kMostRounding * distances.median);
+    return unevennessOf(places) <= std::min(kRoundingMm, kMaxRounding * distances.median);
 }
 
 double tiltDegrees(const std::vector<SlicePlace>& places) {
@@ -130,7 +130,7 @@ double tiltDegrees(const std::vector<SlicePlace>& places) {
 
 // Slices further aside were acquired in another way, and most of a slice would lie beside its neighbours.
 std::string problemOfTilt(double tilt_deg) {
-    if (tilt_deg <= kMostGantryTiltDegrees) return {};
+    if (tilt_deg <= kMaxGantryTiltDegrees) return {};
     return printed(
         "the slices are stacked %.1f degrees off their normal, more than any gantry tilts; resample the "
         "series first",
@@ -145,7 +145,7 @@ std::string problemsOf(const DicomStack& stack, const std::vector<SlicePlace>& p
     note(problems, shifts);
     note(problems, problemOfGap(stack.slices, places, strangers));
     note(problems, problemOfTilt(tilt_deg));
-    const bool is_mere_tilt = tilt_deg > kMaxTiltDegrees && tilt_deg <= kMostGantryTiltDegrees;
+    const bool is_mere_tilt = tilt_deg > kMaxTiltDegrees && tilt_deg <= kMaxGantryTiltDegrees;
     if (!problems.empty() && shifts.empty() && is_mere_tilt)
         note(problems, printed("beside that, the gantry is tilted by %.2f degrees", tilt_deg));
     return problems;
@@ -174,7 +174,7 @@ void resample(DicomStack& stack, std::vector<SlicePlace> places, double tilt_deg
     note(stack.remark, strangersInGaps(stack.slices, places, strangers));
     if (stack.is_uneven)
         stack.slice_spacing_mm =
-            std::min(distances.median, std::max(distances.least, distances.median / kMostFiner));
+            std::min(distances.median, std::max(distances.least, distances.median / kMaxFiner));
     stack.places = std::move(places);
 }
 

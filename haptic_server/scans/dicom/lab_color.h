@@ -14,9 +14,9 @@ namespace bonemill {
 // Of L*, a* and b* as stored (L* of 0 .. 100 and a*, b* of -128 .. 127 over 0 .. 65535): red, green, blue of
 // sRGB, 0 .. 1, each cut off there.
 inline Eigen::Vector3d colorOfLab(const std::array<uint16_t, 3>& stored) {
-    constexpr double kMost = 65535;
-    const double lightness = stored[0] / kMost * 100;
-    const double a = stored[1] / kMost * 255 - 128, b = stored[2] / kMost * 255 - 128;
+    constexpr double kMax = 65535;
+    const double lightness = stored[0] / kMax * 100;
+    const double a = stored[1] / kMax * 255 - 128, b = stored[2] / kMax * 255 - 128;
     const auto unfold = [](double f) {
         constexpr double kBend = 6.0 / 29;
         return f > kBend ? f * f * f : 3 * kBend * kBend * (f - 4.0 / 29);

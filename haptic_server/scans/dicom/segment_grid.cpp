@@ -13,11 +13,11 @@ namespace bonemill {
 namespace {
 
 constexpr double kSameSliceMm = 1e-3;
-constexpr double kMostOffStep = 0.1;   // of a step: scanners round
-constexpr double kMostOffPlace = 0.2;  // of a step: the offs of many steps do not add up
-constexpr int kMostSegmentSlices = 8192;
-constexpr double kMostTilt = 1;  // sideways per way along the normal: 45 degrees
-constexpr double kMostAsidePixels = 16384;
+constexpr double kMaxOffStep = 0.1;   // of a step: scanners round
+constexpr double kMaxOffPlace = 0.2;  // of a step: the offs of many steps do not add up
+constexpr int kMaxSegmentSlices = 8192;
+constexpr double kMaxTilt = 1;  // sideways per way along the normal: 45 degrees
+constexpr double kMaxAsidePixels = 16384;
 
 [[noreturn]] void refuseFrames(const std::string& file, const std::string& why) {
     throw UserError(file + ": " + why + kWayOverSlicer);
@@ -29,7 +29,7 @@ struct Offset {
 };
 
 std::vector<Offset> offsetsOf(const std::vector<DicomPlace>& frames, const std::string& file) {
-    constexpr double kMostTurn = 1e-3, kMostPixelDifference = 1e-4;  // mm
+    constexpr double kMostTurn = 1e-3, kMaxPixelDifference = 1e-4;  // mm
     const DicomPlace& first = frames.front();
     const Eigen::Vector3d normal = first.row_direction.cross(first.column_direction);
     std::vector<Offset> offsets;
@@ -37,7 +37,7 @@ std::vector<Offset> offsetsOf(const std::vector<DicomPlace>& frames, const std::
         if ((frame.row_direction - first.row_direction).cwiseAbs().maxCoeff() > kMostTurn ||
             (frame.column_direction - first.column_direction).cwiseAbs().maxCoeff() > kMostTurn)
             refuseFrames(file, "its frames lie in several directions");
-        if ((frame.pixel_spacing_mm - first.pixel_spacing_mm).cwiseAbs().maxCoeff() > kMostPixelDifference)
+        if ((frame.pixel_spacing_mm - first.pixel_spacing_mm).cwiseAbs().maxCoeff() > kMaxPixelDifference)
             refuseFrames(file, "its frames have pixels of several sizes");
         const Eigen::Vector3d way = frame.position_mm - first.position_mm;
         offsets.push_back(
@@ -66,7 +66,7 @@ struct SliceStack {
 // Whether each slice is where that number of even steps leads to.
 bool isEven(const SliceStack& stack, const std::vector<double>& slices) {
     for (size_t n = 0; n < slices.size(); ++n)
-        if (std::abs((slices[n] - slices.front()) / stack.step - stack.counts[n]) > kMostOffPlace)
+        if (std::abs((slices[n] - slices.front()) / stack.step - stack.counts[n]) > kMaxOffPlace)
             return false;
     return true;
 }
@@ -76,9 +76,9 @@ std::optional<SliceStack> stackOfStep(const std::vector<double>& slices, double 
     std::vector<int> counts{0};
     for (size_t n = 1; n < slices.size(); ++n) {
         const double gap = (slices[n] - slices[n - 1]) / step, whole = std::max(1.0, std::round(gap));
-        if (!(std::abs(gap - whole) <= kMostOffStep && whole < kMostSegmentSlices)) return std::nullopt;
+        if (!(std::abs(gap - whole) <= kMaxOffStep && whole < kMaxSegmentSlices)) return std::nullopt;
         counts.push_back(counts.back() + int(whole));
-        if (counts.back() >= kMostSegmentSlices) return std::nullopt;
+        if (counts.back() >= kMaxSegmentSlices) return std::nullopt;
     }
     const int all = counts.back();
     SliceStack stack{std::move(counts), all > 0 ? (slices.back() - slices.front()) / all : step};
@@ -97,7 +97,7 @@ SliceStack sliceStackOf(const std::vector<double>& slices, const SliceSteps& ste
     for (const double step : choices)
         if (auto stack = stackOfStep(slices, step)) return std::move(*stack);
     refuseFrames(file, "its slices are unevenly far apart, or more than " +
-                           std::to_string(kMostSegmentSlices) +
+                           std::to_string(kMaxSegmentSlices) +
                            " steps (smallest: " + printed("%.4g", smallest) + " mm)");
 }
 
@@ -105,8 +105,8 @@ void checkAside(const std::vector<Offset>& offsets, const Eigen::Vector2d& pixel
                 const std::string& file) {
     for (const Offset& offset : offsets) {
         const double aside = offset.aside.cwiseProduct(pixel_mm).cwiseAbs().maxCoeff();
-        if (!(aside <= kMostTilt * std::abs(offset.along) + pixel_mm.maxCoeff()) ||
-            !(offset.aside.cwiseAbs().maxCoeff() <= kMostAsidePixels))
+        if (!(aside <= kMaxTilt * std::abs(offset.along) + pixel_mm.maxCoeff()) ||
+            !(offset.aside.cwiseAbs().maxCoeff() <= kMaxAsidePixels))
             refuseFrames(file, "its frames lie " + printed("%.4g", aside) + " mm beside each other");
     }
 }

@@ -12,7 +12,7 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostRows = 1000, kMostProblems = 8;
+constexpr size_t kMaxRows = 1000, kMaxProblems = 8;
 constexpr size_t kLongestCell = 64, kLongestLine = 600;  // a damaged header may claim to have any text
 
 using Row = std::array<std::string, kSeriesColumns.size()>;
@@ -91,15 +91,15 @@ void recommend(const std::vector<DicomStack>& stacks, std::vector<std::string>& 
 std::vector<std::string> seriesTable(const std::vector<DicomStack>& stacks, const SeriesTableNotes& notes) {
     std::vector<Row> rows(1);
     std::ranges::copy(kSeriesColumns, rows.front().begin());
-    for (size_t s = 0; s < std::min(stacks.size(), kMostRows); ++s) rows.push_back(rowOf(stacks[s]));
+    for (size_t s = 0; s < std::min(stacks.size(), kMaxRows); ++s) rows.push_back(rowOf(stacks[s]));
     std::vector<std::string> lines = aligned(rows);
-    if (stacks.size() > kMostRows)
-        lines.push_back("and " + std::to_string(stacks.size() - kMostRows) + " more");
+    if (stacks.size() > kMaxRows)
+        lines.push_back("and " + std::to_string(stacks.size() - kMaxRows) + " more");
     recommend(stacks, lines);
-    for (size_t p = 0; p < std::min(notes.problems.size(), kMostProblems); ++p)
+    for (size_t p = 0; p < std::min(notes.problems.size(), kMaxProblems); ++p)
         lines.push_back("cannot be read: " + notes.problems[p]);
-    if (notes.problems.size() > kMostProblems)
-        lines.push_back("cannot be read: " + std::to_string(notes.problems.size() - kMostProblems) + " more");
+    if (notes.problems.size() > kMaxProblems)
+        lines.push_back("cannot be read: " + std::to_string(notes.problems.size() - kMaxProblems) + " more");
     if (!notes.left_out.empty()) lines.push_back("files left out: " + notes.left_out);
     for (std::string& line : lines) line = shortened(line, 2 * kLongestLine);
     return lines;

@@ -157,8 +157,8 @@ bool isImageStack(const std::filesystem::path& folder) {
 }
 
 void checkSpacing(const Eigen::Vector3d& spacing_mm, const std::string& file) {
-    constexpr double kLeastMm = 1e-6, kMostMm = 1e4;
-    if (!(spacing_mm.minCoeff() >= kLeastMm && spacing_mm.maxCoeff() <= kMostMm))
+    constexpr double kMinMm = 1e-6, kMaxMm = 1e4;
+    if (!(spacing_mm.minCoeff() >= kMinMm && spacing_mm.maxCoeff() <= kMaxMm))
         throw UserError(file + ": volume.spacing_mm needs the voxels' edges, each above 0: x, y and z in mm");
 }
 

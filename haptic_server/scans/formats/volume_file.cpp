@@ -75,7 +75,7 @@ RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const
     requireFile(facts.data.file);  // The library opens it with the header.
     ItkImageFile image(format, path);
     const ItkImageHeader& header = image.header();
-    if (header.components != 1 && (facts.segments.empty() || header.components > kMostSegments))
+    if (header.components != 1 && (facts.segments.empty() || header.components > kMaxSegments))
         throw UserError(file + ": has " + std::to_string(header.components) +
                         " values per voxel (colour or vectors); one number per voxel is needed");
     const std::vector<uint64_t> dims = volumeDims(header.dims);

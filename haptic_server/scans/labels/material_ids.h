@@ -16,9 +16,9 @@ namespace bonemill {
 struct MaterialRule {
     bool has_range = false;
     std::optional<double> from = {}, below = {};  // raw values: included, not included; absent: no end
-    std::vector<uint32_t> labels = {};            // 0 .. kMostLabel
+    std::vector<uint32_t> labels = {};            // 0 .. kMaxLabel
 };
-inline constexpr uint32_t kMostLabel = 65535;
+inline constexpr uint32_t kMaxLabel = 65535;
 
 // There is one of each voxel, x fastest; of several rules that fit the last one wins. Values that are not
 // finite fit no range. `of_labels` are those that voxels have by their labels (resample_labels.h), or none.

@@ -9,7 +9,7 @@ namespace bonemill {
 namespace {
 
 // Of a few structures there are dozens.
-constexpr size_t kMostCombinations = 4096, kMostMemberships = 100'000;
+constexpr size_t kMaxCombinations = 4096, kMaxMemberships = 100'000;
 
 }  // namespace
 
@@ -19,7 +19,7 @@ SegmentCodes::SegmentCodes(std::string file) : file_(std::move(file)) {
 
 uint16_t SegmentCodes::codeOf(const SegmentMembers& members) {
     const auto [found, is_new] = codes_.try_emplace(members, uint16_t(codes_.size()));
-    if (is_new && found->second > kMostCombinations) refuse();
+    if (is_new && found->second > kMaxCombinations) refuse();
     return found->second;
 }
 
@@ -33,7 +33,7 @@ void SegmentCodes::listIn(Segments& segments) const {
             if (members[n]) segments.list[n].labels.push_back(uint32_t(code));
     size_t memberships = 0;
     for (const Segment& segment : segments.list) memberships += segment.labels.size();
-    if (memberships > kMostMemberships) refuse();
+    if (memberships > kMaxMemberships) refuse();
     for (Segment& segment : segments.list) std::ranges::sort(segment.labels);
 }
 

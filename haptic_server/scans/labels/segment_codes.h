@@ -11,7 +11,7 @@
 
 namespace bonemill {
 
-using SegmentMembers = std::bitset<kMostSegments>;  // numbers in Segments::list
+using SegmentMembers = std::bitset<kMaxSegments>;  // numbers in Segments::list
 
 class SegmentCodes {
   public:

@@ -26,7 +26,7 @@ std::vector<uint32_t> labelsFromText(const std::string& text) {
     std::istringstream words(text);
     std::vector<uint32_t> labels;
     for (uint32_t label; words >> label;) {
-        if (label > kMostLabel || (!labels.empty() && label <= labels.back()))
+        if (label > kMaxLabel || (!labels.empty() && label <= labels.back()))
             throw std::length_error("labels");
         labels.push_back(label);
     }
@@ -35,11 +35,11 @@ std::vector<uint32_t> labelsFromText(const std::string& text) {
 }
 
 std::string namesOf(const Segments& segments) {
-    constexpr size_t kMostNames = 40;
+    constexpr size_t kMaxNames = 40;
     std::string names;
-    for (size_t n = 0; n < std::min(segments.list.size(), kMostNames); ++n)
+    for (size_t n = 0; n < std::min(segments.list.size(), kMaxNames); ++n)
         names += (n == 0 ? "" : ", ") + segments.list[n].name;
-    return segments.list.size() > kMostNames ? names + ", ..." : names;
+    return segments.list.size() > kMaxNames ? names + ", ..." : names;
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ Segments segmentsFromText(const std::string& text) {
     if (line != kLayered && line != kSingle) throw std::length_error("layers");
     segments.are_layered = line == kLayered;
     while (std::getline(lines, line)) {
-        if (!isSegmentName(line) || segments.list.size() == kMostSegments || !std::getline(lines, color) ||
+        if (!isSegmentName(line) || segments.list.size() == kMaxSegments || !std::getline(lines, color) ||
             !std::getline(lines, labels))
             throw std::length_error("segments");
         segments.list.push_back({line, colorFromText(color), labelsFromText(labels)});

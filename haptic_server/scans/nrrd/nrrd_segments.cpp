@@ -76,7 +76,7 @@ class LayerJoiner {
   private:
     template <class T>
     SegmentMembers membersOf(size_t layer, T label) const {
-        if (!(label > 0 && double(label) <= kMostLabel)) return {};
+        if (!(label > 0 && double(label) <= kMaxLabel)) return {};
         const auto found = members_[layer].find(uint32_t(label));
         return found == members_[layer].end() ? SegmentMembers() : found->second;
     }
@@ -114,15 +114,15 @@ void takeSegmentLine(const std::string& key, const std::string& value, const std
     if (!key.starts_with(kStart) || end == std::string::npos) return;
     const auto number = wholeNumber(key.substr(kStart.size(), end - kStart.size()));
     if (!number) return;
-    if (*number >= kMostSegments)
-        throw UserError(path.string() + ": has more than " + std::to_string(kMostSegments) +
+    if (*number >= kMaxSegments)
+        throw UserError(path.string() + ": has more than " + std::to_string(kMaxSegments) +
                         " segments; export fewer of them");
     NrrdSegment& segment = segments[*number];
     const std::string field = key.substr(end + 1);
     if (field == "Name") segment.name = trimmed(value);
     if (field == "Color") segment.color = colorOf(value);
-    if (field == "LabelValue") segment.value = requireNumber(key, trimmed(value), kMostLabel, path);
-    if (field == "Layer") segment.layer = requireNumber(key, trimmed(value), kMostSegments - 1, path);
+    if (field == "LabelValue") segment.value = requireNumber(key, trimmed(value), kMaxLabel, path);
+    if (field == "Layer") segment.layer = requireNumber(key, trimmed(value), kMaxSegments - 1, path);
 }
 
 Segments joinLayers(const NrrdSegments& segments, uint32_t layers, RawValues& values,

@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-constexpr double kMostRounded = 0.25;  // of a stored value, which is a whole number
+constexpr double kMaxRounded = 0.25;  // of a stored value, which is a whole number
 
 double scaleNumber(const std::string& text, double fallback, const char* what, const std::string& image) {
     if (text.empty()) return fallback;
@@ -43,7 +43,7 @@ bool appendRescaled(std::span<const T> samples, const DicomRescale& applied, con
     for (const T sample : samples) {
         const double share = (double(sample) - applied.intercept) / applied.slope;
         const double stored = std::nearbyint(share);
-        if (!(std::abs(share - stored) <= kMostRounded)) return false;
+        if (!(std::abs(share - stored) <= kMaxRounded)) return false;
         scaled.push_back(float(wanted.slope * stored + wanted.intercept));
     }
     values.append(std::span<const float>(scaled));

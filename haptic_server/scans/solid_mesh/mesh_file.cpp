@@ -21,7 +21,7 @@ namespace bonemill {
 namespace {
 
 constexpr double kMetresPerFileUnit = kMillimetre;
-constexpr uintmax_t kLargestFile = uintmax_t(512) << 20;  // 10 million binary STL triangles
+constexpr uintmax_t kMaxFile = uintmax_t(512) << 20;  // 10 million binary STL triangles
 
 constexpr size_t kStlHeader = 80;
 constexpr size_t kStlTriangle = 50;
@@ -45,7 +45,7 @@ std::string readBytes(const std::filesystem::path& path, const SolidKind& kind) 
     if (!std::filesystem::is_regular_file(path, error))
         throw UserError(name + ": not a file; name " + filesOf(kind));
     const uintmax_t size = std::filesystem::file_size(path, error);
-    if (error || size > kLargestFile)
+    if (error || size > kMaxFile)
         throw UserError(name + ": too large for a " + kind.name + "; simplify the mesh below 512 MiB");
     if (size == 0) throw UserError(name + ": the file is empty; export the " + kind.name + "'s mesh again");
     std::string bytes(size, '\0');
@@ -114,12 +114,12 @@ void keepOnlyLoader(Assimp::Importer& importer, const std::string& extension) {
 
 // The time that the library takes to cut up a face grows with the square of its corners, or faster.
 void checkFaces(const aiScene& scene, const std::string& name) {
-    constexpr unsigned kMostCorners = 1000;
+    constexpr unsigned kMaxCorners = 1000;
     for (unsigned m = 0; m < scene.mNumMeshes; ++m)
         for (unsigned f = 0; f < scene.mMeshes[m]->mNumFaces; ++f)
-            if (const unsigned corners = scene.mMeshes[m]->mFaces[f].mNumIndices; corners > kMostCorners)
+            if (const unsigned corners = scene.mMeshes[m]->mFaces[f].mNumIndices; corners > kMaxCorners)
                 throw UserError(name + ": has a face of " + std::to_string(corners) + " corners, more than " +
-                                std::to_string(kMostCorners) + "; export the surface as triangles");
+                                std::to_string(kMaxCorners) + "; export the surface as triangles");
 }
 
 std::vector<Eigen::Vector3d> cornersOf(const aiScene& scene) {

@@ -72,9 +72,9 @@ void mapRawValues(EffectConfigs& configs, const LoadedScene& loaded, const Densi
     if (!(share > 0))
         refuse(" is not above the lower end of the window, " + numberText(mapping.low) +
                ", which is no bone at all");
-    constexpr double kMostTimes = 1e6;
+    constexpr double kMaxTimes = 1e6;
     const double times = std::pow(share, -removal.density_exponent());
-    if (!(times <= kMostTimes && times >= 1 / kMostTimes))
+    if (!(times <= kMaxTimes && times >= 1 / kMaxTimes))
         refuse(" lets bone of the window's upper end, " + numberText(mapping.high) + ", take " +
                numberText(times) +
                " times its energy; give a value nearer to that, or a lower density_exponent");

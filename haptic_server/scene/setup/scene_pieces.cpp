@@ -7,7 +7,7 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostRemarked = 4, kMostListed = 100;
+constexpr size_t kMaxRemarked = 4, kMaxListed = 100;
 
 std::vector<bool> droppedOf(const LoadedScene& loaded, const BonePieces& pieces, const IndexBox& region,
                             int scan_voxels) {
@@ -69,8 +69,8 @@ void dropPieces(const LoadedScene& loaded, VoxelVolume& volume, const IndexBox& 
                     pieces.list().empty() ? ": no voxel reaches the iso-value"
                                           : ": all pieces of bone are dropped; the largest is " +
                                                 textOf(pieces.list()[0], 1, volume.geometry()));
-    const std::string dropped = list(pieces, is_dropped, true, volume.geometry(), "; ", kMostRemarked);
-    remarks.push_back("kept " + list(pieces, is_dropped, false, volume.geometry(), "; ", kMostRemarked) +
+    const std::string dropped = list(pieces, is_dropped, true, volume.geometry(), "; ", kMaxRemarked);
+    remarks.push_back("kept " + list(pieces, is_dropped, false, volume.geometry(), "; ", kMaxRemarked) +
                       (dropped.empty() ? "" : "; dropped " + dropped));
     pieces.drop(volume, is_dropped, of_dropped.see);
 }
@@ -78,7 +78,7 @@ void dropPieces(const LoadedScene& loaded, VoxelVolume& volume, const IndexBox& 
 std::string listPieces(const VoxelVolume& volume) {
     const BonePieces pieces(volume);
     return list(pieces, std::vector<bool>(pieces.list().size()), false, volume.geometry(), "\n  ",
-                kMostListed);
+                kMaxListed);
 }
 
 }  // namespace bonemill

@@ -28,9 +28,9 @@ constexpr double kBurrShare = 0.25;        // docs/teach/volumes.md: voxels of a
 constexpr double kAirHu = -1000, kSurelyAirHu = -500, kDensestHu = 3071;
 constexpr double kProposedVoxels = 1 << 26;
 constexpr double kMostVoxels = 1 << 28;
-constexpr int64_t kMostLookedAt = 1 << 28;  // for thin walls: a second
+constexpr int64_t kMaxLookedAt = 1 << 28;  // for thin walls: a second
 // What is only looked at needs no more voxels than this, and would not fit into memory with them.
-constexpr size_t kMostAround = size_t(1) << 28;
+constexpr size_t kMaxAround = size_t(1) << 28;
 constexpr char kNowhere[] = " does not lie in the volume, or only its rim does";
 
 Eigen::AlignedBox3d boxOf(const LoadedScene& loaded) {
@@ -136,10 +136,10 @@ RawVolume resampled(const LoadedScene& loaded, const RawVolume& scan, std::vecto
     return resampleRegion(scan, region, bandOf(scan), deblur_mm * kMillimetre);
 }
 
-// Voxels that are N times larger leave no more than kMostAround of them.
+// Voxels that are N times larger leave no more than kMaxAround of them.
 int coarseFactorOf(const VolumeGeometry& scan) {
     int factor = 1;
-    while (scan.voxelCount() / (size_t(factor) * size_t(factor) * size_t(factor)) > kMostAround) ++factor;
+    while (scan.voxelCount() / (size_t(factor) * size_t(factor) * size_t(factor)) > kMaxAround) ++factor;
     return factor;
 }
 
@@ -171,7 +171,7 @@ IndexBox usedVoxels(const LoadedScene& loaded, const VolumeGeometry& scan) {
 void remarkThinWalls(const LoadedScene& loaded, const RawVolume& scan, double iso_value,
                      std::vector<std::string>& remarks) {
     const IndexBox used = usedVoxels(loaded, scan.geometry);
-    if (used.count() > kMostLookedAt) return;
+    if (used.count() > kMaxLookedAt) return;
     const ThinWalls walls = findThinWalls(scan, used, iso_value);
     if (walls.voxels == 0) return;
     remarks.push_back(std::to_string(walls.voxels) + " voxels (" +

@@ -20,20 +20,20 @@ namespace {
 
 constexpr int kDefaultLeafCells = 16;
 constexpr double kLongestDentalTool = 30e-3;  // m from the burr's centre to the shaft's end
-constexpr double kMostOverload =
+constexpr double kMaxOverload =
     3;  // a shaft of half the burr's radius is common, and leans more than it pokes
 
 // Milling rescans the leaves it touches in the tick, so that leaves must stay small.
-constexpr int kMostLeafCells = 128;
+constexpr int kMaxLeafCells = 128;
 constexpr int kSlowLeafCells = 40;
 
 Eigen::Vector3i leafCellsOf(const scene::Volume& volume, const VolumeGeometry& geometry) {
     if (volume.has_octree_depth()) {
         const Eigen::Vector3i cells = LeafLattice::leafCellsOfDepth(geometry, int(volume.octree_depth()));
-        if (cells.maxCoeff() > kMostLeafCells)
+        if (cells.maxCoeff() > kMaxLeafCells)
             throw UserError("volume.octree_depth: " + std::to_string(volume.octree_depth()) +
                             " cuts this volume into leaves of " + std::to_string(cells.maxCoeff()) +
-                            " cells, more than " + std::to_string(kMostLeafCells) +
+                            " cells, more than " + std::to_string(kMaxLeafCells) +
                             "; raise it, or set volume.leaf_voxels instead");
         return cells;
     }
@@ -79,7 +79,7 @@ void warnOfThinTool(Simulation& simulation, const scene::Scene& scene, const Sce
     if (simulation.accuracy.law != ContactLaw::kGradient || radius >= tool.burr.radius) return;
     const double wall = thinnestWall(scene, simulation.bone->volume.spacing().minCoeff());
     const double carried = wallForce(config.contact, radius, wall);
-    if (tool.saturation_force <= kMostOverload * carried) return;
+    if (tool.saturation_force <= kMaxOverload * carried) return;
     simulation.warnings.push_back(ofTool(simulation, tool) + "the tool's thinnest part has a radius of " +
                                   textOf(radius / kMillimetre) + " mm: its tip goes through a wall of " +
                                   textOf(wall / kMillimetre) + " mm at " + textOf(carried) +
@@ -117,7 +117,7 @@ void warnOfManyPoints(Simulation& simulation, const SceneTool& tool) {
 // A groove half as deep as the burr's radius R is larger than what was swept by this times (voxel / R)², as
 // docs/teach/effects.md (time_removal) has it measured.
 constexpr double kGrooveExcess = 1.3;
-constexpr double kMostGrooveExcess = 0.1;
+constexpr double kMaxGrooveExcess = 0.1;
 
 void warnOfCoarseVoxels(Simulation& simulation, const SceneTool& tool) {
     const bool is_by_ramp = simulation.accuracy.law == ContactLaw::kGradient;
@@ -125,8 +125,8 @@ void warnOfCoarseVoxels(Simulation& simulation, const SceneTool& tool) {
     const double voxel = std::sqrt(simulation.bone->volume.spacing().squaredNorm() / 3);
     const double radius = tool.burr.radius;
     const double excess = kGrooveExcess * std::pow(voxel / radius, 2);
-    if (excess <= kMostGrooveExcess) return;
-    const double fine_voxel = radius * std::sqrt(kMostGrooveExcess / kGrooveExcess);
+    if (excess <= kMaxGrooveExcess) return;
+    const double fine_voxel = radius * std::sqrt(kMaxGrooveExcess / kGrooveExcess);
     simulation.warnings.push_back(
         ofTool(simulation, tool) + "voxels of " + textOf(std::round(voxel * 1e5) / 100) +
         " mm are coarse for a burr of " + textOf(radius / kMillimetre) +
@@ -206,11 +206,11 @@ std::vector<SpoTool> Simulation::spoTools() const {
     return all;
 }
 
-std::optional<BreachWatch> breachWatchOf(const Simulation& simulation) {
+std::optional<BreachMonitor> breachWatchOf(const Simulation& simulation) {
     if (!simulation.task || !simulation.task->plan) return std::nullopt;
     std::vector<BurrProbes> burrs;
     for (const SceneTool& tool : simulation.tools) burrs.emplace_back(tool.burr);
-    return BreachWatch(simulation.bone->volume, *simulation.task->plan, std::move(burrs));
+    return BreachMonitor(simulation.bone->volume, *simulation.task->plan, std::move(burrs));
 }
 
 scene::Tool::Handpiece handpieceOf(const scene::Tool& tool, const TriangleSurface& surface) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/config/scene_file.h"
-#include "haptic_server/assessment/product/breach_watch.h"
+#include "haptic_server/assessment/product/breach_monitor.h"
 #include "haptic_server/core/bone/bone_model.h"
 #include "haptic_server/core/tick/tick_config.h"
 #include "haptic_server/core/volume/surroundings.h"
@@ -50,7 +50,7 @@ struct Simulation {
 };
 
 // Who follows the tool for its breach beside the planned line of the task; none without such a line.
-std::optional<BreachWatch> breachWatchOf(const Simulation& simulation);
+std::optional<BreachMonitor> breachWatchOf(const Simulation& simulation);
 
 // Imports the volume, builds tree, shell and tools. Throws UserError.
 Simulation makeSimulation(const LoadedScene& loaded);

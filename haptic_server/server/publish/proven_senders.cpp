@@ -5,14 +5,14 @@ namespace {
 
 // Far more than a classroom has. Only people of the session fill it, and beyond it only new sender ids are
 // refused.
-constexpr size_t kMostProvenSenders = 4096;
+constexpr size_t kMaxProvenSenders = 4096;
 
 }  // namespace
 
 bool ProvenSenders::mayUse(uint64_t sender, const GuidPrefix& participant) {
     const auto found = senders_.find(sender);
     if (found != senders_.end()) return found->second.participant == participant;
-    if (senders_.size() >= kMostProvenSenders) return false;
+    if (senders_.size() >= kMaxProvenSenders) return false;
     senders_.emplace(sender, Sender{participant, "unknown"});
     return true;
 }

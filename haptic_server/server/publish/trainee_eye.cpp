@@ -54,7 +54,7 @@ bool TraineeEye::hear(std::span<const uint8_t> payload, uint64_t sender, uint64_
     const auto known = operators_.find(sender);
     if (known == operators_.end())
         makeRoomFor(
-            participant, operators_, {kMostViewers, kMostOfParticipant},
+            participant, operators_, {kMaxViewers, kMaxOfParticipant},
             [](const auto& entry) { return entry.second.participant; },
             [](const auto& entry) { return entry.second.at; });
     else if (known->second.participant != participant)

@@ -27,8 +27,8 @@ class TraineeEye {
   public:
     using Clock = std::chrono::steady_clock;
     static constexpr std::chrono::seconds kTimeout{4};  // a viewer tells of itself once per second
-    static constexpr size_t kMostViewers = 256;
-    static constexpr size_t kMostOfParticipant = 64;  // a gateway's guests
+    static constexpr size_t kMaxViewers = 256;
+    static constexpr size_t kMaxOfParticipant = 64;  // a gateway's guests
 
     // Takes the payload of a Viewer sample. `participant` is who tells of this viewer, and `proven` the role
     // that its certificate proves, where it has one. Returns false for bytes that make no sense.

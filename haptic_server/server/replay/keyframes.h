@@ -17,10 +17,10 @@ class Keyframes {
   public:
     // What bones share they have once. Of those that were added each second one goes whenever together they
     // have more than this in their own leaves.
-    static constexpr size_t kMostBytes = size_t(1) << 30;
+    static constexpr size_t kMaxBytes = size_t(1) << 30;
 
     // Those of the recording, at least one, by tick. The first one stays.
-    explicit Keyframes(const std::vector<Keyframe>& recorded, size_t most_bytes = kMostBytes)
+    explicit Keyframes(const std::vector<Keyframe>& recorded, size_t most_bytes = kMaxBytes)
         : most_bytes_(most_bytes) {
         for (const Keyframe& keyframe : recorded) add(keyframe);
     }

@@ -17,10 +17,10 @@ using namespace std::chrono_literals;
 constexpr auto kLook = 2ms;                                  // for ticks that are due
 constexpr int64_t kLongestRoundNs = 20 * kNsPerMillisecond;  // then orders are looked at
 // A replay that falls behind by more than this goes on from where it is: it plays more slowly than asked.
-constexpr int64_t kMostBehindNs = 50 * kNsPerMillisecond;
+constexpr int64_t kMaxBehindNs = 50 * kNsPerMillisecond;
 // "The event before" is not the one that was just jumped to while the replay plays on.
 constexpr double kSameMomentS = 0.7;
-constexpr double kMostMetres = 1e3;
+constexpr double kMaxMetres = 1e3;
 constexpr int64_t kRecordPeriodNs = kNsPerMillisecond;  // as if ticks came so
 
 }  // namespace
@@ -81,7 +81,7 @@ bool Player::playDue() {
     while (!rerun_.isAtEnd()) {
         const int64_t now_ns = monotonicNowNs(), due_ns = dueNs();
         if (due_ns > now_ns || now_ns - round_start_ns > kLongestRoundNs) return true;
-        if (now_ns - due_ns > kMostBehindNs) setClock(clock_speed_);
+        if (now_ns - due_ns > kMaxBehindNs) setClock(clock_speed_);
         show(rerun_.step(), true);
     }
     return false;
@@ -212,7 +212,7 @@ double Player::sameMomentS() const {
 
 Answer Player::goToRemoval(const topics::Place& place) {
     if (place.p_m_size() != 3 ||
-        !std::ranges::all_of(place.p_m(), [](double part) { return std::abs(part) < kMostMetres; }))
+        !std::ranges::all_of(place.p_m(), [](double part) { return std::abs(part) < kMaxMetres; }))
         return Answer::refused("that is no place");
     const Eigen::Vector3d p_V = X_VW_ * Eigen::Vector3d(place.p_m().data());
     const auto removal = survey_.removals().nearest(p_V, kPlaceRadius, shown());

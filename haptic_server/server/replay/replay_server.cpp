@@ -167,10 +167,10 @@ class ReplayServer {
     Recorder recorder_;
     MeshOutbox outbox_;
     SessionExport bone_export_;
-    LessonBook lesson_;
-    JournalKeeper keeper_;  // of nothing: a replay is not recorded
-    TaskWatch task_;
-    AttemptKeeper attempts_;
+    LessonState lesson_;
+    JournalRecorder keeper_;  // of nothing: a replay is not recorded
+    TaskMonitor task_;
+    AttemptController attempts_;
     OrderLimits limits_;
     std::atomic<uint32_t> reset_orders_{0};
     std::atomic<bool> stop_requested_{false}, has_failed_{false};

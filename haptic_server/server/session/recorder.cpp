@@ -9,7 +9,7 @@
 namespace bonemill {
 
 Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded,
-                   std::optional<BreachWatch> breach)
+                   std::optional<BreachMonitor> breach)
     : ring_(ring),
       statistics_(period_ns, recorded),
       recorded_(recorded),

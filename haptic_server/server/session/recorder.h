@@ -10,7 +10,7 @@
 
 #include "common/rt/spsc_ring.h"
 #include "haptic_server/assessment/measures/technique.h"
-#include "haptic_server/assessment/product/breach_watch.h"
+#include "haptic_server/assessment/product/breach_monitor.h"
 #include "haptic_server/recording/journal/journal.h"
 #include "haptic_server/recording/statistics/event_sum.h"
 #include "haptic_server/recording/statistics/run_statistics.h"
@@ -40,7 +40,7 @@ class Recorder {
   public:
     // `recorded` says what the records hold of effects; `breach` is there where the task has a planned line.
     Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded = {},
-             std::optional<BreachWatch> breach = {});
+             std::optional<BreachMonitor> breach = {});
 
     // Before the first drain(), it begins a trace, which takes the place of the file that is there; an empty
     // path is none. Throws UserError when it cannot be created.
@@ -103,7 +103,7 @@ class Recorder {
     Journal* journal_ = nullptr;
     LatencyHistogram window_;  // tick compute time in the second under way
     int64_t window_start_ns_ = 0;
-    std::optional<BreachWatch> breach_;
+    std::optional<BreachMonitor> breach_;
     AttemptFigures attempt_;
     uint64_t bone_order_ = 0;  // the attempt's
     MakeTechnique make_technique_;

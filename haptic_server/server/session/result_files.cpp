@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostNumbers = 100'000;
+constexpr int kMaxNumbers = 100'000;
 
 std::vector<NamedFile> resultsOf(const ServerOptions& options) {
     std::vector<NamedFile> files = filesOf(options.save);
@@ -49,7 +49,7 @@ ResultFiles::ResultFiles(ServerOptions session, std::vector<NamedFile> read)
 }
 
 ServerOptions ResultFiles::next(const std::string& scene) const {
-    for (int number = last_ + 1; number < last_ + kMostNumbers; ++number) {
+    for (int number = last_ + 1; number < last_ + kMaxNumbers; ++number) {
         ServerOptions options = numbered(scene, number);
         if (isFree(options)) return options;
     }

@@ -125,7 +125,7 @@ struct ResumeReading::Raw {
         std::set<uint32_t> checkpoints;
         size_t bytes = 0;
     };
-    static constexpr size_t kMostBytes = Recording::kMostBoneBytes;
+    static constexpr size_t kMaxBytes = Recording::kMaxBoneBytes;
     std::vector<Run> runs;
     size_t bytes = 0;  // of all runs
     std::map<uint64_t, uint32_t> put_backs;
@@ -156,7 +156,7 @@ struct ResumeReading::Raw {
         const bool is_whole = !bone.goes_on() && bone.kind() != journal::Bone::OTHER;
         if (is_whole) bone_order = bone.bone_order();
         bytes += bone.SpaceUsedLong();
-        if (bytes > kMostBytes)
+        if (bytes > kMaxBytes)
             throw UserError("its bones take more memory than there may be; it is damaged");
         runs.back().bytes += bone.SpaceUsedLong();
         runs.back().bones.push_back(std::move(bone));
@@ -171,7 +171,7 @@ struct ResumeReading::Raw {
         runs.erase(gone, last);
     }
     bool isWanted(const Run& run) const {
-        return !run.checkpoints.empty() && *run.checkpoints.rbegin() + Checkpoints::kMost > newest_checkpoint;
+        return !run.checkpoints.empty() && *run.checkpoints.rbegin() + Checkpoints::kMax > newest_checkpoint;
     }
 };
 
@@ -203,7 +203,7 @@ ResumedSession ResumeReading::take(const BoneModel& bone_as_scanned) {
             out.bone = states.state();
             tick = bone.tick();
         }
-    while (checkpoints.size() > Checkpoints::kMost) checkpoints.erase(checkpoints.begin());
+    while (checkpoints.size() > Checkpoints::kMax) checkpoints.erase(checkpoints.begin());
     // The bone was on its way there: only what a tick took up counts, for orders may be refused or merged.
     const auto& orders = raw->last_inputs.bone_order().values();
     const uint64_t taken_up = orders.empty() ? 0 : *orders.rbegin();

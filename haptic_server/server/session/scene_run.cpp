@@ -274,7 +274,7 @@ void SceneRun::tellOfCapabilities() {
     DeviceCapabilities device;
     if (!io_.capabilities(device)) return;
     const std::string text = deviceText(device);
-    if (text == device_ || devices_told_ == DeviceHistory::kMostKept) return;
+    if (text == device_ || devices_told_ == DeviceHistory::kMaxKept) return;
     spdlog::info("the device is {}; {}", text, couplingText(simulation_.tick, device));
     device_ = text;
     ++devices_told_;

@@ -16,7 +16,7 @@
 #include "haptic_server/core/tick/haptic_tick.h"
 #include "haptic_server/server/publish/publisher.h"
 #include "haptic_server/server/session/device_link_io.h"
-#include "haptic_server/server/session/journal_keeper.h"
+#include "haptic_server/server/session/journal_recorder.h"
 #include "haptic_server/server/session/resume.h"
 #include "haptic_server/server/session/server.h"
 #include "haptic_server/server/session/show_session.h"
@@ -28,7 +28,7 @@ namespace bonemill {
 struct ServerParts {
     DeviceLink& link;
     Publisher& publisher;
-    LessonBook& lesson;
+    LessonState& lesson;
     OrderLimits& limits;
     std::atomic<bool>& stop_requested;
     std::atomic<bool>& has_failed;
@@ -99,12 +99,12 @@ class SceneRun {
     std::optional<JournalConfig> journal_config_;  // until the journal begins
     std::unique_ptr<Journal> journal_;             // null: nothing is recorded
     std::future<void> closing_;                    // the journal of before gets its end
-    JournalKeeper journal_keeper_;
+    JournalRecorder journal_keeper_;
     Recorder recorder_;
     MeshOutbox outbox_;
     SessionExport bone_export_;
-    TaskWatch task_;
-    AttemptKeeper attempts_;
+    TaskMonitor task_;
+    AttemptController attempts_;
     SessionCommands commands_;
     ShowSession show_;
     PublishFigures published_;  // publisher thread's until it is joined

@@ -20,7 +20,7 @@
 #include "haptic_server/server/session/scene_run.h"
 #include "haptic_server/server/session/session_journal.h"
 #include "haptic_server/server/session/sole_server.h"
-#include "haptic_server/teaching/lessons/lesson_book.h"
+#include "haptic_server/teaching/lessons/lesson_state.h"
 #include "haptic_server/teaching/lessons/scene_folder.h"
 
 namespace bonemill {
@@ -136,7 +136,7 @@ class Server {
 
     // The scene in force goes on while another one is read.
     void beginChange() {
-        std::optional<LessonBook::SceneOrder> order = lesson_.takeOrder();
+        std::optional<LessonState::SceneOrder> order = lesson_.takeOrder();
         if (!order) return;
         order_ = std::move(*order);
         order_ns_ = monotonicNowNs();
@@ -209,10 +209,10 @@ class Server {
     Publisher publisher_;
     ResultFiles results_;
     ServerOptions next_options_;  // of the scene that is being loaded
-    LessonBook lesson_;
+    LessonState lesson_;
     OrderLimits limits_;
     std::unique_ptr<SceneRun> run_;
-    LessonBook::SceneOrder order_;
+    LessonState::SceneOrder order_;
     int64_t order_ns_ = 0;
     int64_t first_tick_ns_ = 0;
     bool are_files_whole_ = true;

@@ -13,13 +13,13 @@
 #include "haptic_server/core/tick/accuracy_switch.h"
 #include "haptic_server/core/tick/tool_switch.h"
 #include "haptic_server/scene/setup/scene_setup.h"
-#include "haptic_server/server/session/attempt_keeper.h"
-#include "haptic_server/server/session/journal_keeper.h"
+#include "haptic_server/server/session/attempt_controller.h"
+#include "haptic_server/server/session/journal_recorder.h"
 #include "haptic_server/server/session/recorder.h"
 #include "haptic_server/server/session/replay_orders.h"
 #include "haptic_server/server/session/session_export.h"
-#include "haptic_server/teaching/lessons/lesson_book.h"
-#include "haptic_server/teaching/lessons/remark_book.h"
+#include "haptic_server/teaching/lessons/lesson_state.h"
+#include "haptic_server/teaching/lessons/remark_list.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {
@@ -32,10 +32,10 @@ struct SessionControls {
     std::atomic<bool>& stop_requested;
     SessionExport& bone_export;
     std::atomic<uint32_t>& reset_orders;  // counts the orders to reset the device
-    LessonBook& lesson;
-    AttemptKeeper& attempts;
+    LessonState& lesson;
+    AttemptController& attempts;
     OrderLimits& limits;
-    JournalKeeper& journal;
+    JournalRecorder& journal;
     ReplayOrders* replay = nullptr;  // there where a recording is shown
 };
 
@@ -50,11 +50,11 @@ class SessionCommands {
     // This is how the command that was begun has ended, once it has.
     std::optional<Answer> takeResult() { return controls_.bone_export.takeResult(); }
     void waitForResult() { controls_.bone_export.wait(); }
-    LessonBook& lesson() noexcept { return controls_.lesson; }
-    JournalKeeper& journal() noexcept { return controls_.journal; }
+    LessonState& lesson() noexcept { return controls_.lesson; }
+    JournalRecorder& journal() noexcept { return controls_.journal; }
     Checkpoints& checkpoints() noexcept { return checkpoints_; }
-    AttemptKeeper& attempts() noexcept { return controls_.attempts; }
-    RemarkBook& remarks() noexcept { return remarks_; }
+    AttemptController& attempts() noexcept { return controls_.attempts; }
+    RemarkList& remarks() noexcept { return remarks_; }
     // Fills in the session clock, the pause, the checkpoints and what the bone has lost.
     void describe(topics::Status& status) const;
     const ToolSwitch& tools() const noexcept { return controls_.tools; }
@@ -72,7 +72,7 @@ class SessionCommands {
     SessionControls controls_;
     const Recorder& recorder_;
     Checkpoints checkpoints_;
-    RemarkBook remarks_;
+    RemarkList remarks_;
     double voxel_mm3_;
     bool is_switchable_;
     const char* effect_of_gradient_law_;  // null: none

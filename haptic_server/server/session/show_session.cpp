@@ -131,7 +131,7 @@ std::future<std::vector<NodeMesh>> meshingStructures(const Simulation& simulatio
 
 ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
                          const BoneHistory& history, const AccuracyFigures& figures, MeshOutbox& outbox,
-                         Recorder& recorder, ShownDevice device, SessionCommands& commands, TaskWatch& task,
+                         Recorder& recorder, ShownDevice device, SessionCommands& commands, TaskMonitor& task,
                          double bytes_per_s)
     : publisher_(publisher),
       scene_(scene),
@@ -184,7 +184,7 @@ void ShowSession::publishPictures() {
 }
 
 void ShowSession::publishRemarks() {
-    for (const RemarkBook::Change& change : commands_.remarks().takeChanges()) {
+    for (const RemarkList::Change& change : commands_.remarks().takeChanges()) {
         if (change.remark)
             publisher_.publishRemark(change.place, *change.remark);
         else

@@ -30,7 +30,7 @@ class ShowSession {
     // References must outlive this object.
     ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
                 const BoneHistory& history, const AccuracyFigures& figures, MeshOutbox& outbox,
-                Recorder& recorder, ShownDevice device, SessionCommands& commands, TaskWatch& task,
+                Recorder& recorder, ShownDevice device, SessionCommands& commands, TaskMonitor& task,
                 double bytes_per_s);
 
     // Publishes the scene, before the first round; the protected structures follow with some round().
@@ -77,7 +77,7 @@ class ShowSession {
     Recorder& recorder_;
     ShownDevice device_;
     SessionCommands& commands_;
-    TaskWatch& task_;
+    TaskMonitor& task_;
     AccuracyFigures figures_;
     ShownEffects effects_;
     std::vector<std::string> material_names_;

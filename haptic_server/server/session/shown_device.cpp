@@ -8,7 +8,7 @@
 namespace bonemill {
 namespace {
 
-constexpr double kMostShown = 1e6;  // viewers refuse larger numbers
+constexpr double kMaxShown = 1e6;  // viewers refuse larger numbers
 
 // The name comes from another process, and messages hold UTF-8.
 std::string readableName(const char* name) {
@@ -35,8 +35,8 @@ topics::Device shownDevice(const TickRecord& record, const DeviceCapabilities* c
     device.set_name(readableName(capabilities->name));
     device.set_kind(capabilities->kind);
     device.set_abilities(capabilities->abilities);
-    device.set_max_force_n(std::min(capabilities->max_force, kMostShown));
-    device.set_max_torque_nmm(std::min(capabilities->max_torque * kPerMilli, kMostShown));
+    device.set_max_force_n(std::min(capabilities->max_force, kMaxShown));
+    device.set_max_torque_nmm(std::min(capabilities->max_torque * kPerMilli, kMaxShown));
     return device;
 }
 

@@ -12,7 +12,7 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostWarnings = 32;  // in a status
+constexpr size_t kMaxWarnings = 32;  // in a status
 
 // The tick's bits go out as they are.
 static_assert(int(kEventSpindleStalled) == topics::EffectState::SPINDLE_STALLED);
@@ -115,9 +115,9 @@ void ShownEffects::describe(const EffectStatistics& statistics, const std::vecto
 void ShownEffects::describe(const EffectStatistics& statistics, const std::vector<std::string>& materials,
                             topics::Attempt& attempt) const {
     if (hasTraining()) fill(statistics, materials, *attempt.mutable_training());
-    constexpr size_t kMostStructures = 64;  // a viewer takes no more
+    constexpr size_t kMaxStructures = 64;  // a viewer takes no more
     for (std::string& name : statistics.touched(materials))
-        if (size_t(attempt.structures_touched_size()) < kMostStructures)
+        if (size_t(attempt.structures_touched_size()) < kMaxStructures)
             attempt.add_structures_touched(std::move(name));
 }
 
@@ -136,9 +136,9 @@ void ShownEffects::fill(const EffectStatistics& statistics, const std::vector<st
             training.set_max_temperature_c(*temperature);
     }
     std::vector<std::string> warnings = statistics.warnings(materials);
-    if (warnings.size() > kMostWarnings) {
-        const size_t more = warnings.size() - (kMostWarnings - 1);
-        warnings.resize(kMostWarnings - 1);
+    if (warnings.size() > kMaxWarnings) {
+        const size_t more = warnings.size() - (kMaxWarnings - 1);
+        warnings.resize(kMaxWarnings - 1);
         warnings.push_back("and " + std::to_string(more) + " more");
     }
     for (std::string& warning : warnings) training.add_warnings(std::move(warning));

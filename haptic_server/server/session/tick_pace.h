@@ -19,7 +19,7 @@ class TickPace {
     void begin(int64_t start_ns) noexcept {
         last_start_ns_ = start_ns;
         due_ns_ =
-            std::max(due_ns_, start_ns - kMostCaughtUp * period_ns_) + period_ns_ - period_ns_ / kFasterClock;
+            std::max(due_ns_, start_ns - kMaxCaughtUp * period_ns_) + period_ns_ - period_ns_ / kFasterClock;
     }
     // The work of the tick that has begun is done.
     void end(int64_t end_ns) noexcept { rested_ns_ = end_ns + (end_ns - last_start_ns_) / kWorkPerRest; }
@@ -31,7 +31,7 @@ class TickPace {
     bool isTooFast(int64_t now_ns) const noexcept { return now_ns < due_ns_; }
 
   private:
-    static constexpr int64_t kMostCaughtUp = 2;  // periods that silence leaves to be made up for
+    static constexpr int64_t kMaxCaughtUp = 2;  // periods that silence leaves to be made up for
     static constexpr int64_t kFasterClock = 64;  // 1/64, far more than crystals differ by
     static constexpr int64_t kWorkPerRest = 4;   // the loop takes no more than 80 % of its processor
 

@@ -8,10 +8,10 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostWishes = 256;         // taken per round
-constexpr size_t kMostWishesOfWriter = 16;  // of them, read: 3200 per second
+constexpr size_t kMaxWishes = 256;         // taken per round
+constexpr size_t kMaxWishesOfWriter = 16;  // of them, read: 3200 per second
 constexpr int64_t kLongestRound_ns = 2 * kNsPerMillisecond;
-constexpr size_t kLeastCharge = 1024;  // bytes: a small brick costs time, too
+constexpr size_t kMinCharge = 1024;  // bytes: a small brick costs time, too
 
 uint16_t stepsOf(const DensityScale& scale) {
     const double values = scale.value_at_65535 - scale.value_at_0;
@@ -41,8 +41,8 @@ DensityPublisher::DensityPublisher(const dds::Participant& participant, uint32_t
 
 void DensityPublisher::takeWishes(int64_t now_ns) {
     std::map<uint64_t, size_t> taken;  // by writer
-    reader_.take(kMostWishes, [&](const dds::DensityWishSample& sample, const dds::SampleInfo& info) {
-        if (!info.has_data || sample.session != session_ || ++taken[info.writer] > kMostWishesOfWriter)
+    reader_.take(kMaxWishes, [&](const dds::DensityWishSample& sample, const dds::SampleInfo& info) {
+        if (!info.has_data || sample.session != session_ || ++taken[info.writer] > kMaxWishesOfWriter)
             return;
         stream_.receive(sample.sender, reader_.participantOf(info.writer), dds::payloadOf(sample), now_ns);
     });
@@ -61,7 +61,7 @@ size_t DensityPublisher::round(int64_t now_ns, int64_t most_bytes) {
             ++written_bricks_;
             written_bytes_ += payload.size();
         }
-        charged += std::max(payload.size(), kLeastCharge);
+        charged += std::max(payload.size(), kMinCharge);
         return int64_t(charged) < most_bytes && monotonicNowNs() - now_ns < kLongestRound_ns;
     });
     return charged;

@@ -7,7 +7,7 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostLooks = 4096;  // per round: some tens of microseconds
+constexpr size_t kMaxLooks = 4096;  // per round: some tens of microseconds
 constexpr size_t kLooksPerTurn = 512;
 
 }  // namespace
@@ -32,7 +32,7 @@ void DensityStream::round(int64_t now_ns, const Write& write) {
     size_t looks = 0;
     bool goes_on = true;
     // It ends when all had a turn in which there was nothing to do for them.
-    for (size_t idle = 0; goes_on && idle < wishes.size() && looks < kMostLooks; ++turn_)
+    for (size_t idle = 0; goes_on && idle < wishes.size() && looks < kMaxLooks; ++turn_)
         idle = turn(wishes[turn_ % wishes.size()], now_ns, looks, write, goes_on) ? 0 : idle + 1;
 }
 

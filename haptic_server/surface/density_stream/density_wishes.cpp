@@ -11,11 +11,11 @@ namespace bonemill {
 namespace {
 
 constexpr size_t kLongestWish = 64u << 10;  // bytes
-constexpr size_t kMostWanted = 16384;       // bricks: five planes of a scan of 900² voxels
-constexpr int kMostLacking = 1024;          // of them, in one message
+constexpr size_t kMaxWanted = 16384;       // bricks: five planes of a scan of 900² voxels
+constexpr int kMaxLacking = 1024;          // of them, in one message
 
 bool readLacking(const topics::DensityWish& wish, uint32_t count, std::vector<WishedBrick>& bricks) {
-    if (wish.lacking_size() > kMostLacking) return false;
+    if (wish.lacking_size() > kMaxLacking) return false;
     for (const uint32_t brick : wish.lacking()) {
         if (brick >= count) return false;
         bricks.push_back({brick, kLackingBrick});
@@ -28,7 +28,7 @@ bool readHeld(const topics::DensityWish& wish, uint32_t count, std::vector<Wishe
     uint64_t next = 0;
     for (int i = 0; i < wish.held_size(); i += 2) {
         const uint64_t first = next + wish.held(i), end = first + wish.held(i + 1);
-        if (end > count || bricks.size() + (end - first) > kMostWanted) return false;
+        if (end > count || bricks.size() + (end - first) > kMaxWanted) return false;
         for (uint64_t brick = first; brick < end; ++brick) bricks.push_back({uint32_t(brick), 0});
         next = end;
     }
@@ -70,7 +70,7 @@ void DensityWishes::receive(uint64_t sender, uint64_t participant, std::vector<W
                             int64_t now_ns) {
     auto wish = std::ranges::find(wishes_, sender, &Wish::sender);
     if (wish == wishes_.end()) {
-        makeRoomFor(participant, wishes_, {kMostSenders, kMostOfParticipant}, &Wish::participant,
+        makeRoomFor(participant, wishes_, {kMaxSenders, kMaxOfParticipant}, &Wish::participant,
                     &Wish::heard_ns);
         wish = wishes_.insert(wishes_.end(), Wish{sender, participant, now_ns, {}});
     } else if (wish->participant != participant) {

@@ -25,8 +25,8 @@ std::optional<std::vector<WishedBrick>> parseDensityWish(std::span<const uint8_t
 
 class DensityWishes {
   public:
-    static constexpr size_t kMostSenders = 128;  // of more, the least recent of who has most is forgotten
-    static constexpr size_t kMostOfParticipant =
+    static constexpr size_t kMaxSenders = 128;  // of more, the least recent of who has most is forgotten
+    static constexpr size_t kMaxOfParticipant =
         64;  // a gateway's guests; of more, its least recent is forgotten
     static constexpr int64_t kSilence_ns = 5'000'000'000;  // whoever says nothing for so long shows nothing
 

@@ -12,7 +12,7 @@ constexpr uint32_t kNoVertex = UINT32_MAX;
 
 // Steps from the low voxel to the iso-value, rounded to nearest; low and high lie on different sides of iso.
 int stepsToIso(Density low, Density high, Density iso, int steps_per_cell) noexcept {
-    static_assert(2 * uint64_t(kMaxDensity) * MeshGrid::kMostStepsPerCell + kMaxDensity <= UINT32_MAX);
+    static_assert(2 * uint64_t(kMaxDensity) * MeshGrid::kMaxStepsPerCell + kMaxDensity <= UINT32_MAX);
     const uint32_t rise = uint32_t(std::abs(int(high) - int(low)));
     const uint32_t to_iso = uint32_t(std::abs(int(iso) - int(low)));
     const uint32_t steps = (2 * to_iso * uint32_t(steps_per_cell) + rise) / (2 * rise);

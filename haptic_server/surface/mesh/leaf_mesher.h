@@ -34,7 +34,7 @@ class LeafMesher {
     // most_steps_per_cell is as for MeshGrid. Without `properties` (which must outlive it) no vertex
     // has a material.
     LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice,
-               int most_steps_per_cell = MeshGrid::kMostStepsPerCell,
+               int most_steps_per_cell = MeshGrid::kMaxStepsPerCell,
                const BoneProperties* properties = nullptr);
 
     // From now on vertices show these zones; null: none. It must outlive this object.

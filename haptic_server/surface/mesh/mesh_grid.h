@@ -11,14 +11,14 @@ namespace bonemill {
 
 class MeshGrid {
   public:
-    static constexpr int kMostStepsPerCell = 16383;  // 32 bits hold a density times that
+    static constexpr int kMaxStepsPerCell = 16383;  // 32 bits hold a density times that
     // This is streamed. The cell fills a high byte and the place in it a low one, which packs best.
     static constexpr int kStreamedStepsPerCell = 256;
 
     // Throws std::invalid_argument when a leaf is so large (over 21845 cells) that 16 bits cannot hold
     // its vertices.
     MeshGrid(const VoxelVolume& volume, const LeafLattice& lattice,
-             int most_steps_per_cell = kMostStepsPerCell);
+             int most_steps_per_cell = kMaxStepsPerCell);
 
     int stepsPerCell() const noexcept { return steps_per_cell_; }
 

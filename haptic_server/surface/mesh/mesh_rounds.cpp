@@ -9,7 +9,7 @@ namespace bonemill {
 namespace {
 
 constexpr uint32_t kOthersPerRound = 128;  // while the whole bone is meshed, no cut waits for more than these
-constexpr int64_t kMostNeighbours = 512;   // leaves; a cut's box has some 27
+constexpr int64_t kMaxNeighbours = 512;   // leaves; a cut's box has some 27
 constexpr int64_t kPassPeriodNs = 8 * kNsPerMillisecond;
 
 }  // namespace
@@ -44,7 +44,7 @@ void MeshRounds::takeCuts() {
 void MeshRounds::closeCuts(const Sink& sink) {
     if (open_starts_ns_.empty()) return;
     open_group_.oldest_cut_ns = *std::min_element(open_starts_ns_.begin(), open_starts_ns_.end());
-    if (open_leaves_.count() <= kMostNeighbours)
+    if (open_leaves_.count() <= kMaxNeighbours)
         forEachIndex(open_leaves_, [this](const Eigen::Vector3i& leaf) {
             open_group_.neighbours.push_back(lattice_.leafId(leaf));
         });

@@ -18,7 +18,7 @@ class Mesher {
   public:
     // All must outlive the mesher. most_steps_per_cell as for MeshGrid, properties as for LeafMesher.
     Mesher(const VoxelVolume& volume, const LeafLattice& lattice,
-           int most_steps_per_cell = MeshGrid::kMostStepsPerCell, const BoneProperties* properties = nullptr);
+           int most_steps_per_cell = MeshGrid::kMaxStepsPerCell, const BoneProperties* properties = nullptr);
 
     using Sink = std::function<void(NodeMesh&&)>;
     static constexpr uint32_t kAllLeaves = std::numeric_limits<uint32_t>::max();

@@ -12,14 +12,14 @@
 namespace bonemill {
 namespace {
 
-constexpr int64_t kMostSamples = int64_t(1)
+constexpr int64_t kMaxSamples = int64_t(1)
                                  << 25;   // of a structure's box; a larger one is looked at coarsely
-constexpr float kMostMoved = 0.5f;        // voxels of the labels per axis, by smoothing
+constexpr float kMaxMoved = 0.5f;        // voxels of the labels per axis, by smoothing
 constexpr float kAround = 1.5f;           // voxels of the labels, that count for how full it is
-constexpr float kMostOfFullness = 1.25f;  // the same, where the structure is thin
+constexpr float kMaxOfFullness = 1.25f;  // the same, where the structure is thin
 constexpr float kNearestToSample = 0.1f;
-constexpr int kMostStride = 16;         // voxels
-constexpr float kMostFiner = 3;         // labels in steps: what spreads farther takes too long
+constexpr int kMaxStride = 16;         // voxels
+constexpr float kMaxFiner = 3;         // labels in steps: what spreads farther takes too long
 constexpr double kSamplesPerLabel = 2;  // per axis, of labels on coarser voxels: structures of one voxel stay
 constexpr float kSimplified = 0.06f;    // voxels that the surface may move by fewer triangles
 // A pass shrinks by the first factor and grows by the second: what bends slower than 1/kShrink + 1/kGrow
@@ -33,8 +33,8 @@ struct Surface {
     std::vector<uint32_t> indices;
 };
 
-std::array<IndexBox, kMostMaterials + 1> boxesOf(const BoneProperties& properties) {
-    std::array<IndexBox, kMostMaterials + 1> boxes;
+std::array<IndexBox, kMaxMaterials + 1> boxesOf(const BoneProperties& properties) {
+    std::array<IndexBox, kMaxMaterials + 1> boxes;
     const BrickMap bricks(properties.dims());
     forEachIndex({Eigen::Vector3i::Zero(), bricks.bricksPerAxis().array() - 1},
                  [&](const Eigen::Vector3i& brick) {
@@ -90,7 +90,7 @@ class StructureSurface {
   private:
     static int strideOf(const IndexBox& box, int least) {
         int stride = least;
-        while (box.count() / (int64_t(stride) * stride * stride) > kMostSamples) ++stride;
+        while (box.count() / (int64_t(stride) * stride * stride) > kMaxSamples) ++stride;
         return stride;
     }
     bool isInside(size_t sample) const { return share_[sample] > 0.5f; }
@@ -160,7 +160,7 @@ void smooth(Surface& surface, const Eigen::Vector3f& step, const Eigen::Vector3f
     const Neighbours around(surface);
     const std::vector<Eigen::Vector3f> start = surface.positions;
     std::vector<Eigen::Vector3f> moved(start.size());
-    const float finer = std::min(kMostFiner, (grain.array() / step.array()).maxCoeff());
+    const float finer = std::min(kMaxFiner, (grain.array() / step.array()).maxCoeff());
     const int passes = int(std::lround(kPasses * finer * finer));  // what spreads takes so long
     for (int pass = 0; pass < 2 * passes; ++pass) {
         const float factor = pass % 2 == 0 ? kShrink : kGrow;
@@ -172,7 +172,7 @@ void smooth(Surface& surface, const Eigen::Vector3f& step, const Eigen::Vector3f
             const Eigen::Vector3f middle = sum / float(around.first[v + 1] - around.first[v]);
             const Eigen::Array3f away = (p + factor * (middle - p) - start[v]).array();
             const Eigen::Array3f most =
-                std::min(kMostMoved, kMostOfFullness * surface.fullness[v]) * grain.array();
+                std::min(kMaxMoved, kMaxOfFullness * surface.fullness[v]) * grain.array();
             moved[v] = start[v] + away.max(-most).min(most).matrix();
         }
         surface.positions.swap(moved);
@@ -204,7 +204,7 @@ void simplify(Surface& surface, float most_moved) {
     const float scale =
         meshopt_simplifyScale(surface.positions[0].data(), surface.positions.size(), sizeof(Eigen::Vector3f));
     reduce(0, most_moved / scale);
-    if (surface.indices.size() > 3 * kMostStructureTriangles) reduce(kMostStructureTriangles, 1);
+    if (surface.indices.size() > 3 * kMaxStructureTriangles) reduce(kMaxStructureTriangles, 1);
 }
 
 NodeMesh packed(MaterialId material, const Surface& surface, const std::vector<Eigen::Vector3f>& normals) {
@@ -232,7 +232,7 @@ NodeMesh packed(MaterialId material, const Surface& surface, const std::vector<E
 std::vector<NodeMesh> meshStructures(const BoneProperties& properties, const MaterialTable& materials,
                                      const Eigen::Vector3d& spacing, double label_edge) {
     // Labels that are much coarser are looked at as if they were not.
-    label_edge = std::min(label_edge, kSamplesPerLabel * kMostStride * spacing.maxCoeff());
+    label_edge = std::min(label_edge, kSamplesPerLabel * kMaxStride * spacing.maxCoeff());
     const int stride = std::max(1, int(std::lround(label_edge / (kSamplesPerLabel * spacing.maxCoeff()))));
     const auto boxes = boxesOf(properties);
     std::vector<NodeMesh> meshes;

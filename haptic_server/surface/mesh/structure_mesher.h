@@ -6,7 +6,7 @@
 // the surface stays within half a voxel per axis of where the labels put it. Of labels that
 // were drawn on coarser voxels it is their voxels that count: finer ones would show their stairs; what is
 // thin moves less, or it would become a line. Then triangles are taken away while that moves the surface by
-// less than a part of a voxel, and in any case down to kMostStructureTriangles.
+// less than a part of a voxel, and in any case down to kMaxStructureTriangles.
 //
 // It is not RT-safe (it allocates), but thread-safe.
 #pragma once
@@ -18,7 +18,7 @@
 
 namespace bonemill {
 
-inline constexpr size_t kMostStructureTriangles = 24000;
+inline constexpr size_t kMaxStructureTriangles = 24000;
 
 // Returns one closed mesh (V, m) per protected material that some voxel has; its leaf is the MaterialId. What
 // it says is that of the scanned bone, whatever is milled. `spacing` is that of the voxels, `label_edge` the

@@ -87,7 +87,7 @@ const Series* findColumn(const SeriesTable& table, const std::string& id) {
 }
 
 // Not more rows than a page has room for: of two and two, the mean, the largest or the least.
-enum class Of { kMean, kLargest, kLeast };
+enum class Of { kMean, kLargest, kMin };
 std::vector<double> thinned(std::span<const double> values, size_t together, Of of) {
     std::vector<double> out;
     for (size_t first = 0; first < values.size(); first += together) {
@@ -105,7 +105,7 @@ std::vector<double> thinned(std::span<const double> values, size_t together, Of 
 }
 
 constexpr double kWidth = 700, kLeft = 58, kRight = 8, kPanelHeight = 42, kGap = 6, kTop = 14, kBottom = 16;
-constexpr size_t kMostPoints = 640;
+constexpr size_t kMaxPoints = 640;
 
 std::string timeAxis(double seconds, double bottom) {
     const Panel panel{kLeft, 0, kWidth - kLeft - kRight, bottom, seconds, 0, 1};
@@ -134,7 +134,7 @@ std::string marksOf(std::span<const Moment> marked, double begin_s, double secon
 std::string timeLineSvg(const Assessment& assessment, std::span<const Moment> marked, double begin_s) {
     const SeriesTable* const table = findTable(assessment, "second");
     if (!table) return "";
-    const size_t together = (table->index.values.size() + kMostPoints - 1) / kMostPoints;
+    const size_t together = (table->index.values.size() + kMaxPoints - 1) / kMaxPoints;
     const std::vector<double> ends = thinned(table->index.values, together, Of::kLargest);
     const double step = ends.front(), seconds = ends.back();
     std::vector<double> middles = ends;
@@ -168,7 +168,7 @@ std::string timeLineSvg(const Assessment& assessment, std::span<const Moment> ma
     };
     add("force", "Force in contact: mean, and largest (thin)", "N", "force", Of::kMean);
     add("removed", "Removed per " + roundedText(step / double(together)) + " s", "mm3", "removed", Of::kMean);
-    add("distance", "Least distance to a protected structure", "mm", "distance", Of::kLeast);
+    add("distance", "Least distance to a protected structure", "mm", "distance", Of::kMin);
     add("temperature", "Hottest bone", "degC", "heat", Of::kLargest);
     const double bottom = top - kGap;
     content += timeAxis(seconds, bottom) + marksOf(marked, begin_s, seconds, bottom);

@@ -40,7 +40,7 @@ Envelope envelopeOf(const Series& column, const std::vector<const AttemptResult*
                 values.push_back(same->values[row]);
         }
         const Spread spread = spreadOf(values);
-        const bool is_known = values.size() >= kLeastExperts;
+        const bool is_known = values.size() >= kMinExperts;
         envelope.low.push_back(is_known ? spread.mean - 2 * spread.deviation : kNone);
         envelope.high.push_back(is_known ? spread.mean + 2 * spread.deviation : kNone);
     }
@@ -54,7 +54,7 @@ std::optional<ExpertComparison> compareWith(std::span<const AttemptResult> exper
     std::vector<const AttemptResult*> same_scene;
     for (const AttemptResult& expert : experts)
         if (expert.scene_hash == result.scene_hash) same_scene.push_back(&expert);
-    if (same_scene.size() < kLeastExperts) return std::nullopt;
+    if (same_scene.size() < kMinExperts) return std::nullopt;
     ExpertComparison comparison;
     comparison.experts = same_scene.size();
     for (const Figure& figure : result.assessment.figures) {
@@ -63,7 +63,7 @@ std::optional<ExpertComparison> compareWith(std::span<const AttemptResult> exper
             if (const Figure* same = findFigure(expert->assessment.figures, figure.id, figure.version))
                 values.push_back(same->value);
         const Spread spread = spreadOf(values);
-        if (spread.count < kLeastExperts || !(spread.deviation > 0)) continue;
+        if (spread.count < kMinExperts || !(spread.deviation > 0)) continue;
         comparison.figures.push_back({figure.id, (figure.value - spread.mean) / spread.deviation, spread.mean,
                                       spread.deviation, spread.count});
     }

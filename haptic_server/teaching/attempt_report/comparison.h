@@ -29,10 +29,10 @@ struct ExpertComparison {
     std::vector<Envelope> envelopes;
 };
 
-inline constexpr size_t kLeastExperts = 5;
+inline constexpr size_t kMinExperts = 5;
 
 // Of the results of experts only those of the same scene count, and of them figures of the same version.
-// Nothing with fewer than kLeastExperts; a figure that fewer have, or that is the same for all, is left out.
+// Nothing with fewer than kMinExperts; a figure that fewer have, or that is the same for all, is left out.
 std::optional<ExpertComparison> compareWith(std::span<const AttemptResult> experts,
                                             const AttemptResult& result);
 

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kLargestStatements = size_t(256) << 20;
+constexpr size_t kMaxStatements = size_t(256) << 20;
 
 void eachResult(const fs::path& class_folder,
                 const std::function<void(const fs::path&, const AttemptResult&)>& see) {
@@ -26,7 +26,7 @@ void eachResult(const fs::path& class_folder,
         std::ranges::sort(files);
         for (const fs::path& file : files) {
             try {
-                see(file, parseResult(readBounded(file, kLargestResult), file.string()));
+                see(file, parseResult(readBounded(file, kMaxResult), file.string()));
             } catch (const UserError&) {
                 continue;  // no person's result
             }
@@ -51,7 +51,7 @@ void forgetStatements(const fs::path& path, const std::string& pseudonym, Forgot
     if (!fs::is_regular_file(path, error)) return;
     try {
         const LineFile file(path);
-        if (file.size() > off_t(kLargestStatements))
+        if (file.size() > off_t(kMaxStatements))
             throw UserError(path.string() + ": is too large; delete the person's lines by hand");
         const std::string text = file.read(0, size_t(file.size()));
         std::string kept;

@@ -12,8 +12,8 @@ namespace bonemill {
 namespace {
 
 constexpr size_t kWorst = 3;
-constexpr size_t kMostShownFigures = 120;
-constexpr size_t kMostPictureBytes = size_t(4) << 20;
+constexpr size_t kMaxShownFigures = 120;
+constexpr size_t kMaxPictureBytes = size_t(4) << 20;
 
 std::string element(const std::string& name, const std::string& content, const std::string& attributes = "") {
     return '<' + name + (attributes.empty() ? "" : " " + attributes) + '>' + content + "</" + name + '>';
@@ -92,7 +92,7 @@ std::string picturesOf(const std::vector<ReportPicture>& pictures) {
     std::string out;
     for (const ReportPicture& picture : pictures) {
         const bool is_known = picture.media_type == "image/png" || picture.media_type == "image/svg+xml";
-        if (!is_known || picture.data.size() > kMostPictureBytes) continue;
+        if (!is_known || picture.data.size() > kMaxPictureBytes) continue;
         out += element("figure", "<img alt='" + escaped(picture.caption) +
                                      "' src='data:" + picture.media_type + ";base64," + base64(picture.data) +
                                      "'>" + element("figcaption", escaped(picture.caption)));
@@ -176,7 +176,7 @@ std::string figuresOf(const AttemptResult& result, const ReportExtras& extras) {
     std::string rows;
     size_t shown = 0;
     for (const Figure& figure : result.assessment.figures) {
-        if (++shown > kMostShownFigures) break;
+        if (++shown > kMaxShownFigures) break;
         rows += element("tr", element("td", escaped(figure.label)) +
                                   element("td", escaped(valueText(figure.value, figure.unit)), "class='n'") +
                                   zOf(extras.comparison, figure.id) +

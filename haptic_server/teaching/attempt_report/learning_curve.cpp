@@ -35,7 +35,7 @@ double LearningCurve::at(double attempt) const {
 }
 
 std::optional<LearningCurve> fitLearningCurve(std::span<const double> values) {
-    if (values.size() < LearningCurve::kLeastAttempts) return std::nullopt;
+    if (values.size() < LearningCurve::kMinAttempts) return std::nullopt;
     if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) return std::nullopt;
     const auto [least, most] = std::ranges::minmax(values);
     if (least == most) return std::nullopt;

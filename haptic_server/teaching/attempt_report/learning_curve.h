@@ -9,7 +9,7 @@ namespace bonemill {
 
 struct LearningCurve {
     // With fewer attempts there is no curve to speak of, only dots.
-    static constexpr size_t kLeastAttempts = 6;
+    static constexpr size_t kMinAttempts = 6;
 
     double first = 0, limit = 0, rate = 0;  // y_1, c, b
     double deviation = 0;                   // of the attempts from the curve, root of the mean square

@@ -98,11 +98,11 @@ std::vector<AttemptResult> ResultFolder::read(const fs::path& folder, const std:
             files.push_back(path);
     }
     std::ranges::sort(files, std::ranges::greater{});
-    if (files.size() > kMostRead) files.resize(kMostRead);
+    if (files.size() > kMaxRead) files.resize(kMaxRead);
     std::vector<AttemptResult> results;
     for (const fs::path& file : files) {
         try {
-            AttemptResult result = parseResult(readBounded(file, kLargestResult), file.string());
+            AttemptResult result = parseResult(readBounded(file, kMaxResult), file.string());
             if (result.scene_hash == scene_hash && (pseudonym.empty() || result.pseudonym == pseudonym))
                 results.push_back(std::move(result));
         } catch (const UserError&) {

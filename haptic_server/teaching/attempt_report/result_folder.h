@@ -29,8 +29,8 @@ class ResultFolder {
 
     // The results of one scene (by its hash) and one person, or of everyone with an empty pseudonym, in the
     // order of time. A person's are looked for by the files' names. What is no result is passed over: a
-    // person's edit must not cost the others theirs. At most kMostRead files are read, the newest by name.
-    static constexpr size_t kMostRead = 400;
+    // person's edit must not cost the others theirs. At most kMaxRead files are read, the newest by name.
+    static constexpr size_t kMaxRead = 400;
     static std::vector<AttemptResult> read(const std::filesystem::path& folder, const std::string& scene_hash,
                                            const std::string& pseudonym);
 

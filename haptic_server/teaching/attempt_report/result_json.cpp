@@ -177,7 +177,7 @@ std::string resultJson(const AttemptResult& result) {
 
 AttemptResult parseResult(const std::string& text, const std::string& file) {
     try {
-        if (text.size() > kLargestResult) throw std::length_error("too large");
+        if (text.size() > kMaxResult) throw std::length_error("too large");
         return readResult(ReadJson::parse(text));
     } catch (const std::exception& error) {
         throw UserError(file + ": is no result of an attempt (" + error.what() + ")");

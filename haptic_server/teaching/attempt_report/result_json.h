@@ -8,7 +8,7 @@
 
 namespace bonemill {
 
-inline constexpr size_t kLargestResult = size_t(16) << 20;  // bytes
+inline constexpr size_t kMaxResult = size_t(16) << 20;  // bytes
 
 std::string resultJson(const AttemptResult& result);
 

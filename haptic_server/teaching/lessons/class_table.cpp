@@ -10,7 +10,7 @@ namespace bonemill {
 namespace {
 
 constexpr size_t kLongestHeader = 4096;
-constexpr size_t kLargestTable = size_t(64) << 20;
+constexpr size_t kMaxTable = size_t(64) << 20;
 
 // 0: it is no class table.
 size_t columnsIn(const LineFile& file) {
@@ -58,7 +58,7 @@ std::string ClassTable::append(const topics::Attempt& attempt, const std::string
 size_t ClassTable::forget(const std::string& path, const std::string& trainee) {
     const LineFile file(path);
     columnsOf(file, path);
-    if (file.size() > off_t(kLargestTable))
+    if (file.size() > off_t(kMaxTable))
         throw UserError(path + ": is larger than any class table; delete the lines by hand");
     const std::string text = file.read(0, size_t(file.size()));
     std::string kept;

@@ -36,10 +36,10 @@ bool isId(const std::string& name) {
 std::string pictureOf(const fs::path& file) {
     constexpr char kBegin[] = "\x89PNG\r\n\x1a\n";
     std::error_code error;
-    if (!fs::is_regular_file(file, error) || fs::file_size(file, error) > kMostPictureBytes || error)
+    if (!fs::is_regular_file(file, error) || fs::file_size(file, error) > kMaxPictureBytes || error)
         return "";
     std::ifstream stream(file, std::ios::binary);
-    std::string bytes(kMostPictureBytes, '\0');
+    std::string bytes(kMaxPictureBytes, '\0');
     stream.read(bytes.data(), std::streamsize(bytes.size()));
     bytes.resize(size_t(stream.gcount()));
     return bytes.rfind(kBegin, 0) == 0 ? bytes : "";
@@ -120,8 +120,8 @@ std::vector<ListedScene> listScenes(const std::vector<std::string>& folders) {
                 spdlog::warn("{}: is not listed: letters, digits, _ - and . make a name", repeatedText(id));
             else if (is_known)
                 spdlog::warn("{}: is not listed: another folder has a scene of that name", file.string());
-            else if (scenes.size() == kMostListedScenes)
-                spdlog::warn("{}: is not listed: there are {} already", file.string(), kMostListedScenes);
+            else if (scenes.size() == kMaxListedScenes)
+                spdlog::warn("{}: is not listed: there are {} already", file.string(), kMaxListedScenes);
             else
                 scenes.push_back(listed(file));
         }

@@ -20,8 +20,8 @@ struct ListedScene {
 };
 
 // How many are listed at most; viewers take no more.
-inline constexpr size_t kMostListedScenes = 64;
-inline constexpr size_t kMostPictureBytes = 64u << 10;
+inline constexpr size_t kMaxListedScenes = 64;
+inline constexpr size_t kMaxPictureBytes = 64u << 10;
 
 // Lists `*.textproto` of each folder by name, in the order of the folders. Of two files of one name the first
 // counts. What a scene names is looked for, not read: title, task, tools, time, and the picture `NAME.png`

@@ -14,12 +14,12 @@
 namespace bonemill::study {
 namespace {
 
-constexpr size_t kMostOptions = 30, kMostItems = 300, kMostBlocks = 30;
+constexpr size_t kMaxOptions = 30, kMaxItems = 300, kMaxBlocks = 30;
 
 std::vector<Option> optionsOf(const JsonObject& json) {
     std::vector<Option> options;
     std::set<double> values;
-    for (const JsonObject& entry : json.objects("options", 2, kMostOptions)) {
+    for (const JsonObject& entry : json.objects("options", 2, kMaxOptions)) {
         entry.allowOnly({"value", "text", "counts_for"});
         options.push_back({entry.number("value", -1000, 1000), entry.text("text"),
                            entry.has("counts_for") ? entry.identifier("counts_for") : std::string()});
@@ -38,7 +38,7 @@ void readScale(const JsonObject& json, Item& item) {
                                  json.numberOr("step", 0, 1e-6, 1e9)};
         if (!(item.range->least < item.range->most)) json.refuse("most", "must be above \"least\"");
     } else {
-        item.most_letters = json.whole("most_letters", 1, kMostLetters);
+        item.most_letters = json.whole("most_letters", 1, kMaxLetters);
         if (item.is_rating) json.refuse("rating", "goes with options or with least and most");
     }
 }
@@ -144,10 +144,10 @@ Form parseForm(const std::string& text, const std::string& file) {
     form.scoring = scoringOf(json);
     form.digest = sha256OfText(text);
     std::set<std::string> ids;
-    for (const JsonObject& entry : json.objects("blocks", 1, kMostBlocks)) {
+    for (const JsonObject& entry : json.objects("blocks", 1, kMaxBlocks)) {
         entry.allowOnly({"id", "title", "items"});
         Block& block = form.blocks.emplace_back(Block{entry.identifier("id"), entry.text("title"), {}});
-        for (const JsonObject& item : entry.objects("items", 1, kMostItems)) {
+        for (const JsonObject& item : entry.objects("items", 1, kMaxItems)) {
             block.items.push_back(readItem(item, json));
             if (!ids.insert(block.items.back().id).second) item.refuse("id", "stands in the form twice");
         }
@@ -161,7 +161,7 @@ Form readForm(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file || std::filesystem::is_directory(path))
         throw UserError(path.string() + ": cannot be read; is it there, and may you read it?");
-    if (std::filesystem::file_size(path) > kMostJsonBytes)
+    if (std::filesystem::file_size(path) > kMaxJsonBytes)
         throw UserError(path.string() + ": is larger than 1 MiB; it is no questionnaire");
     return parseForm(std::string(std::istreambuf_iterator<char>(file), {}), path.string());
 }

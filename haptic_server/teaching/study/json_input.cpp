@@ -12,9 +12,9 @@
 namespace bonemill::study {
 namespace {
 
-constexpr int kMostLevels = 12;
-constexpr size_t kMostIdentifier = 40;
-constexpr size_t kMostFields = 1000;  // an object is searched field by field
+constexpr int kMaxLevels = 12;
+constexpr size_t kMaxIdentifier = 40;
+constexpr size_t kMaxFields = 1000;  // an object is searched field by field
 
 using Event = Json::parse_event_t;
 
@@ -24,13 +24,13 @@ class ParseWatch {
     explicit ParseWatch(const std::string& file) : file_(file) {}
 
     bool operator()(int depth, Event event, Json& value) {
-        if (depth > kMostLevels) throw UserError(file_ + ": has more than 12 levels of brackets");
+        if (depth > kMaxLevels) throw UserError(file_ + ": has more than 12 levels of brackets");
         if (event == Event::object_start) keys_.emplace_back();
         if (event == Event::object_end) keys_.pop_back();
         if (event == Event::key && !keys_.back().insert(value.get<std::string>()).second)
             throw UserError(file_ + ": has the field \"" +
-                            value.get<std::string>().substr(0, kMostIdentifier) + "\" twice; keep one");
-        if (event == Event::key && keys_.back().size() > kMostFields)
+                            value.get<std::string>().substr(0, kMaxIdentifier) + "\" twice; keep one");
+        if (event == Event::key && keys_.back().size() > kMaxFields)
             throw UserError(file_ + ": has an object of more than 1000 fields");
         return true;
     }
@@ -47,7 +47,7 @@ size_t lineOf(const std::string& text, size_t byte) {
 }  // namespace
 
 Json parseJson(std::string text, const std::string& file) {
-    if (text.size() > kMostJsonBytes) throw UserError(file + ": is larger than 1 MiB; it is not one of ours");
+    if (text.size() > kMaxJsonBytes) throw UserError(file + ": is larger than 1 MiB; it is not one of ours");
     requireUtf8(text, file);
     try {
         return Json::parse(text, ParseWatch(file));
@@ -64,7 +64,7 @@ Json readJson(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file || std::filesystem::is_directory(path))
         throw UserError(path.string() + ": cannot be read; is it there, and may you read it?");
-    std::string text(kMostJsonBytes + 1, '\0');
+    std::string text(kMaxJsonBytes + 1, '\0');
     file.read(text.data(), std::streamsize(text.size()));
     text.resize(size_t(file.gcount()));
     return parseJson(std::move(text), path.string());
@@ -75,7 +75,7 @@ bool isIdentifier(std::string_view text) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
                c == '_';
     };
-    return !text.empty() && text.size() <= kMostIdentifier && text[0] != '-' &&
+    return !text.empty() && text.size() <= kMaxIdentifier && text[0] != '-' &&
            std::all_of(text.begin(), text.end(), fits);
 }
 
@@ -116,7 +116,7 @@ const Json& JsonObject::at(const std::string& key, const char* what) const {
 void JsonObject::allowOnly(const std::vector<std::string_view>& keys) const {
     for (const auto& [key, value] : json_.items())
         if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
-            const std::string shown = isPlainText(key) ? key.substr(0, kMostIdentifier) : "?";
+            const std::string shown = isPlainText(key) ? key.substr(0, kMaxIdentifier) : "?";
             throw UserError(place_ + ": does not know a field \"" + shown + "\"; see docs/research/study.md");
         }
 }

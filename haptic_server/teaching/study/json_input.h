@@ -13,10 +13,10 @@ namespace bonemill::study {
 
 using Json = nlohmann::ordered_json;
 
-inline constexpr size_t kMostJsonBytes = 1 << 20;
-inline constexpr size_t kMostLetters = 1000;
+inline constexpr size_t kMaxJsonBytes = 1 << 20;
+inline constexpr size_t kMaxLetters = 1000;
 
-// No key twice, no more than 12 levels, no more than kMostJsonBytes, UTF-8.
+// No key twice, no more than 12 levels, no more than kMaxJsonBytes, UTF-8.
 Json parseJson(std::string text, const std::string& file);
 Json readJson(const std::filesystem::path& path);
 
@@ -36,7 +36,7 @@ class JsonObject {
     // Refuses fields that are not among these: a mistyped one would be passed over.
     void allowOnly(const std::vector<std::string_view>& keys) const;
 
-    std::string text(const std::string& key, size_t most_bytes = 4 * kMostLetters) const;
+    std::string text(const std::string& key, size_t most_bytes = 4 * kMaxLetters) const;
     std::string textOr(const std::string& key, const std::string& otherwise) const;
     std::string identifier(const std::string& key) const;
     double number(const std::string& key, double least, double most) const;

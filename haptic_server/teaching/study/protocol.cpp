@@ -8,7 +8,7 @@
 namespace bonemill::study {
 namespace {
 
-constexpr size_t kMostGroups = 6, kMostConditions = 12, kMostTasks = 30, kMostForms = 20;
+constexpr size_t kMaxGroups = 6, kMaxConditions = 12, kMaxTasks = 30, kMaxForms = 20;
 
 // Groups, conditions and tasks: each name once.
 template <class Entry>
@@ -26,7 +26,7 @@ Order orderOf(const JsonObject& json, const std::string& key, Order otherwise) {
 }
 
 void readGroups(const JsonObject& json, Protocol& protocol) {
-    for (const JsonObject& entry : json.objects("groups", 1, kMostGroups)) {
+    for (const JsonObject& entry : json.objects("groups", 1, kMaxGroups)) {
         entry.allowOnly({"id", "title", "wanted"});
         protocol.groups.push_back({entry.identifier("id"), entry.textOr("title", entry.identifier("id")),
                                    entry.has("wanted") ? entry.whole("wanted", 0, 100'000) : 0});
@@ -35,7 +35,7 @@ void readGroups(const JsonObject& json, Protocol& protocol) {
 }
 
 void readConditions(const JsonObject& json, Protocol& protocol) {
-    for (const JsonObject& entry : json.objects("conditions", 0, kMostConditions)) {
+    for (const JsonObject& entry : json.objects("conditions", 0, kMaxConditions)) {
         entry.allowOnly({"id", "title", "options"});
         protocol.conditions.push_back({entry.identifier("id"), entry.textOr("title", entry.identifier("id")),
                                        entry.textOr("options", "")});
@@ -45,7 +45,7 @@ void readConditions(const JsonObject& json, Protocol& protocol) {
 }
 
 void readTasks(const JsonObject& json, Protocol& protocol) {
-    for (const JsonObject& entry : json.objects("tasks", 1, kMostTasks)) {
+    for (const JsonObject& entry : json.objects("tasks", 1, kMaxTasks)) {
         entry.allowOnly({"id", "title", "scene", "seconds", "attempts"});
         protocol.tasks.push_back({entry.identifier("id"), entry.textOr("title", entry.identifier("id")),
                                   entry.textOr("scene", ""), entry.numberOr("seconds", 0, 0, 1e6),
@@ -106,9 +106,9 @@ Protocol parseProtocol(const std::string& text, const std::string& file) {
     readTasks(json, protocol);
     protocol.condition_order = orderOf(json, "condition_order", protocol.condition_order);
     protocol.task_order = orderOf(json, "task_order", protocol.task_order);
-    protocol.forms_before = json.identifiers("forms_before", kMostForms);
-    protocol.forms_after_each = json.identifiers("forms_after_each", kMostForms);
-    protocol.forms_after = json.identifiers("forms_after", kMostForms);
+    protocol.forms_before = json.identifiers("forms_before", kMaxForms);
+    protocol.forms_after_each = json.identifiers("forms_after_each", kMaxForms);
+    protocol.forms_after = json.identifiers("forms_after", kMaxForms);
     for (const std::string& id : protocol.forms_before)
         if (std::count(protocol.forms_after.begin(), protocol.forms_after.end(), id))
             json.refuse("forms_after", "has \"" + id + "\", which stands in \"forms_before\", too");

@@ -5,12 +5,12 @@
 namespace bonemill::study {
 namespace {
 
-constexpr double kMostFigure = 1e15;
+constexpr double kMaxFigure = 1e15;
 
 std::map<std::string, double> figuresIn(const JsonObject& json) {
     std::map<std::string, double> figures;
     for (const char* const key : kRunFigures)
-        if (json.has(key)) figures[key] = json.number(key, -kMostFigure, kMostFigure);
+        if (json.has(key)) figures[key] = json.number(key, -kMaxFigure, kMaxFigure);
     return figures;
 }
 

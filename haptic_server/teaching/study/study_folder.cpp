@@ -196,7 +196,7 @@ Participant StudyFolder::enrol(const std::string& group, const std::string& pseu
 }
 
 void StudyFolder::withdraw(const std::string& pseudonym, const std::string& reason) {
-    if (!isPlainText(reason) || reason.size() > kMostLetters)
+    if (!isPlainText(reason) || reason.size() > kMaxLetters)
         throw UserError("--reason: at most 1000 letters without control characters");
     const FolderLock lock(path_);
     Participant leaving = participant(pseudonym);

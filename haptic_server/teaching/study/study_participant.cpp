@@ -12,7 +12,7 @@
 namespace bonemill::study {
 namespace {
 
-constexpr size_t kMostSessions = 10'000;
+constexpr size_t kMaxSessions = 10'000;
 
 void requireUuid(const JsonObject& json, const std::string& key) {
     if (!isUuid(json.text(key))) json.refuse(key, "must be a session's UUID, as study next prints it");
@@ -54,12 +54,12 @@ Participant parseParticipant(const Json& parsed, const std::string& file) {
     participant.has_consent = json.flagOr("consent", false);
     participant.has_withdrawn = json.flagOr("withdrawn", false);
     participant.withdrawal_reason = json.textOr("withdrawal_reason", "");
-    for (const JsonObject& entry : json.objects("sessions", 1, kMostSessions)) {
+    for (const JsonObject& entry : json.objects("sessions", 1, kMaxSessions)) {
         entry.allowOnly({"session", "period", "condition", "task", "attempt"});
         requireUuid(entry, "session");
-        participant.sessions.push_back({entry.text("session"), entry.whole("period", 0, kMostSessions),
+        participant.sessions.push_back({entry.text("session"), entry.whole("period", 0, kMaxSessions),
                                         entry.text("condition"), entry.text("task"),
-                                        entry.whole("attempt", 0, kMostSessions)});
+                                        entry.whole("attempt", 0, kMaxSessions)});
     }
     return participant;
 }

@@ -7,7 +7,7 @@
 namespace bonemill::study {
 namespace {
 
-constexpr size_t kMostLine = 4 * kMostLetters;
+constexpr size_t kMaxLine = 4 * kMaxLetters;
 
 enum class Line { kRead, kTooLong, kEnd };
 
@@ -16,7 +16,7 @@ Line readLine(std::istream& in, std::string& line) {
     bool is_long = false;
     for (char c; in.get(c);) {
         if (c == '\n') return is_long ? Line::kTooLong : Line::kRead;
-        if (line.size() < kMostLine)
+        if (line.size() < kMaxLine)
             line += c;
         else
             is_long = true;

@@ -13,7 +13,7 @@
 namespace bonemill::study {
 namespace {
 
-constexpr size_t kMostRaters = 50, kMostRows = 10'000, kMostBytes = 10'000, kMostFileBytes = 10'000'000;
+constexpr size_t kMaxRaters = 50, kMaxRows = 10'000, kMaxBytes = 10'000, kMaxFileBytes = 10'000'000;
 
 std::vector<std::string> fieldsOf(const std::string& line) {
     std::vector<std::string> fields = {""};
@@ -49,13 +49,13 @@ Ratings readRatings(const std::filesystem::path& path) {
     requireFile(path);
     std::ifstream file(path);
     if (!file || std::filesystem::is_directory(path)) throw UserError(path.string() + ": cannot be read");
-    if (std::filesystem::file_size(path) > kMostFileBytes)
+    if (std::filesystem::file_size(path) > kMaxFileBytes)
         throw UserError(path.string() + ": is larger than 10 MB");
     Ratings ratings;
     size_t number = 0;
     for (std::string line; std::getline(file, line);) {
         const std::string place = path.string() + ", line " + std::to_string(++number);
-        if (line.size() > kMostBytes || number > kMostRows)
+        if (line.size() > kMaxBytes || number > kMaxRows)
             throw UserError(place + ": the table is too large");
         if (line.empty() || line == "\r") continue;
         const std::vector<std::string> fields = fieldsOf(line);
@@ -67,7 +67,7 @@ Ratings readRatings(const std::filesystem::path& path) {
             if (!isPlainText(field)) throw UserError(place + ": the header must name the raters");
         ratings.raters = fields;
     }
-    if (ratings.raters.size() < 2 || ratings.raters.size() > kMostRaters || ratings.table.size() < 2)
+    if (ratings.raters.size() < 2 || ratings.raters.size() > kMaxRaters || ratings.table.size() < 2)
         throw UserError(path.string() + ": needs a header, 2 to 50 columns of raters and two rows or more");
     return ratings;
 }

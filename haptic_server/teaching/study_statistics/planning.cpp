@@ -67,13 +67,13 @@ double smallestDetectableD(size_t n1, size_t n2, double alpha, double power) {
 }
 
 size_t neededPerGroup(double d, double alpha, double power) {
-    constexpr size_t kMost = 100'000;
+    constexpr size_t kMax = 100'000;
     size_t low = 1, high = 2;
-    while (high <= kMost && powerOfTTest(d, high, high, alpha) < power) {
+    while (high <= kMax && powerOfTTest(d, high, high, alpha) < power) {
         low = high;
         high *= 2;
     }
-    if (high > kMost) return 0;
+    if (high > kMax) return 0;
     while (high - low > 1) {
         const size_t middle = (low + high) / 2;
         (powerOfTTest(d, middle, middle, alpha) < power ? low : high) = middle;

@@ -89,7 +89,7 @@ RankTest mannWhitney(Sample a, Sample b) {
     const std::vector<double> ranks = ranksOf(all);
     const double rank_sum = std::accumulate(ranks.begin(), ranks.begin() + long(m), 0.0);
     const double u = rank_sum - double(m * (m + 1)) / 2;
-    if (total <= kMostExact) {
+    if (total <= kMaxExact) {
         const std::vector<size_t> whole = doubled(ranks);
         const size_t sum = std::accumulate(whole.begin(), whole.begin() + long(m), size_t(0));
         return exactTest(sumsOfSubsets(whole, m), sum, int64_t(2 * m * (total + 1)), u);
@@ -116,7 +116,7 @@ RankTest prattSignedRank(Sample differences) {
         if (differences[i] > 0) positive += ranks[i];
     }
     if (kept.empty()) return {};
-    if (kept.size() > kMostExact) return normalTest(positive, all / 2, squares / 4);
+    if (kept.size() > kMaxExact) return normalTest(positive, all / 2, squares / 4);
     return exactTest(sumsOfSigns(doubled(kept)), size_t(std::lround(2 * positive)), std::lround(2 * all),
                      positive);
 }

@@ -1,5 +1,5 @@
 // Tests that go by the order of the answers only: they suit scales of few steps, with ties, and small unequal
-// groups. Up to kMostExact values the chances are exact, ties included: the ranks' sums are counted over all
+// groups. Up to kMaxExact values the chances are exact, ties included: the ranks' sums are counted over all
 // ways of dealing the values out (Streitberg and Röhmel 1986); above, the normal approximation with ties,
 // without a correction for continuity. Pure; any thread may call them.
 #pragma once
@@ -8,7 +8,7 @@
 
 namespace bonemill::study {
 
-inline constexpr size_t kMostExact = 100;
+inline constexpr size_t kMaxExact = 100;
 
 struct RankTest {
     double statistic = kNotKnown;

@@ -20,7 +20,7 @@ namespace bonemill {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::milliseconds kLeastFrame{15};  // where the display does not make the program wait
+constexpr std::chrono::milliseconds kMinFrame{15};  // where the display does not make the program wait
 
 struct WindowOptions {
     CaseRequest request;
@@ -58,7 +58,7 @@ class CaseWindow {
             const Clock::time_point begin = Clock::now();
             showPicture();
             tell();
-            std::this_thread::sleep_until(begin + kLeastFrame);
+            std::this_thread::sleep_until(begin + kMinFrame);
         }
     }
 

@@ -68,7 +68,7 @@ std::optional<HudNotice> HandFeed::watch(const SessionView& session, Clock::time
     const ToolHold& hold = controls_.toolHold();
     const auto X_WT = scene_.toolPose();
     if (!hold.isHolding() || !session.has_server || !X_WT) return std::nullopt;
-    const HoldWatch::Advice advice =
+    const HoldMonitor::Advice advice =
         watch_.look({.now = std::chrono::duration<double>(now.time_since_epoch()).count(),
                      .burr_radius = scene_.burrRadius(),
                      .from_wish = (X_WT->position - hold.wish().position).norm(),
@@ -76,16 +76,16 @@ std::optional<HudNotice> HandFeed::watch(const SessionView& session, Clock::time
                      .touches = scene_.contacts() > 0,
                      .can_mill = !(session.status && session.status->is_milling_paused())});
     switch (advice) {
-        case HoldWatch::Advice::kNone:
+        case HoldMonitor::Advice::kNone:
             return std::nullopt;
-        case HoldWatch::Advice::kFree:
+        case HoldMonitor::Advice::kFree:
             begin(true, now);
             return HudNotice{"The bone had caught the tool: it is in front of it again", HudTone::kPlain};
-        case HoldWatch::Advice::kHelp:
+        case HoldMonitor::Advice::kHelp:
             return HudNotice{
                 "The tool is caught: turn the view, then press " + keyLabelOf(Action::kHoldTool) + " twice",
                 HudTone::kWarning};
-        case HoldWatch::Advice::kTouch:
+        case HoldMonitor::Advice::kTouch:
             return HudNotice{"Not touching the bone: the wheel, or " + keyLabelOf(Action::kToolDeeper) +
                                  ", brings the tool nearer",
                              HudTone::kWarning};

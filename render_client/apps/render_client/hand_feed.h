@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "render_client/hand/controls/hold_watch.h"
+#include "render_client/hand/controls/hold_monitor.h"
 #include "render_client/hand/controls/viewer_controls.h"
 #include "render_client/link/subscribe/scene_subscriber.h"
 #include "render_client/look/render_scene/render_scene.h"
@@ -51,7 +51,7 @@ class HandFeed {
     int64_t seen_attempt_ns_ = 0;                  // start of the newest attempt
     std::optional<Clock::time_point> goes_on_at_;  // the hold that rests in a new scene or attempt
     uint32_t placements_ = 0;                      // that the device was asked for
-    HoldWatch watch_;
+    HoldMonitor watch_;
     Clock::time_point begun_;                   // the hold
     std::optional<Clock::time_point> started_;  // the first picture
     std::optional<Clock::time_point> milled_;   // first, in the mouse

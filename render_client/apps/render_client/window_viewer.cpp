@@ -16,7 +16,7 @@
 #include "render_client/apps/render_client/scene_feed.h"
 #include "render_client/apps/render_client/stop_signal.h"
 #include "render_client/hand/controls/announce_clock.h"
-#include "render_client/hand/controls/eye_watch.h"
+#include "render_client/hand/controls/eye_reporter.h"
 #include "render_client/hand/controls/frame_rate.h"
 #include "render_client/hand/controls/help_rows.h"
 #include "render_client/hand/controls/viewer_controls.h"
@@ -334,7 +334,7 @@ class WindowViewer {
     Attendance attendance_;
     FrameRate frame_rate_;
     AnnounceClock announce_clock_;
-    EyeWatch eye_watch_;
+    EyeReporter eye_watch_;
     std::optional<Eigen::Vector3d> pointer_W_;  // where the user points, as announced last
     Clock::time_point last_picture_ = Clock::now();
     bool was_holding_ = false;  // as announced last

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kStep = 0.1;          // mm: finer no mouse is
 constexpr double kHandAway = 60;       // mm from the region's middle: where from_mm is put
-constexpr double kLeastArrow = 15e-3;  // m
+constexpr double kMinArrow = 15e-3;  // m
 
 std::vector<double> inSteps(const Eigen::Vector3d& p_W) {
     std::vector<double> mm;
@@ -43,10 +43,10 @@ std::optional<IsoProposal> proposalOf(const RawVolume& scan) {
 
 // Sliders end where numbers of single precision do.
 void requireShowable(const RawVolume& scan) {
-    constexpr double kMostValue = 1e30;
+    constexpr double kMaxValue = 1e30;
     const ValueRange& range = scan.values.range();
     if (range.low > range.high) throw UserError("the scan holds no finite value (" + scan.description + ")");
-    if (std::max(-range.low, range.high) > kMostValue)
+    if (std::max(-range.low, range.high) > kMaxValue)
         throw UserError("the scan's values reach beyond 1e30: it is damaged (" + scan.description + ")");
 }
 
@@ -288,7 +288,7 @@ void CaseDesk::bringHandFromOutside() {
 }
 
 double CaseDesk::handLength() const {
-    return std::max(kLeastArrow,
+    return std::max(kMinArrow,
                     isOfPart() ? 0.9 * request_.size_mm * kMillimetre : 0.25 * scanBox().sizes().maxCoeff());
 }
 

@@ -25,7 +25,7 @@ FolderView lookInto(const std::filesystem::path& folder) {
     if (!view.path.has_filename() && view.path.has_relative_path()) view.path = view.path.parent_path();
     fs::directory_iterator entry(view.path, error);
     if (error) view.problem = error.message();
-    for (size_t seen = 0; !error && entry != fs::directory_iterator() && seen < kMostShownEntries; ++seen) {
+    for (size_t seen = 0; !error && entry != fs::directory_iterator() && seen < kMaxShownEntries; ++seen) {
         const std::string name = entry->path().filename().string();
         std::error_code ignored;
         if (name.starts_with('.')) {

@@ -15,7 +15,7 @@ struct FolderView {
     std::string problem;             // why it cannot be looked into; empty: it can
 };
 
-inline constexpr size_t kMostShownEntries = 2000;
+inline constexpr size_t kMaxShownEntries = 2000;
 
 // Hidden entries are left out; the lists are in alphabetical order. Does not throw.
 FolderView lookInto(const std::filesystem::path& folder);

@@ -18,12 +18,12 @@ std::set<uint32_t> numbersIn(const RawVolume& map) {
         for (const auto sample : samples) {
             const double value = double(sample);
             if (value == double(last) || value == 0) continue;
-            if (!(value > 0 && value <= double(kMostLabel)) || value != std::floor(value))
+            if (!(value > 0 && value <= double(kMaxLabel)) || value != std::floor(value))
                 throw UserError("this is no label map: it holds the value " + std::to_string(value));
             last = uint32_t(value);
-            if (numbers.insert(last).second && numbers.size() > kMostStructureRows)
+            if (numbers.insert(last).second && numbers.size() > kMaxStructureRows)
                 throw UserError("this is no label map: it holds more than " +
-                                std::to_string(kMostStructureRows) + " different values");
+                                std::to_string(kMaxStructureRows) + " different values");
         }
     });
     return numbers;

@@ -20,7 +20,7 @@ struct StructureRow {
     StructureUse use = StructureUse::kIgnored;
 };
 
-inline constexpr size_t kMostStructureRows = 256;
+inline constexpr size_t kMaxStructureRows = 256;
 
 // The segments that the file names, or the numbers but 0 that its voxels have. Throws UserError where the
 // file is no label map: numbers that are no integers, or too many of them.

@@ -17,7 +17,7 @@ constexpr ImU32 kCrossColour = IM_COL32(110, 190, 255, 120), kRegionColour = IM_
                 kFarRegionColour = IM_COL32(90, 225, 130, 90), kHandColour = IM_COL32(255, 95, 140, 255),
                 kSideColour = IM_COL32(255, 255, 255, 170);
 constexpr float kReach = 10;  // pixels at scale 1 from a handle's middle
-constexpr double kMostZoom = 16, kZoomStep = 1.15, kOrbitStep = 0.008;  // rad per pixel
+constexpr double kMaxZoom = 16, kZoomStep = 1.15, kOrbitStep = 0.008;  // rad per pixel
 
 ImVec2 operator+(const ImVec2& a, const Eigen::Vector2d& b) {
     return {a.x + float(b.x()), a.y + float(b.y())};
@@ -151,7 +151,7 @@ void CaseScreen::scrollSlice(size_t axis, const ImVec2& corner) {
     const Eigen::Vector2d pixel(double(mouse.x - corner.x), double(mouse.y - corner.y));
     const ScanPane& pane = panes_[axis];
     const Eigen::Vector3d under_W = pane.toWorld(pixel);
-    const double zoom = std::clamp(zoom_ * std::pow(kZoomStep, double(steps)), 1.0, kMostZoom);
+    const double zoom = std::clamp(zoom_ * std::pow(kZoomStep, double(steps)), 1.0, kMaxZoom);
     if (zoom_ <= 1) zoom_middle_W_ = desk_.marks().cross_W;
     const Eigen::Vector3d middle_W = under_W + (pane.middle_W - under_W) * (zoom_ / zoom);
     for (Eigen::Index i = 0; i < 3; ++i)

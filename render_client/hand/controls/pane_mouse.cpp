@@ -62,7 +62,7 @@ bool PaneMouse::onMove(const MouseMoveEvent& event, bool is_other_drag, SliceSet
         settings.window = draggedWindow(settings.window.value_or(seen_->window), seen_->grid, right, down);
     if (*dragged_ == MouseButton::kRight)
         settings.zoom =
-            std::clamp(settings.zoom * std::pow(kZoomPerPane, -down), 1.0, SliceSettings::kMostZoom);
+            std::clamp(settings.zoom * std::pow(kZoomPerPane, -down), 1.0, SliceSettings::kMaxZoom);
     return true;
 }
 

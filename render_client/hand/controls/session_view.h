@@ -10,7 +10,7 @@
 
 #include "proto/topics.pb.h"
 #include "render_client/hand/controls/key_table.h"
-#include "render_client/look/hud/fault_book.h"
+#include "render_client/look/hud/fault_list.h"
 
 namespace bonemill {
 

@@ -18,16 +18,16 @@ void StrokePen::begin(const PixelPoint& at) {
 void StrokePen::move(const PixelPoint& to) {
     if (!is_down_) return;
     const double right = to.x - last_.x, down = to.y - last_.y;
-    const int steps = int(std::min(std::hypot(right, down) / kPixelsApart, double(kMostPixels)));
-    for (int n = 1; n <= steps && pixels_ < kMostPixels; ++n, ++pixels_)
+    const int steps = int(std::min(std::hypot(right, down) / kPixelsApart, double(kMaxPixels)));
+    for (int n = 1; n <= steps && pixels_ < kMaxPixels; ++n, ++pixels_)
         way_.push_back({last_.x + right * n / steps, last_.y + down * n / steps});
     if (steps > 0) last_ = to;
 }
 
 void StrokePen::add(const Eigen::Vector3d& p_W) {
     const bool is_apart =
-        is_lifted_ || strokes_.empty() || (strokes_.back().back() - p_W).norm() > kMostApart;
-    if (is_apart && strokes_.size() == kMostStrokes) return;
+        is_lifted_ || strokes_.empty() || (strokes_.back().back() - p_W).norm() > kMaxApart;
+    if (is_apart && strokes_.size() == kMaxStrokes) return;
     is_lifted_ = false;
     if (is_apart)
         strokes_.push_back({p_W});
@@ -63,7 +63,7 @@ uint32_t colourOfAuthor(const std::string& author) {
 }
 
 std::vector<Eigen::Vector3d> thinned(std::vector<Eigen::Vector3d> points) {
-    while (points.size() > size_t(kMostRemarkPoints)) {
+    while (points.size() > size_t(kMaxRemarkPoints)) {
         const Eigen::Vector3d last = points.back();
         size_t kept = 0;
         for (size_t n = 0; n < points.size(); n += 2) points[kept++] = points[n];

@@ -17,9 +17,9 @@ class StrokePen {
   public:
     static constexpr double kPixelsApart = 3;     // of the places that the owner is asked for
     static constexpr double kApart = 0.5e-3;      // m: what is nearer to the last point is left out
-    static constexpr double kMostApart = 6e-3;    // m: farther away, another stroke begins
-    static constexpr size_t kMostStrokes = 8;     // of one drag
-    static constexpr size_t kMostPixels = 20000;  // of one drag
+    static constexpr double kMaxApart = 6e-3;    // m: farther away, another stroke begins
+    static constexpr size_t kMaxStrokes = 8;     // of one drag
+    static constexpr size_t kMaxPixels = 20000;  // of one drag
 
     void begin(const PixelPoint& at);
     void move(const PixelPoint& to);
@@ -48,7 +48,7 @@ class StrokePen {
 // Returns the colour (0xRRGGBB) in which this author draws: the same for everyone and always.
 uint32_t colourOfAuthor(const std::string& author);
 
-// Returns every second point, and again, until there are no more than kMostRemarkPoints; the ends stay.
+// Returns every second point, and again, until there are no more than kMaxRemarkPoints; the ends stay.
 std::vector<Eigen::Vector3d> thinned(std::vector<Eigen::Vector3d> points);
 
 }  // namespace bonemill

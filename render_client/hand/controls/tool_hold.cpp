@@ -9,9 +9,9 @@
 namespace bonemill {
 namespace {
 
-constexpr double kLeastDepth = 1e-3;       // m in front of the eye
+constexpr double kMinDepth = 1e-3;       // m in front of the eye
 constexpr double kBeginInFront = 3;        // burr radii from the surface to the burr's centre
-constexpr double kLeastTowardsEye = 0.15;  // of the shaft's direction
+constexpr double kMinTowardsEye = 0.15;  // of the shaft's direction
 constexpr double kHandAboveSight = 0.7;    // rad: a hand comes from above the line of sight
 
 }  // namespace
@@ -114,7 +114,7 @@ void ToolHold::onMove(const PixelPoint& to, bool is_camera_dragged) {
 }
 
 double ToolHold::depth() const {
-    return std::max(view_.depthOf(X_WT_.position), kLeastDepth);
+    return std::max(view_.depthOf(X_WT_.position), kMinDepth);
 }
 
 void ToolHold::follow(const PixelPoint& from, const PixelPoint& to) {
@@ -136,7 +136,7 @@ void ToolHold::turn(const PixelPoint& from, const PixelPoint& to) {
 void ToolHold::moveAlongSight(double steps) {
     const Eigen::Vector3d sight = (X_WT_.position - view_.camera.eye_W).normalized();
     const Eigen::Vector3d p_W = X_WT_.position + steps * kDepthPerStep * burr_radius_ * sight;
-    if (view_.depthOf(p_W) > kLeastDepth) X_WT_.position = p_W;
+    if (view_.depthOf(p_W) > kMinDepth) X_WT_.position = p_W;
 }
 
 Pose beginInFrontOf(const Eigen::Vector3d& surface_W, const Camera& camera, double burr_radius,
@@ -144,7 +144,7 @@ Pose beginInFrontOf(const Eigen::Vector3d& surface_W, const Camera& camera, doub
     const Eigen::Vector3d towards_eye = (camera.eye_W - surface_W).normalized();
     const Eigen::Vector3d p_W = surface_W + kBeginInFront * burr_radius * towards_eye;
     const bool is_turned_well =
-        X_WT && (X_WT->rotation * Eigen::Vector3d::UnitY()).dot(towards_eye) > kLeastTowardsEye;
+        X_WT && (X_WT->rotation * Eigen::Vector3d::UnitY()).dot(towards_eye) > kMinTowardsEye;
     if (is_turned_well) return {p_W, X_WT->rotation};
     const Eigen::Vector3d up_W = camera.R_WC.col(1);
     const Eigen::Vector3d shaft_W =

@@ -141,7 +141,7 @@ void ViewerControls::switchDetails() {
 
 void ViewerControls::scaleText(double factor) {
     settings_.text_scale =
-        std::clamp(settings_.text_scale * factor, ViewSettings::kLeastText, ViewSettings::kMostText);
+        std::clamp(settings_.text_scale * factor, ViewSettings::kMinText, ViewSettings::kMaxText);
 }
 
 void ViewerControls::switchCamera(CameraMode mode) {

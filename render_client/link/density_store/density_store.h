@@ -26,9 +26,9 @@ struct DensityBrick {
 class DensityStore {
   public:
     // A CT head of 512×512×140 voxels is 73 MB, 110 MB with materials, and 184 MB with all of it changed.
-    static constexpr size_t kMostBytes = size_t(256) << 20;
+    static constexpr size_t kMaxBytes = size_t(256) << 20;
 
-    explicit DensityStore(size_t most_bytes = kMostBytes) : most_bytes_(most_bytes) {}
+    explicit DensityStore(size_t most_bytes = kMaxBytes) : most_bytes_(most_bytes) {}
 
     // Another grid than the one before drops all bricks and wishes; the same one changes nothing.
     void setGrid(const DensityGrid& grid);

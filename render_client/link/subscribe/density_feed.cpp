@@ -7,9 +7,9 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostTaken = 1024;    // bricks per update: some 30 ms of decoding
-constexpr size_t kMostWished = 16384;  // as many as a server listens to
-constexpr int kMostLackingSaid = 1024;
+constexpr size_t kMaxTaken = 1024;    // bricks per update: some 30 ms of decoding
+constexpr size_t kMaxWished = 16384;  // as many as a server listens to
+constexpr int kMaxLackingSaid = 1024;
 
 }  // namespace
 
@@ -44,7 +44,7 @@ void DensityFeed::follow(DensityStore& store, const DensityRun& run) {
 
 void DensityFeed::take(DensityStore& store, const DensityRun& run,
                        const std::function<void(const std::string&)>& drop) {
-    reader_->take(kMostTaken, [&](const dds::DensityBrickSample& sample, const dds::SampleInfo& info) {
+    reader_->take(kMaxTaken, [&](const dds::DensityBrickSample& sample, const dds::SampleInfo& info) {
         if (!info.has_data || sample.session != session_ || !store.grid()) return;
         // What others wish comes here, too.
         if (!std::ranges::binary_search(wished_, sample.brick)) return;
@@ -93,7 +93,7 @@ topics::DensityWish DensityFeed::wishOf(DensityStore& store) {
     wish.set_epoch(epoch_);
     wish.set_sender(sender_);
     wished_ = store.wanted();
-    if (wished_.size() > kMostWished) wished_.resize(kMostWished);
+    if (wished_.size() > kMaxWished) wished_.resize(kMaxWished);
     const std::vector<uint32_t> by_importance = wished_;
     std::ranges::sort(wished_);
     wished_.erase(std::unique(wished_.begin(), wished_.end()), wished_.end());
@@ -101,7 +101,7 @@ topics::DensityWish DensityFeed::wishOf(DensityStore& store) {
         if (store.find(brick)) continue;
         if (isAir(brick))
             store.put(brick, {std::vector<uint16_t>(brickVoxels(*store.grid())), {}, {}, 0});
-        else if (wish.lacking_size() < kMostLackingSaid)
+        else if (wish.lacking_size() < kMaxLackingSaid)
             wish.add_lacking(brick);
     }
     uint32_t run = 0, end = 0;  // bricks of the last run, and the one behind it

@@ -5,23 +5,23 @@
 #include <algorithm>
 #include <array>
 
-#include "render_client/link/subscribe/deaf_watch.h"
+#include "render_client/link/subscribe/silence_monitor.h"
 
 namespace bonemill {
 
 class Hearing {
   public:
-    using Clock = DeafWatch::Clock;
+    using Clock = SilenceMonitor::Clock;
     enum Sense { kServer, kTool, kNodes, kSenses };
 
-    explicit Hearing(std::chrono::milliseconds first = DeafWatch::kFirstSilence,
+    explicit Hearing(std::chrono::milliseconds first = SilenceMonitor::kFirstSilence,
                      Clock::time_point now = Clock::now())
-        : watches_{DeafWatch(first, now), DeafWatch(first, now), DeafWatch(first, now)} {}
+        : watches_{SilenceMonitor(first, now), SilenceMonitor(first, now), SilenceMonitor(first, now)} {}
 
-    // As DeafWatch::pass().
+    // As SilenceMonitor::pass().
     Clock::duration pass(Clock::time_point now) {
         Clock::duration slept{};
-        for (DeafWatch& watch : watches_) slept = watch.pass(now);
+        for (SilenceMonitor& watch : watches_) slept = watch.pass(now);
         return slept;
     }
     // It was heard, or there is nothing to hear.
@@ -29,12 +29,12 @@ class Hearing {
     // Returns true when the domain is to be joined anew: once for each silence of any of them.
     bool isDue(Clock::time_point now) {
         bool is_due = false;
-        for (DeafWatch& watch : watches_) is_due |= watch.isDue(now);
+        for (SilenceMonitor& watch : watches_) is_due |= watch.isDue(now);
         return is_due;
     }
 
   private:
-    std::array<DeafWatch, kSenses> watches_;
+    std::array<SilenceMonitor, kSenses> watches_;
 };
 
 }  // namespace bonemill

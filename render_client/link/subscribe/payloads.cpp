@@ -39,7 +39,7 @@ bool isConsistent(const topics::ToolState& state) {
 
 bool isConsistent(const topics::Remark& remark) {
     const int points = remark.points_m_size() / 3;
-    return remark.points_m_size() % 3 == 0 && lettersOf(remark.note()) <= kMostNoteLetters &&
+    return remark.points_m_size() % 3 == 0 && lettersOf(remark.note()) <= kMaxNoteLetters &&
            (remark.note().empty() ? points >= 2 : points <= 1);
 }
 
@@ -70,10 +70,10 @@ std::optional<DecodedNode> parseNode(std::span<const uint8_t> payload, uint32_t 
 
 std::optional<StructureSurface> parseStructure(std::span<const uint8_t> payload, uint32_t structure) {
     const auto message = parse<topics::StructureMesh>(payload);
-    if (!message || structure == 0 || structure > uint32_t(kMostShownMaterials)) return std::nullopt;
+    if (!message || structure == 0 || structure > uint32_t(kMaxShownMaterials)) return std::nullopt;
     std::optional<DecodedNode> node = decodeNodeMesh(message->surface(), structure);
     if (!node || node->mesh.isEmpty() || node->tag.epoch != message->epoch() ||
-        std::max(node->mesh.vertices.size(), node->mesh.indices.size() / 3) > kMostStructureVertices)
+        std::max(node->mesh.vertices.size(), node->mesh.indices.size() / 3) > kMaxStructureVertices)
         return std::nullopt;
     return StructureSurface{std::move(node->mesh), message->warning_distance_m(), message->epoch()};
 }
@@ -112,7 +112,7 @@ std::optional<topics::ScenePicture> parseScenePicture(std::span<const uint8_t> p
 
 std::optional<topics::Remark> parseRemark(std::span<const uint8_t> payload, uint32_t place) {
     std::optional<topics::Remark> remark = parse<topics::Remark>(payload);
-    if (!remark || place >= kMostRemarks) return std::nullopt;
+    if (!remark || place >= kMaxRemarks) return std::nullopt;
     remark->DiscardUnknownFields();
     remark->set_color(remark->color() & 0xffffff);
     return remark;

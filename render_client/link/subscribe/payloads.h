@@ -21,11 +21,11 @@ struct StructureSurface {
     uint64_t epoch = 0;
     uint64_t change = 0;  // SceneSubscriber::structureChanges() when it came
 };
-inline constexpr size_t kMostStructureVertices = 100000;
+inline constexpr size_t kMaxStructureVertices = 100000;
 // All structures of a session together have no more triangles.
-inline constexpr size_t kMostTrianglesOfStructures = 1000000;
+inline constexpr size_t kMaxTrianglesOfStructures = 1000000;
 
-// It has at least one triangle, and no more than kMostStructureVertices; `structure` is that of the sample's
+// It has at least one triangle, and no more than kMaxStructureVertices; `structure` is that of the sample's
 // envelope.
 std::optional<StructureSurface> parseStructure(std::span<const uint8_t> payload, uint32_t structure);
 

@@ -26,7 +26,7 @@ bool SceneModel::hasRoomFor(const NodeMesh& mesh) const {
     const auto known = nodes_.find(mesh.leaf);
     const bool is_new = known == nodes_.end();
     const size_t others = triangles_ + waiting_triangles_ - (is_new ? 0 : known->second.triangles);
-    return mesh.leaf < leaf_count_ && others + mesh.indices.size() / 3 <= kMostTriangles &&
+    return mesh.leaf < leaf_count_ && others + mesh.indices.size() / 3 <= kMaxTriangles &&
            (!is_new || nodes_.size() + waiting_.size() < kMostNodes);
 }
 

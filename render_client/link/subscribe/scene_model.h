@@ -38,12 +38,12 @@ class SceneModel {
     void setLeafCount(uint32_t count) { leaf_count_ = count; }
 
     // A node of another run than that begun is ignored. It is false for one that no octree has, or that is
-    // beyond kMostNodes or kMostTriangles.
+    // beyond kMostNodes or kMaxTriangles.
     bool applyNode(DecodedNode&& node, Clock::time_point now);
     void removeNode(uint32_t leaf);
     // These are many times those of a whole head (534,000 triangles).
     static constexpr size_t kMostNodes = size_t(1) << 16;
-    static constexpr size_t kMostTriangles = 6'000'000;
+    static constexpr size_t kMaxTriangles = 6'000'000;
 
     // Returns what changed since the last call.
     Changes takeChanges(Clock::time_point now);

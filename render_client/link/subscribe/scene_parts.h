@@ -7,7 +7,7 @@
 namespace bonemill {
 
 // This is as many as a scene may have: a vertex names one of them in one byte.
-inline constexpr int kMostShownMaterials = 255;
+inline constexpr int kMaxShownMaterials = 255;
 
 // Forgets what is no viewer's business, so that nobody relies on it.
 void keepShownParts(scene::Material& material);

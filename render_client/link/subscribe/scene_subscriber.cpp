@@ -102,7 +102,7 @@ void SceneSubscriber::hear(StructureSurface&& structure, const dds::StructureMes
     const size_t triangles = structure.mesh.indices.size() / 3;
     const size_t others =
         structure_triangles_ - (known == structures_.end() ? 0 : known->second.mesh.indices.size() / 3);
-    if (others + triangles > kMostTrianglesOfStructures)
+    if (others + triangles > kMaxTrianglesOfStructures)
         return ear_.dropMalformed("structure " + std::to_string(sample.structure) +
                                   ", which is one too many");
     structure_triangles_ = others + triangles;

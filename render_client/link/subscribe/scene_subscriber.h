@@ -28,7 +28,7 @@ struct SubscriberOptions {
     topics::Viewer::Role role = topics::Viewer::OPERATOR;
     bool is_trainee = false;  // what this viewer sees is what the trainee sees
     // After so much silence it joins anew (Hearing).
-    std::chrono::milliseconds rejoin_after = DeafWatch::kFirstSilence;
+    std::chrono::milliseconds rejoin_after = SilenceMonitor::kFirstSilence;
     // The gateway that the session is reached through; none: by DDS. Then name and role are the gateway's to
     // say.
     std::shared_ptr<RemoteSession> remote = {};

@@ -38,7 +38,7 @@ void ServerChoice::take(const Message& message) {
 }
 
 void ServerChoice::refuse(const Message& message, Clock::time_point now) {
-    if (others_.size() < kMostOthers || others_.contains(message.server)) {
+    if (others_.size() < kMaxOthers || others_.contains(message.server)) {
         Other& other = others_[message.server];
         other.was_refused = true;
         other.speaks = other.speaks || message.is_status;

@@ -41,7 +41,7 @@ class ServerChoice {
 
   private:
     static constexpr std::chrono::seconds kOtherFor{1}, kOtherUntil{3};
-    static constexpr size_t kMostOthers = 64;  // bounds what invented ones can take
+    static constexpr size_t kMaxOthers = 64;  // bounds what invented ones can take
     struct Other {
         bool speaks = false;  // by Status
         bool was_refused = false;

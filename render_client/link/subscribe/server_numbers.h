@@ -14,14 +14,14 @@ class ServerNumbers {
     uint64_t of(uint64_t participant, uint64_t writer) {
         const auto known = participants_.find(writer);
         if (participant == 0) return known == participants_.end() ? writer : known->second;
-        if (participants_.size() >= kMostWriters && known == participants_.end()) participants_.clear();
+        if (participants_.size() >= kMaxWriters && known == participants_.end()) participants_.clear();
         participants_[writer] = participant;
         return participant;
     }
     void clear() { participants_.clear(); }
 
   private:
-    static constexpr size_t kMostWriters = 1024;  // bounds what invented ones can take
+    static constexpr size_t kMaxWriters = 1024;  // bounds what invented ones can take
 
     std::map<uint64_t, uint64_t> participants_;  // by writer
 };

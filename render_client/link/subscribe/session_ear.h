@@ -52,7 +52,7 @@ class SessionEar {
 
     // Hears no viewer called `own_sender` (0: all). It has joined nothing yet.
     SessionEar(uint32_t session, SessionSink& sink, uint64_t own_sender = 0,
-               std::chrono::milliseconds rejoin_after = DeafWatch::kFirstSilence)
+               std::chrono::milliseconds rejoin_after = SilenceMonitor::kFirstSilence)
         : session_(session), own_sender_(own_sender), sink_(sink), hearing_(rejoin_after) {}
     SessionEar(const SessionEar&) = delete;
     SessionEar& operator=(const SessionEar&) = delete;

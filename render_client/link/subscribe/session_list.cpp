@@ -10,10 +10,10 @@ namespace bonemill {
 void SessionList::poll() {
     const auto now = std::chrono::steady_clock::now();
     std::erase_if(heard_, [now](const auto& entry) { return now - entry.second.at >= kTimeout; });
-    reader_.take(kMostSessions, [this](const dds::StatusSample& sample, const dds::SampleInfo& info) {
+    reader_.take(kMaxSessions, [this](const dds::StatusSample& sample, const dds::SampleInfo& info) {
         if (!info.has_data) return;
         const std::optional<topics::Status> status = parseStatus(dds::payloadOf(sample));
-        if (!status || (heard_.size() >= kMostSessions && !heard_.contains(sample.session))) return;
+        if (!status || (heard_.size() >= kMaxSessions && !heard_.contains(sample.session))) return;
         Heard& heard = heard_[sample.session];
         const bool is_known = heard.session.epoch_ns == status->epoch() && !heard.session.host.empty();
         heard = {{sample.session, status->scene(), status->epoch(),

@@ -30,7 +30,7 @@ class SessionList {
     static constexpr std::chrono::seconds kTimeout{3};
 
   private:
-    static constexpr size_t kMostSessions = 256;  // bounds what invented ones can take
+    static constexpr size_t kMaxSessions = 256;  // bounds what invented ones can take
 
     struct Heard {
         ListedSession session;

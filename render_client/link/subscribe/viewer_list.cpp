@@ -10,7 +10,7 @@ void ViewerList::hear(topics::Viewer viewer, uint64_t participant, Clock::time_p
     const auto known = heard_.find(viewer.sender());
     if (known == heard_.end())
         makeRoomFor(
-            participant, heard_, {kMostViewers, kMostOfParticipant},
+            participant, heard_, {kMaxViewers, kMaxOfParticipant},
             [](const auto& entry) { return entry.second.participant; },
             [](const auto& entry) { return entry.second.at; });
     else if (known->second.participant != participant)

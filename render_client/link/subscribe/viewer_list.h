@@ -16,8 +16,8 @@ class ViewerList {
   public:
     using Clock = std::chrono::steady_clock;
     static constexpr std::chrono::seconds kTimeout{4};
-    static constexpr size_t kMostViewers = 256;
-    static constexpr size_t kMostOfParticipant = 64;  // a gateway's guests
+    static constexpr size_t kMaxViewers = 256;
+    static constexpr size_t kMaxOfParticipant = 64;  // a gateway's guests
 
     // `participant` is who tells of this viewer (dds::Reader::participantOf).
     void hear(topics::Viewer viewer, uint64_t participant, Clock::time_point now);

@@ -2,10 +2,10 @@
 
 namespace bonemill {
 
-CutPlanes cutPlanes(const std::array<CutPlane, CutPlanes::kMost>& cuts, const Eigen::AlignedBox3d& bone_W) {
+CutPlanes cutPlanes(const std::array<CutPlane, CutPlanes::kMax>& cuts, const Eigen::AlignedBox3d& bone_W) {
     CutPlanes result;
     if (bone_W.isEmpty()) return result;
-    for (int axis = 0; axis < CutPlanes::kMost; ++axis) {
+    for (int axis = 0; axis < CutPlanes::kMax; ++axis) {
         const CutPlane& cut = cuts[size_t(axis)];
         if (!cut.is_on) continue;
         const double at = bone_W.min()[axis] + cut.position * bone_W.sizes()[axis];

@@ -11,12 +11,12 @@ constexpr double kFieldOfView = 75 * kDegree;
 constexpr double kBehind = 2.8;         // burr radii from the burr's centre to the eye, along the shaft
 constexpr double kBeside = 0.9;         // and across it: still inside the corridor that the burr has milled
 constexpr double kTilt = 8 * kDegree;   // towards the burr
-constexpr double kSmallestBurr = 1e-4;  // m
+constexpr double kMinBurr = 1e-4;  // m
 
 }  // namespace
 
 Camera endoscopeCamera(const Pose& X_WT, double burr_radius) {
-    const double radius = std::max(burr_radius, kSmallestBurr);
+    const double radius = std::max(burr_radius, kMinBurr);
     const Eigen::Matrix3d R_WT = X_WT.rotation.toRotationMatrix();
     Eigen::Matrix3d R_TC;
     R_TC.col(0) = -Eigen::Vector3d::UnitX();

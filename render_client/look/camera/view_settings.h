@@ -40,7 +40,7 @@ struct SliceSettings {
     // one through the tool.
     std::array<std::optional<double>, 3> positions;
     double zoom = 1;  // of the panes; 1 shows the whole scan
-    static constexpr double kMostZoom = 16;
+    static constexpr double kMaxZoom = 16;
     std::optional<GreyWindow> window;  // empty: what suits the scan
     CtShown ct = CtShown::kOnCuts;
 };
@@ -48,7 +48,7 @@ struct SliceSettings {
 // How a protected structure is seen; the places of ViewSettings::structures are 1 + its index in
 // SceneInfo.materials.
 enum class StructureMode : uint8_t { kThroughBone, kExposedOnly, kOff };
-constexpr size_t kMostStructures = 256;
+constexpr size_t kMaxStructures = 256;
 
 struct ViewSettings {
     static constexpr double kDefaultOpacity = 0.35;
@@ -72,7 +72,7 @@ struct ViewSettings {
     // The places are those of ViewerEffect; only those that the scene lists are seen.
     std::array<bool, kViewerEffects> hides_effects{};
     bool shows(ViewerEffect effect) const { return !hides_effects[size_t(effect)]; }
-    std::array<StructureMode, kMostStructures> structures{};
+    std::array<StructureMode, kMaxStructures> structures{};
     bool show_clearance = true;   // the line from the burr to the nearest structure
     bool show_thickness = false;  // bone has the colour of its distance to the next structure
     bool show_remarks = true;     // notes and strokes of people
@@ -80,8 +80,8 @@ struct ViewSettings {
     bool show_details = false;  // with the figures that matter to the task, all others
     bool show_watchers = false;
     bool show_help = false;
-    double text_scale = 1;  // the user's own factor, kLeastText to kMostText
-    static constexpr double kLeastText = 0.5, kMostText = 4;
+    double text_scale = 1;  // the user's own factor, kMinText to kMaxText
+    static constexpr double kMinText = 0.5, kMaxText = 4;
 
     // Forgets what was chosen of one scene's bone, scan and structures and means something else in the next
     // one.

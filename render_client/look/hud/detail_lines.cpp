@@ -11,7 +11,7 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostAccuracyLines = 2;
+constexpr size_t kMaxAccuracyLines = 2;
 
 void append(std::vector<HudRow> more, std::vector<HudRow>& rows) {
     rows.insert(rows.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
@@ -28,8 +28,8 @@ void addLoopRows(const topics::Status& status, std::vector<HudRow>& rows) {
 void addAccuracyRows(const topics::Status& status, std::vector<HudRow>& rows) {
     // A preset is one word; all knobs take more than one line.
     std::vector<std::string> lines = wrappedText(status.preset(), kLongestRow);
-    if (lines.size() > kMostAccuracyLines) {
-        lines.resize(kMostAccuracyLines);
+    if (lines.size() > kMaxAccuracyLines) {
+        lines.resize(kMaxAccuracyLines);
         lines.back() += "\u2026";
     }
     std::string label = "Accuracy";

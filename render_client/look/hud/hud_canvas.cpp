@@ -46,8 +46,8 @@ void HudCanvas::text(float x, float y, std::string_view utf8, FontStyle style, c
 }
 
 std::string HudCanvas::fitted(const std::string& utf8, FontStyle style, float most) const {
-    constexpr size_t kMostSigns = 160;  // no line of a picture is longer
-    const std::string start = shortenedText(utf8, kMostSigns);
+    constexpr size_t kMaxSigns = 160;  // no line of a picture is longer
+    const std::string start = shortenedText(utf8, kMaxSigns);
     std::string text = start;
     for (size_t signs = decodeUtf8(start).size(); signs > 1 && width(text, style) > most; --signs)
         text = shortenedText(start, signs - 1);

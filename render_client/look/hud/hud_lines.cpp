@@ -15,7 +15,7 @@ namespace bonemill {
 namespace {
 
 constexpr size_t kLongestName = 24;
-constexpr int kMostWatchers = 6;  // rows of the list
+constexpr int kMaxWatchers = 6;  // rows of the list
 
 void addToolNameRow(const topics::SceneInfo& info, std::vector<HudRow>& rows) {
     if (info.tool_names_size() < 2 || info.tool_index() >= uint32_t(info.tool_names_size())) return;
@@ -29,7 +29,7 @@ HudRow watcherRow(const topics::Viewer& watcher) {
 
 std::vector<HudRow> watcherRows(const std::vector<topics::Viewer>& watchers) {
     const auto count = int(watchers.size());
-    const int shown = count <= kMostWatchers ? count : kMostWatchers - 1;
+    const int shown = count <= kMaxWatchers ? count : kMaxWatchers - 1;
     std::vector<HudRow> rows;
     for (int i = 0; i < shown; ++i) rows.push_back(watcherRow(watchers[size_t(i)]));
     if (shown < count) rows.push_back({"and " + std::to_string(count - shown) + " more", ""});

@@ -45,7 +45,7 @@ struct HudInput {
     std::optional<HudLegend> legend;
     std::optional<HudHint> hint;
     std::optional<HudNotice> notice;
-    std::vector<HudNotice> messages;  // FaultBook::said()
+    std::vector<HudNotice> messages;  // FaultList::said()
     size_t fault_count = 0;           // in the list of faults
     uint32_t events = 0;              // EffectState.Event bits that the trainee is to see now
     uint32_t structure = 0;           // EffectState.event_id of those of protected structures

@@ -11,7 +11,7 @@ constexpr float kArm = 2.9f;          // from the middle to a letter's, in units
 constexpr float kReach = 3.6f;        // and to the marker's rim
 constexpr float kAboveCorner = 5.2f;  // from the marker's lower end to the picture's: room for the scale bar
 constexpr float kFromEdge = 1.2f;
-constexpr float kSmallestPicture = 30;  // text heights, in both directions
+constexpr float kMinPicture = 30;  // text heights, in both directions
 constexpr float kThickArm = 0.2f, kThinArm = 0.11f;
 constexpr float kFaintest = 0.35f;    // opacity of what points away from the eye
 constexpr float kNearestPair = 1.0f;  // a letter this near to one before it is not written
@@ -58,7 +58,7 @@ std::vector<OrientationEnd> orientationEnds(const OrientationAxes& axes) {
 void layOutOrientation(HudCanvas& canvas, const OrientationAxes& axes, const PictureSize& picture) {
     const float em = canvas.em();
     const auto width = float(picture.width), height = float(picture.height);
-    if (std::min(width, height) < kSmallestPicture * em) return;
+    if (std::min(width, height) < kMinPicture * em) return;
     const Eigen::Vector2f middle(width - (kFromEdge + kReach) * em, height - (kAboveCorner + kReach) * em);
     const std::vector<OrientationEnd> ends = orientationEnds(axes);
     const auto placeOf = [&](const OrientationEnd& end) -> Eigen::Vector2f {

@@ -11,7 +11,7 @@ namespace bonemill {
 namespace {
 
 constexpr double kLittleTime = 60;  // s
-constexpr int kMostGateRows = 2;
+constexpr int kMaxGateRows = 2;
 
 struct RoleRow {
     scene::Task::Role role;
@@ -65,10 +65,10 @@ void addResultRows(const topics::TaskState& task, std::vector<HudRow>& rows) {
         {"Result", broken == 0 ? "passed" : "failed", broken == 0 ? HudTone::kGood : HudTone::kAlarm});
     int named = 0;
     for (const topics::TaskState::Gate& gate : task.gates())
-        if (gate.state() == topics::TaskState::Gate::BROKEN && named++ < kMostGateRows)
+        if (gate.state() == topics::TaskState::Gate::BROKEN && named++ < kMaxGateRows)
             rows.push_back({shortenedText(gate.text(), kLongestRow), "", HudTone::kAlarm});
-    if (broken > kMostGateRows)
-        rows.push_back({"and " + std::to_string(broken - kMostGateRows) + " more", "", HudTone::kAlarm});
+    if (broken > kMaxGateRows)
+        rows.push_back({"and " + std::to_string(broken - kMaxGateRows) + " more", "", HudTone::kAlarm});
 }
 
 std::string timeLeftText(const topics::TaskState& task) {

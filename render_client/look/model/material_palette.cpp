@@ -7,7 +7,7 @@ namespace bonemill {
 namespace {
 
 constexpr double kGamma = 2.2;  // as toneMap() of the shaders
-constexpr GLsizei kMostColours = 256;
+constexpr GLsizei kMaxColours = 256;
 const Eigen::Vector3f kPlainBone(0.755f, 0.63f, 0.46f);  // the middle of the bone shader's mottling
 
 Eigen::Vector4f linear(const scene::Color& color) {
@@ -38,10 +38,10 @@ std::array<Eigen::Vector3f, 256> boneColoursOf(const std::vector<Eigen::Vector4f
 MaterialPalette::MaterialPalette(const GlApi& gl, const std::vector<Eigen::Vector4f>& colours)
     : gl_(gl), texture_(gl) {
     std::vector<Eigen::Vector4f> texels = colours;
-    texels.resize(kMostColours, Eigen::Vector4f::Zero());
+    texels.resize(kMaxColours, Eigen::Vector4f::Zero());
     gl_.ActiveTexture(GL_TEXTURE0 + kUnit);
     gl_.BindTexture(GL_TEXTURE_2D, texture_.name());
-    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA16F, kMostColours, 1, 0, GL_RGBA, GL_FLOAT, texels.data());
+    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA16F, kMaxColours, 1, 0, GL_RGBA, GL_FLOAT, texels.data());
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     gl_.ActiveTexture(GL_TEXTURE0);

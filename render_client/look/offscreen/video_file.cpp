@@ -134,8 +134,8 @@ void VideoFile::fail() {
 
 // The first lines say what went wrong, the others what came of it.
 std::string VideoFile::complaint() const {
-    constexpr size_t kMost = 300;
-    std::string text(kMost, '\0');
+    constexpr size_t kMax = 300;
+    std::string text(kMax, '\0');
     const ssize_t count = pread(complaints_, text.data(), text.size(), 0);
     text.resize(count > 0 ? size_t(count) : 0);
     while (!text.empty() && text.back() == '\n') text.pop_back();

@@ -25,7 +25,7 @@ class ClipPlanes {
 
   private:
     const GlApi& gl_;
-    std::array<bool, CutPlanes::kMost> is_on_;
+    std::array<bool, CutPlanes::kMax> is_on_;
 };
 
 // Sets the uniforms of the mesh shaders.

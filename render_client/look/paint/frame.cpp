@@ -19,7 +19,7 @@ constexpr double kFieldRadius = 0.48;    // of the shorter side of the picture
 constexpr double kBlur = 0.06;           // of the picture's height, one picture height away from the focus
 constexpr double kReach = 1.7;           // of the distance to the focus
 constexpr double kCastersGrow = 1.5;     // bone may be added
-constexpr double kSmallestScene = 1e-3;  // m, radius
+constexpr double kMinScene = 1e-3;  // m, radius
 constexpr double kSmallestBone = 1e-4;   // m, radius
 
 struct Sphere {
@@ -139,7 +139,7 @@ DepthRange Frame::neededRange(const FrameView& view, const Eigen::AlignedBox3f& 
     if (showsTool(view, tool_T)) extendBy(everything_W, *view.X_WT, tool_T);
     for (const auto& [X_WT, colour] : ghostsOf(view, tool_T)) extendBy(everything_W, X_WT, tool_T);
     const Sphere all = around(everything_W);
-    return view.camera.depthRange(all.center, std::max(all.radius, kSmallestScene) * 1.01);
+    return view.camera.depthRange(all.center, std::max(all.radius, kMinScene) * 1.01);
 }
 
 Frame Frame::make(const FrameView& view, const Eigen::AlignedBox3f& tool_T, double aspect,

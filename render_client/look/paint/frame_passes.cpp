@@ -10,10 +10,10 @@ namespace {
 
 constexpr double kOcclusionRadius = 0.10;   // of the bone's radius
 constexpr float kOcclusionPicture = 0.06f;  // the radius is at most this part of the picture's height
-constexpr float kMostBlur = 0.015f;         // of the picture's height
+constexpr float kMaxBlur = 0.015f;         // of the picture's height
 constexpr int kFilterReach = 8;             // pixels that the composite's filter looks beyond
 
-static_assert(kMostBlur < kOcclusionPicture, "or the blur would reach further than reach() says");
+static_assert(kMaxBlur < kOcclusionPicture, "or the blur would reach further than reach() says");
 
 }  // namespace
 
@@ -74,7 +74,7 @@ void FramePasses::compose(const Frame& frame, const RenderTargets& targets, int 
         composite.set("field_radius", frame.field_radius);
         composite.set("focus", frame.focus);
         composite.set("blur_per_m", frame.blur_per_m);
-        composite.set("most_blur", kMostBlur);
+        composite.set("most_blur", kMaxBlur);
     }
     drawFullScreen();
     gl_.ActiveTexture(GL_TEXTURE0);

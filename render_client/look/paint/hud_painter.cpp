@@ -15,8 +15,8 @@ constexpr float kFontPixels = 15;  // at ui_scale 1
 // Of that:
 constexpr float kListText = 0.75f;  // whatever was asked for, or goes away by itself
 constexpr float kMessageText = 0.87f;
-constexpr float kSmallestFont = 7, kLargestFont = 90;  // pixels; the largest fits a font's picture
-constexpr size_t kMostFonts = 8;
+constexpr float kMinFont = 7, kMaxFont = 90;  // pixels; the largest fits a font's picture
+constexpr size_t kMaxFonts = 8;
 
 }  // namespace
 
@@ -57,14 +57,14 @@ const FontAtlas& HudPainter::usualFont(float ui_scale) {
 }
 
 const HudPainter::Font& HudPainter::fontOf(float pixel_height) {
-    pixel_height = std::clamp(pixel_height, kSmallestFont, kLargestFont);
+    pixel_height = std::clamp(pixel_height, kMinFont, kMaxFont);
     return fonts_.try_emplace(pixel_height, gl_, pixel_height).first->second;
 }
 
 // Each part is drawn over the one before: the notices stand over the help page.
 void HudPainter::paint(const Hud& hud, const ScaleBar& scale_bar, double metres_per_pixel,
                        const PictureSize& picture, float ui_scale) {
-    if (fonts_.size() > kMostFonts) fonts_.clear();  // a window that is drawn larger needs others
+    if (fonts_.size() > kMaxFonts) fonts_.clear();  // a window that is drawn larger needs others
     const FontAtlas& font = usualFont(ui_scale);
     HudCanvas figures(font), lists(fontOf(std::round(kListText * font.pixelHeight())).atlas);
     HudBox box{};

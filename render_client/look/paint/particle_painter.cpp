@@ -9,7 +9,7 @@ namespace bonemill {
 namespace {
 
 constexpr float kSmallest = 0.75f;    // pixels, radius; what is smaller is drawn so large, and fainter
-constexpr float kLeastDepth = 1e-4f;  // m before the eye
+constexpr float kMinDepth = 1e-4f;  // m before the eye
 
 // Returns how many metres a pixel of the picture spans at this depth.
 float pixelAt(const Frame& frame, float depth, int height) {
@@ -52,7 +52,7 @@ ParticlePainter::ParticlePainter(const GlApi& gl)
 
 void ParticlePainter::add(const Frame& frame, const Particle& particle, int height) {
     const Placed placed = place(frame, particle, height);
-    if (-placed.from.z() < kLeastDepth || -placed.to.z() < kLeastDepth) return;
+    if (-placed.from.z() < kMinDepth || -placed.to.z() < kMinDepth) return;
     const Eigen::Vector3f middle = (placed.from + placed.to) / 2;
     const Eigen::Vector2f length = (placed.to - placed.from).head<2>();
     const Eigen::Vector2f along =
@@ -76,7 +76,7 @@ Eigen::AlignedBox3f ParticlePainter::box(const Frame& frame, const Particles& pa
     Eigen::AlignedBox3f box;
     for (const Particle& particle : particles) {
         const Placed placed = place(frame, particle, height);
-        if (-placed.from.z() < kLeastDepth || -placed.to.z() < kLeastDepth) continue;
+        if (-placed.from.z() < kMinDepth || -placed.to.z() < kMinDepth) continue;
         const Eigen::Vector3f margin = Eigen::Vector3f::Constant(placed.radius);
         for (const Eigen::Vector3f& end : {placed.from, placed.to}) {
             box.extend(end - margin);

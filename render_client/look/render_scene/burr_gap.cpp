@@ -8,8 +8,8 @@ namespace {
 
 constexpr int kLooks = 8;            // pixels around the burr that are looked at
 constexpr double kBesideBurr = 1.7;  // burr radii from its middle, where it hides nothing
-constexpr double kLeastGap = 0.2;    // burr radii: less is hardly in front
-constexpr double kMostGap = 40;      // burr radii: more is another part of the bone
+constexpr double kMinGap = 0.2;    // burr radii: less is hardly in front
+constexpr double kMaxGap = 40;      // burr radii: more is another part of the bone
 
 }  // namespace
 
@@ -36,7 +36,7 @@ std::optional<double> burrGap(const FrameView& view, const Eigen::Vector2i& size
     if (found <= kLooks / 2) return std::nullopt;
     std::sort(gaps, gaps + found);
     const double gap = gaps[found / 2] - view.burr_radius;
-    if (gap < kLeastGap * view.burr_radius || gap > kMostGap * view.burr_radius) return std::nullopt;
+    if (gap < kMinGap * view.burr_radius || gap > kMaxGap * view.burr_radius) return std::nullopt;
     return gap;
 }
 

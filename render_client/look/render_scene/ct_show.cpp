@@ -10,7 +10,7 @@
 namespace bonemill {
 namespace {
 
-constexpr int kMostFacePixels = 1024;  // per side
+constexpr int kMaxFacePixels = 1024;  // per side
 
 std::string millimetres(const char* axis, double metres) {
     char text[32];
@@ -106,7 +106,7 @@ Eigen::AlignedBox3f CtShow::updateFaces(const View& view) {
         const double position_W =
             view.bone_W.min()[i] + view.settings.cuts[axis].position * view.bone_W.sizes()[i];
         if (!slice) slice.emplace();
-        if (look(*slice, facePlane(*store_.grid(), view.X_WV, axis, position_W, view.bone_W, kMostFacePixels),
+        if (look(*slice, facePlane(*store_.grid(), view.X_WV, axis, position_W, view.bone_W, kMaxFacePixels),
                  colours))
             changed.extend(faces_->set(axis, slice->plane, slice->image));
     }

@@ -37,7 +37,7 @@ void RemarkView::set(const std::map<uint32_t, topics::Remark>& remarks) {
         for (int n = 0; n + 2 < remark->points_m_size(); n += 3)
             stroke.points_W.emplace_back(remark->points_m(n), remark->points_m(n + 1),
                                          remark->points_m(n + 2));
-        if (!remark->note().empty() && labels_.size() < kMostLabels)
+        if (!remark->note().empty() && labels_.size() < kMaxLabels)
             labels_.push_back({stroke.points_W[0].cast<double>(), labelOf(*remark)});
     }
     std::ranges::reverse(strokes_);  // newer ones lie over older ones

@@ -14,7 +14,7 @@ namespace bonemill {
 
 class RemarkView {
   public:
-    static constexpr size_t kMostLabels = 16;  // of the newest notes
+    static constexpr size_t kMaxLabels = 16;  // of the newest notes
 
     // Takes all that there are, by place.
     void set(const std::map<uint32_t, topics::Remark>& remarks);

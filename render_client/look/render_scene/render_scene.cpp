@@ -146,7 +146,7 @@ void RenderScene::setStatus(const topics::Status& status) {
 }
 
 void RenderScene::lookForFaults() {
-    const FaultBook::Clock::time_point now = FaultBook::Clock::now();
+    const FaultList::Clock::time_point now = FaultList::Clock::now();
     const double session_s = hud_input_.status ? hud_input_.status->session_s() : 0;
     faults_.observe(conditionsOf(hud_input_), session_s, now);
     hud_input_.messages = faults_.said(now);

@@ -16,7 +16,7 @@
 #include "render_client/look/camera/view_settings.h"
 #include "render_client/look/gl/gl_api.h"
 #include "render_client/look/hud/event_latch.h"
-#include "render_client/look/hud/fault_book.h"
+#include "render_client/look/hud/fault_list.h"
 #include "render_client/look/hud/hud_lines.h"
 #include "render_client/look/model/node_store.h"
 #include "render_client/look/model/tool_mesh.h"
@@ -197,7 +197,7 @@ class RenderScene {
     bool can_pick_ = false;
     std::optional<Eigen::Vector3d> pull_W_;
     EventLatch events_;
-    FaultBook faults_;
+    FaultList faults_;
     StructureView structures_;
     RemarkView remarks_;
     Stroke drawn_;  // now

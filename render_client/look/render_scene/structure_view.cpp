@@ -51,7 +51,7 @@ void StructureView::show(const ViewSettings& settings, FrameView& view) const {
     if (structures_.all().empty()) return;
     for (const auto& [id, structure] : structures_.all())
         view.structures.push_back(
-            {id, linearColour(structureColour(info_, id)), settings.structures[id % kMostStructures], 0});
+            {id, linearColour(structureColour(info_, id)), settings.structures[id % kMaxStructures], 0});
     view.structures_V = structures_.box().cast<double>();
     view.shows_thickness = settings.show_thickness;
     if (!view.X_WT) return;

@@ -9,12 +9,12 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kFromTop[] = {2, 1, 0};  // the place in the column of the panes across x, y, z
-constexpr double kMostColumns = 1.0 / 3;
+constexpr double kMaxColumns = 1.0 / 3;
 constexpr double kScanMargin = 1.02;  // the scan does not touch the pane's edge
 
 int paneEdge(int width, int height) {
     const int by_height = (height - 4 * kPaneGap) / 3;
-    const int by_width = int(width * kMostColumns) - 2 * kPaneGap;
+    const int by_width = int(width * kMaxColumns) - 2 * kPaneGap;
     return std::max(std::min(by_height, by_width), 1);
 }
 

@@ -20,11 +20,11 @@ ThicknessField thicknessField(const StructureSet& structures, double reach) {
     const Eigen::Vector3f margin = Eigen::Vector3f::Constant(field.reach);
     const Eigen::Vector3f wide = box.sizes() + 2 * margin;
     field.first_V = box.min() - margin;
-    field.step = std::max(kFinest, wide.maxCoeff() / float(ThicknessField::kMostPerAxis - 2));
+    field.step = std::max(kFinest, wide.maxCoeff() / float(ThicknessField::kMaxPerAxis - 2));
     const auto sizeOf = [&wide](float step) {
         return Eigen::Vector3i((wide / step).array().ceil().cast<int>().matrix() + Eigen::Vector3i::Ones());
     };
-    while (sizeOf(field.step).cast<int64_t>().prod() > ThicknessField::kMostSamples) field.step *= 1.05f;
+    while (sizeOf(field.step).cast<int64_t>().prod() > ThicknessField::kMaxSamples) field.step *= 1.05f;
     field.size = sizeOf(field.step);
     field.shares.assign(size_t(field.size.prod()), 255);
     const Eigen::Vector3i blocks = (field.size.array() + kBlock - 1) / kBlock;

@@ -9,7 +9,7 @@
 namespace bonemill {
 
 struct ThicknessField {
-    static constexpr int kMostSamples = 1 << 19, kMostPerAxis = 256;
+    static constexpr int kMaxSamples = 1 << 19, kMaxPerAxis = 256;
 
     Eigen::Vector3f first_V = Eigen::Vector3f::Zero();  // m, of the first sample
     float step = 0;                                     // m
@@ -18,7 +18,7 @@ struct ThicknessField {
     std::vector<uint8_t> shares;  // of the reach, x fastest; 255: it is as far or farther
 };
 
-// Samples lie at least 0.4 mm apart, and there are kMostSamples at most, however large the structures are.
+// Samples lie at least 0.4 mm apart, and there are kMaxSamples at most, however large the structures are.
 // Only those near a structure are computed one by one. It takes tenths of a second.
 ThicknessField thicknessField(const StructureSet& structures, double reach);
 

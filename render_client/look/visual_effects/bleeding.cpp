@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kBrim = 0.55f;                              // of a full film: from here on blood runs
 constexpr float kShortestRun = 1e-3f, kLongestRun = 7e-3f;  // m
-constexpr double kMostCells = 300e3;                        // of the film, that a step looks at
+constexpr double kMaxCells = 300e3;                        // of the film, that a step looks at
 constexpr float kTightness = 0.7f;  // of a cell: nearer to a wound there is no second one
 const Eigen::Vector3f kDarkRed(0.105f, 0.0040f, 0.0045f);
 
@@ -21,7 +21,7 @@ const Eigen::Vector3f kDarkRed(0.105f, 0.0040f, 0.0045f);
 void Bleeding::open(std::span<const SurfacePoint> cut, const SurfaceFilm& film) {
     const float tight = kTightness * film.cell();
     for (const SurfacePoint& point : cut) {
-        if (wounds_.size() >= kMostWounds) return;
+        if (wounds_.size() >= kMaxWounds) return;
         if (!bleeds_[point.material]) continue;
         const auto is_near = [&](const Wound& w) {
             return (w.at.p_V - point.p_V).squaredNorm() < tight * tight;
@@ -51,7 +51,7 @@ void Bleeding::seep(double dt, SurfaceFilm& film) {
         wound.age += float(dt);
         if (wound.age >= delay) wound.waited += float(dt);
     }
-    double cells = kMostCells;
+    double cells = kMaxCells;
     for (size_t n = 0; n < wounds_.size() && cells > 0; ++n) {
         next_ = next_ + 1 < wounds_.size() ? next_ + 1 : 0;
         if (wounds_[next_].waited > 0) cells -= feed(wounds_[next_], film);
@@ -73,11 +73,11 @@ double Bleeding::feed(Wound& wound, SurfaceFilm& film) {
 
 void Bleeding::beginRuns(double dt, const SurfaceFilm& film) {
     if (wounds_.empty()) return;
-    runs_due_ = std::min(runs_due_ + dt * wish_.runs_per_s(), double(kMostRuns));
+    runs_due_ = std::min(runs_due_ + dt * wish_.runs_per_s(), double(kMaxRuns));
     for (; runs_due_ >= 1; --runs_due_) {
         const Wound& wound = wounds_[random_.below(wounds_.size())];
         const float left = random_.between(kShortestRun, kLongestRun), width = random_.between(0.6f, 1.1f);
-        if (runs_.size() < kMostRuns && film.at(SurfaceFilm::kBlood, wound.at.p_V) > kBrim)
+        if (runs_.size() < kMaxRuns && film.at(SurfaceFilm::kBlood, wound.at.p_V) > kBrim)
             runs_.push_back({wound.at, left, width * 1.25f * film.cell()});
     }
 }

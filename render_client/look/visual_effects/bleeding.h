@@ -32,7 +32,7 @@ class Bleeding {
     size_t woundCount() const { return wounds_.size(); }
 
   private:
-    static constexpr size_t kMostWounds = 6000, kMostRuns = 48;
+    static constexpr size_t kMaxWounds = 6000, kMaxRuns = 48;
     struct Wound {
         SurfacePoint at;
         float age, waited;  // s: in all, and since blood came from it

@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kFastest = 2, kSlowest = 0.06f;  // m/s at the start
 constexpr float kStep = 4e-4f;                   // m that a grain flies between two looks for bone
-constexpr int kMostSteps = 8;
+constexpr int kMaxSteps = 8;
 constexpr float kFound = 5e-4f;                  // m: farther from all vertices there is no bone
 constexpr float kBounce = 0.25f, kSlide = 0.5f;  // what is left of the speed, into and along the bone
 constexpr float kRest = 0.08f;                   // m/s: slower after a bounce a grain stays
@@ -67,7 +67,7 @@ void BoneDust::launch(float age) {
 
 void BoneDust::fly(Grain& grain, float dt, const BoneSurface& surface) {
     const float speed = grain.v.norm();
-    const int steps = std::clamp(int(std::ceil(speed * dt / kStep)), 1, kMostSteps);
+    const int steps = std::clamp(int(std::ceil(speed * dt / kStep)), 1, kMaxSteps);
     const float h = dt / float(steps), drag_time = float(wish_.drag_time_ms() * kMillisecond);
     const Eigen::Vector3f gravity = -kGravity * input_.up_V.cast<float>();
     for (int n = 0; n < steps && !grain.is_resting; ++n) {

@@ -86,7 +86,7 @@ void BoneSurface::noteFresh(const Leaf* before, const Leaf& after) {
     std::vector<uint64_t> old_places;
     if (before && before->origin == after.origin && before->step == after.step)
         old_places = sortedPlaces(before->vertices);
-    for (size_t i = 0; i < after.vertices.size() && fresh_.size() < kMostFresh; ++i)
+    for (size_t i = 0; i < after.vertices.size() && fresh_.size() < kMaxFresh; ++i)
         if (!std::ranges::binary_search(old_places, placeOf(after.vertices[i])))
             fresh_.push_back(after.point(i));
 }

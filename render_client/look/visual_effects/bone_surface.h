@@ -30,9 +30,9 @@ class BoneSurface {
 
     // From now on the surface knows which vertices are new; that takes time.
     void trackFresh() { tracks_fresh_ = true; }
-    // Returns the vertices since the last call that no earlier mesh of their leaf had, at most kMostFresh.
+    // Returns the vertices since the last call that no earlier mesh of their leaf had, at most kMaxFresh.
     std::vector<SurfacePoint> takeFresh() { return std::exchange(fresh_, {}); }
-    static constexpr size_t kMostFresh = 20000;
+    static constexpr size_t kMaxFresh = 20000;
 
   private:
     struct Leaf {

@@ -19,7 +19,7 @@ constexpr float kDropExposure = 0.006f;   // s of flight that a drop's streak sh
 constexpr float kWetting = 0.5f;          // of a full film, per piece
 constexpr float kSplash = 0.08f;          // of a full film on the bone around the burr, per piece
 constexpr float kSplashReach = 2.2f;      // in burr radii
-constexpr int kMostDropSteps = 6;
+constexpr int kMaxDropSteps = 6;
 constexpr float kDropStep = 5e-4f;  // m
 
 }  // namespace
@@ -50,7 +50,7 @@ void Irrigation::pour(double dt) {
     for (; due_ >= 1; --due_) {
         const float age = float(due_ - 1) / float(kPiecesPerSecond);
         const Eigen::Vector3f v = speed * (way.normalized() + 0.02f * random_.inCube());
-        if (drops_.size() >= kMostDrops) continue;
+        if (drops_.size() >= kMaxDrops) continue;
         Drop& drop = drops_.emplace_back();
         drop.at.p_V = from + age * v;
         drop.v = v;
@@ -69,7 +69,7 @@ bool Irrigation::move(Drop& drop, float dt, const BoneSurface& surface, SurfaceF
     drop.age += dt;
     if (drop.age > drop.life || !surface.isInFocus(drop.at.p_V)) return false;
     if (drop.state == State::kRunning) return run(drop, dt, surface, film);
-    const int steps = std::clamp(int(std::ceil(drop.v.norm() * dt / kDropStep)), 1, kMostDropSteps);
+    const int steps = std::clamp(int(std::ceil(drop.v.norm() * dt / kDropStep)), 1, kMaxDropSteps);
     const float h = dt / float(steps);
     for (int n = 0; n < steps && drop.state != State::kRunning; ++n) {
         drop.v -= h * kGravity * input_.up_V.cast<float>();

@@ -31,7 +31,7 @@ class Irrigation {
     size_t count() const { return drops_.size(); }
 
   private:
-    static constexpr size_t kMostDrops = 800;
+    static constexpr size_t kMaxDrops = 800;
     enum class State { kStream, kSpray, kRunning };
     struct Drop {
         SurfacePoint at;  // the normal counts while it runs

@@ -8,13 +8,13 @@ namespace {
 constexpr double kShownStep = 0.15;     // s: a quick picture draws all that is wet anew when it changes
 constexpr double kFilmStep = 1.0 / 15;  // s: blood and drying are slow
 constexpr double kCellsPerRadius = 4;   // of the burr
-constexpr double kSmallestCell = 1e-4, kLargestCell = 6e-4;  // m
+constexpr double kMinCell = 1e-4, kMaxCell = 6e-4;  // m
 constexpr double kTrailTime = 0.6;                           // s that a mesh may come after its cut
-constexpr size_t kMostTrail = 64;
+constexpr size_t kMaxTrail = 64;
 constexpr float kCutMargin = 3e-4f;  // m beside the burr where a new vertex is a cut
 
 SurfaceFilm filmFor(double burr_radius) {
-    return SurfaceFilm(float(std::clamp(burr_radius / kCellsPerRadius, kSmallestCell, kLargestCell)));
+    return SurfaceFilm(float(std::clamp(burr_radius / kCellsPerRadius, kMinCell, kMaxCell)));
 }
 
 MaterialSet bleedingOf(const scene::Bleeding& wish, const VisualEffects::Materials& materials) {
@@ -49,7 +49,7 @@ void VisualEffects::take(const EffectInput& input) {
     surface_.focusOn(centre);
     if (!input.is_pedal_down) return;
     if (film_) film_->centreOn(centre);
-    if (trail_.size() >= kMostTrail) trail_.erase(trail_.begin());
+    if (trail_.size() >= kMaxTrail) trail_.erase(trail_.begin());
     trail_.push_back({centre, time_});
     if (bleeding_) bleeding_->cutAway(centre, float(input.burr_radius) - film_->cell());
 }

@@ -11,7 +11,7 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostListed = 40;
+constexpr size_t kMaxListed = 40;
 
 ImVec4 strokeColour(uint32_t colour) {
     const auto part = [colour](int shift) { return float(colour >> shift & 0xff) / 255; };
@@ -36,9 +36,9 @@ void PanelContent::buildRemarks() {
     box("Show", Action::kRemarks, settings_.show_remarks, "Notes and strokes on the bone");
     if (!session_.remarks || session_.remarks->empty()) return;
     const std::vector<const topics::Remark*> listed = newestFirst(*session_.remarks);
-    for (size_t n = 0; n < std::min(listed.size(), kMostListed); ++n) buildRemark(*listed[n]);
-    if (listed.size() > kMostListed)
-        sayQuietly("and " + std::to_string(listed.size() - kMostListed) + " older ones");
+    for (size_t n = 0; n < std::min(listed.size(), kMaxListed); ++n) buildRemark(*listed[n]);
+    if (listed.size() > kMaxListed)
+        sayQuietly("and " + std::to_string(listed.size() - kMaxListed) + " older ones");
     ImGui::BeginDisabled(!whyNotCommand(session_).empty());
     topics::Command all;
     all.set_erase_remark(0);

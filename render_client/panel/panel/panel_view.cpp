@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-constexpr double kLeastOpacity = 0.05;
+constexpr double kMinOpacity = 0.05;
 
 constexpr struct {
     const char* label;
@@ -68,7 +68,7 @@ void PanelContent::buildTransparency() {
     ImGui::SameLine();
     ImGui::PushItemWidth(-1);
     if (const auto opacity =
-            slider("##opacity", settings_.opacity, kLeastOpacity, "How dense the transparent bone is"))
+            slider("##opacity", settings_.opacity, kMinOpacity, "How dense the transparent bone is"))
         controls_.setOpacity(*opacity);
     ImGui::PopItemWidth();
 }

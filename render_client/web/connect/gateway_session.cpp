@@ -18,7 +18,7 @@ constexpr auto kFirstPause = 500ms, kLongestPause = 15000ms;
 constexpr auto kSilence = 12s;  // the gateway says something every few seconds
 constexpr auto kLook = 250ms;
 constexpr auto kViewersAgain = 1s;
-constexpr size_t kMostQueuedBytes = 1 << 20;
+constexpr size_t kMaxQueuedBytes = 1 << 20;
 constexpr size_t kMostWaiting = 4096;  // samples of a topic that nobody takes
 
 // The number of the run that a node's mesh is of; 0: it makes no sense.
@@ -201,7 +201,7 @@ bool GatewaySession::say(const gateway::FromGuest& message) {
     std::string bytes = message.SerializeAsString();
     {
         const std::lock_guard lock(mutex_);
-        if (!is_open_ || outbox_bytes_ + bytes.size() > kMostQueuedBytes) return false;
+        if (!is_open_ || outbox_bytes_ + bytes.size() > kMaxQueuedBytes) return false;
         if (message.has_command()) own_sender_ = message.command().sender();
         outbox_bytes_ += bytes.size();
         outbox_.push_back(std::move(bytes));

@@ -12,7 +12,7 @@
 namespace bonemill::gateway {
 namespace {
 
-constexpr size_t kMostAddresses = 4096;  // that failed
+constexpr size_t kMaxAddresses = 4096;  // that failed
 constexpr double kBitsPerByte = 8;
 constexpr std::chrono::seconds kLookEvery{1};
 
@@ -81,8 +81,8 @@ bool Gateway::findPlaceFor(const GuestOrigin& comer) {
         crowd.add(guest->origin());
         unknown.push_back(guest.get());
     }
-    if (crowd.hasPlace(kMostUnknown)) return true;
-    const auto leaver = crowd.whoMakesRoom(kMostUnknown);
+    if (crowd.hasPlace(kMaxUnknown)) return true;
+    const auto leaver = crowd.whoMakesRoom(kMaxUnknown);
     if (leaver) unknown[*leaver]->makeRoom();
     return leaver.has_value();
 }
@@ -92,7 +92,7 @@ Guest* Gateway::come(const GuestOrigin& origin, Clock::time_point now) {
     Guest* const guest = guests_.emplace_back(std::make_unique<Guest>(hall_, origin, now)).get();
     const auto failures = failures_.find(origin);
     if (failures != failures_.end() && now - failures->second.since < kFailuresLast &&
-        failures->second.count >= kMostFailures)
+        failures->second.count >= kMaxFailures)
         guest->refuse("Too many wrong links came from this address: wait a minute.", false,
                       now + Guest::kRefusalDelay);
     return guest;
@@ -128,10 +128,10 @@ void Gateway::welcome(Guest& guest) {
 
 void Gateway::noteFailure(const GuestOrigin& origin, Clock::time_point now) {
     std::erase_if(failures_, [&](const auto& one) { return now - one.second.since >= kFailuresLast; });
-    if (failures_.size() >= kMostAddresses && !failures_.contains(origin)) return;
+    if (failures_.size() >= kMaxAddresses && !failures_.contains(origin)) return;
     Failures& failures = failures_[origin];
     if (++failures.count == 1) failures.since = now;
-    if (failures.count <= kMostFailures) spdlog::warn("a wrong link came from {}", origin.text());
+    if (failures.count <= kMaxFailures) spdlog::warn("a wrong link came from {}", origin.text());
 }
 
 void Gateway::step(Clock::time_point now) {

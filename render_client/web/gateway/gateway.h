@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "common/dds/participant.h"
-#include "render_client/link/subscribe/deaf_watch.h"
+#include "render_client/link/subscribe/silence_monitor.h"
 #include "render_client/web/gateway/gateway_options.h"
 #include "render_client/web/gateway/guest.h"
 #include "render_client/web/gateway/guest_origin.h"
@@ -22,8 +22,8 @@ namespace bonemill::gateway {
 class Gateway {
   public:
     using Clock = std::chrono::steady_clock;
-    static constexpr CrowdBounds kMostUnknown{64, 16, 48};  // before their Hello
-    static constexpr int kMostFailures = 10;                // of one address within kFailuresLast
+    static constexpr CrowdBounds kMaxUnknown{64, 16, 48};  // before their Hello
+    static constexpr int kMaxFailures = 10;                // of one address within kFailuresLast
     static constexpr std::chrono::seconds kFailuresLast{60};
 
     // Throws UserError.
@@ -68,7 +68,7 @@ class Gateway {
     std::map<GuestOrigin, Failures> failures_;
     Clock::time_point looked_;
     uint64_t epoch_ = 0;  // of the run that is shown
-    DeafWatch deaf_watch_;
+    SilenceMonitor deaf_watch_;
     std::optional<Clock::time_point> heard_;  // our server, the last time
     uint64_t rejoinings_ = 0;
 };

@@ -7,12 +7,12 @@
 #include <optional>
 #include <string>
 
-#include "render_client/link/subscribe/deaf_watch.h"
+#include "render_client/link/subscribe/silence_monitor.h"
 #include "render_client/web/relay/relay_options.h"
 
 namespace bonemill::gateway {
 
-inline constexpr uint32_t kMostGuestsOfGateway = 1000;
+inline constexpr uint32_t kMaxGuestsOfGateway = 1000;
 
 struct GatewayOptions {
     uint32_t domain = 0;   // DDS
@@ -24,10 +24,10 @@ struct GatewayOptions {
     std::filesystem::path guests;       // empty: in the user's configuration
     std::filesystem::path page;         // folder of the page
     double guest_mbit_per_s = 20;       // at most, to each guest
-    uint32_t most_guests = 64;          // kMostGuestsOfGateway at most
+    uint32_t most_guests = 64;          // kMaxGuestsOfGateway at most
     std::optional<RelayPlace> via;      // guests come through this relay, too
-    // After so much silence in DDS it joins anew (DeafWatch).
-    std::chrono::milliseconds rejoin_after = DeafWatch::kFirstSilence;
+    // After so much silence in DDS it joins anew (SilenceMonitor).
+    std::chrono::milliseconds rejoin_after = SilenceMonitor::kFirstSilence;
 };
 
 }  // namespace bonemill::gateway

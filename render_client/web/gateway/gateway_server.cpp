@@ -25,7 +25,7 @@ namespace bonemill::gateway {
 namespace {
 
 constexpr int64_t kStepUs = 5000, kIdleStepUs = 50000;
-constexpr CrowdBounds kMostConnections{256, 96, 192};  // that are no guest's
+constexpr CrowdBounds kMaxConnections{256, 96, 192};  // that are no guest's
 constexpr unsigned kHeaderTimeS = 5;
 constexpr unsigned kHeaderBytes = 4096;
 constexpr size_t kSpareDescriptors = 128;  // for DDS, files and the relay
@@ -136,8 +136,8 @@ GatewayServer::Port::Port(const GatewayOptions& options)
     info.timeout_secs = kHeaderTimeS;
     info.keepalive_timeout = int(kHeaderTimeS);
     info.max_http_header_data = kHeaderBytes;
-    info.max_http_header_pool = kMostConnections.all;
-    const size_t most_lines = kMostConnections.all + options.most_guests + 2 * Gateway::kMostUnknown.all;
+    info.max_http_header_pool = kMaxConnections.all;
+    const size_t most_lines = kMaxConnections.all + options.most_guests + 2 * Gateway::kMaxUnknown.all;
     info.fd_limit_per_thread = unsigned(allowDescriptors(most_lines + kSpareDescriptors) - kSpareDescriptors);
     info.retry_and_idle_policy = &kPings;
     info.vhost_name = "gateway";
@@ -199,8 +199,8 @@ int GatewayServer::Port::accept(int socket) {
 bool GatewayServer::Port::findPlaceFor(const GuestOrigin& comer) {
     Crowd crowd(comer);
     for (const Arrival& arrival : arrivals) crowd.add(arrival.origin);
-    if (crowd.hasPlace(kMostConnections)) return true;
-    const auto leaver = crowd.whoMakesRoom(kMostConnections);
+    if (crowd.hasPlace(kMaxConnections)) return true;
+    const auto leaver = crowd.whoMakesRoom(kMaxConnections);
     if (!leaver) return false;
     kill(arrivals[*leaver].connection);
     arrivals.erase(arrivals.begin() + std::ptrdiff_t(*leaver));
@@ -270,7 +270,7 @@ void GatewayServer::Port::close(lws* connection, GuestConnection& place) {
 int GatewayServer::Port::take(lws* connection, GuestConnection& place, const char* data, size_t length) {
     if (!place.guest) return -1;
     const auto now = Gateway::Clock::now();
-    const size_t most = place.guest->isAdmitted() ? kMostFrameBytes : kMostHelloBytes;
+    const size_t most = place.guest->isAdmitted() ? kMaxFrameBytes : kMaxHelloBytes;
     if (place.frame->size() + length > most || !lws_frame_is_binary(connection)) {
         place.guest->refuse("This message makes no sense to the gateway; reload the page.", false);
     } else {

@@ -25,12 +25,12 @@ uint64_t randomGuestSender() {
 }
 
 std::unordered_set<uint32_t> bricksOf(const topics::DensityWish& wish) {
-    constexpr size_t kMost = 16384;
+    constexpr size_t kMax = 16384;
     std::unordered_set<uint32_t> bricks(wish.lacking().begin(), wish.lacking().end());
     uint32_t next = 0;
     for (int i = 0; i + 1 < wish.held_size(); i += 2) {
         next += wish.held(i);
-        for (uint32_t n = 0; n < wish.held(i + 1) && bricks.size() < kMost; ++n) bricks.insert(next + n);
+        for (uint32_t n = 0; n < wish.held(i + 1) && bricks.size() < kMax; ++n) bricks.insert(next + n);
         next += wish.held(i + 1);
     }
     return bricks;
@@ -59,7 +59,7 @@ bool Guest::isInvited(int64_t now_s) const {
 
 bool Guest::mayTalk(Clock::time_point now) {
     const std::chrono::duration<double> passed = now - std::exchange(talked_, now);
-    talk_credit_ = std::min(talk_credit_ + kFramesPerSecond * passed.count(), kMostFramesAtOnce);
+    talk_credit_ = std::min(talk_credit_ + kFramesPerSecond * passed.count(), kMaxFramesAtOnce);
     return --talk_credit_ >= 0;
 }
 

@@ -32,7 +32,7 @@ class Guest {
     using Clock = std::chrono::steady_clock;
     static constexpr std::chrono::seconds kHelloTime{5};
     static constexpr std::chrono::seconds kRefusalDelay{1};  // who guesses is slow
-    static constexpr double kFramesPerSecond = 400, kMostFramesAtOnce = 800;
+    static constexpr double kFramesPerSecond = 400, kMaxFramesAtOnce = 800;
 
     Guest(Hall& hall, GuestOrigin origin, Clock::time_point now);
     // The session learns that this hand has let go.
@@ -92,7 +92,7 @@ class Guest {
     bool has_failed_ = false;
     bool is_holding_ = false;
     topics::HandPointer last_hand_;
-    double talk_credit_ = kMostFramesAtOnce;
+    double talk_credit_ = kMaxFramesAtOnce;
     Clock::time_point talked_;
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kLargestNumber = 1e6;
 constexpr double kUnitTolerance = 1e-3;
-constexpr int kMostWished = 16384;
+constexpr int kMaxWished = 16384;
 
 template <class Field>
 bool areSane(const Field& field, int count) {
@@ -39,13 +39,13 @@ bool isSane(const topics::HandPointer& hand) {
 }
 
 bool isSane(const topics::DensityWish& wish) {
-    return wish.lacking_size() <= kMostWished && wish.held_size() % 2 == 0 &&
-           wish.held_size() <= kMostWished && wish.revisions_size() % 2 == 0 &&
-           wish.revisions_size() <= 2 * kMostWished;
+    return wish.lacking_size() <= kMaxWished && wish.held_size() % 2 == 0 &&
+           wish.held_size() <= kMaxWished && wish.revisions_size() % 2 == 0 &&
+           wish.revisions_size() <= 2 * kMaxWished;
 }
 
 bool isSane(const Hello& hello) {
-    return hello.token().size() <= kMostTokenBytes && hello.leaves_size() == hello.revisions_size();
+    return hello.token().size() <= kMaxTokenBytes && hello.leaves_size() == hello.revisions_size();
 }
 
 bool isSane(const FromGuest& message) {
@@ -73,8 +73,8 @@ bool isSane(const FromGuest& message) {
 std::optional<FromGuest> parseFromGuest(std::string_view frame) {
     const google::protobuf::LogSilencer silencer;
     FromGuest message;
-    if (frame.size() > kMostHelloBytes || !message.ParseFromArray(frame.data(), int(frame.size())) ||
-        (frame.size() > kMostFrameBytes && !message.has_hello()) || !isSane(message))
+    if (frame.size() > kMaxHelloBytes || !message.ParseFromArray(frame.data(), int(frame.size())) ||
+        (frame.size() > kMaxFrameBytes && !message.has_hello()) || !isSane(message))
         return std::nullopt;
     message.DiscardUnknownFields();
     return message;

@@ -9,10 +9,10 @@
 
 namespace bonemill::gateway {
 
-inline constexpr size_t kMostFrameBytes = 16 << 10;
+inline constexpr size_t kMaxFrameBytes = 16 << 10;
 // A guest that comes again lists what it holds.
-inline constexpr size_t kMostHelloBytes = 256 << 10;
-inline constexpr size_t kMostTokenBytes = 128;
+inline constexpr size_t kMaxHelloBytes = 256 << 10;
+inline constexpr size_t kMaxTokenBytes = 128;
 
 // Returns what the frame says if its numbers are ones to compute with; nothing for all else.
 std::optional<FromGuest> parseFromGuest(std::string_view frame);

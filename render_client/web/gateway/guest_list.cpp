@@ -40,7 +40,7 @@ bool isInvitation(const Invitation& invitation) {
     const std::string& hash = invitation.token_sha256();
     return hash.size() == 64 && hash.find_first_not_of("0123456789abcdef") == std::string::npos &&
            !invitation.name().empty() && invitation.name().size() <= 64 &&
-           invitation.people() <= GuestList::kMostPeople && topics::Viewer::Role_IsValid(invitation.role());
+           invitation.people() <= GuestList::kMaxPeople && topics::Viewer::Role_IsValid(invitation.role());
 }
 
 uint32_t peopleOf(const Invitation& invitation) {
@@ -81,7 +81,7 @@ GuestList::GuestList(std::filesystem::path file) : file_(std::move(file)), seats
 
 bool GuestList::read() {
     Guests guests;
-    if (!readText(file_, guests) || guests.invitations_size() > kMostInvitations ||
+    if (!readText(file_, guests) || guests.invitations_size() > kMaxInvitations ||
         !std::ranges::all_of(guests.invitations(), isInvitation))
         return false;
     guests_ = std::move(guests);

@@ -28,8 +28,8 @@ struct Admission {
 
 class GuestList {
   public:
-    static constexpr int kMostInvitations = 1000;
-    static constexpr uint32_t kMostPeople = 64;  // per invitation
+    static constexpr int kMaxInvitations = 1000;
+    static constexpr uint32_t kMaxPeople = 64;  // per invitation
 
     // A file that is not there yet invites nobody. Throws UserError for one that cannot be read as a guest
     // list.

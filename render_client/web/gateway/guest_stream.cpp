@@ -7,7 +7,7 @@ namespace bonemill::gateway {
 namespace {
 
 constexpr size_t kEnvelope = 24;  // bytes around a payload, at most
-constexpr size_t kMostAnswers = 8;
+constexpr size_t kMaxAnswers = 8;
 constexpr std::chrono::seconds kOrderLasts{1};  // then the tool may be elsewhere
 
 // What is small and changes often comes before what is large. What comes later waits for the whole bone at
@@ -81,7 +81,7 @@ void GuestStream::note(const SessionChanges& changes) {
 }
 
 void GuestStream::answer(uint64_t sender, uint32_t sequence, Answer answer) {
-    if (answers_.size() < kMostAnswers) answers_.push_back({sender, sequence, std::move(answer)});
+    if (answers_.size() < kMaxAnswers) answers_.push_back({sender, sequence, std::move(answer)});
 }
 
 bool GuestStream::hasNews() const {
@@ -162,7 +162,7 @@ size_t GuestStream::addSmall(Samples& samples, size_t size, size_t most) {
 
 // What is few was changed together and is shown together; what is many comes by and by.
 size_t GuestStream::addNodes(Samples& samples, size_t size, size_t most) {
-    if (areNodesFew(std::min(kMostTogether, std::max(most, window_.bytes() / 2)))) {
+    if (areNodesFew(std::min(kMaxTogether, std::max(most, window_.bytes() / 2)))) {
         for (const uint32_t leaf : std::exchange(nodes_, {})) size += addNode(samples, leaf);
         order_.clear();
     }

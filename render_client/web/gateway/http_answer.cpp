@@ -9,7 +9,7 @@
 namespace bonemill::gateway {
 namespace {
 
-constexpr int kMostPath = 256;
+constexpr int kMaxPath = 256;
 constexpr size_t kAnswerHeaderBytes = 2048;
 constexpr size_t kAnswerPieceBytes = 16 << 10;
 constexpr int kPieceSeconds = 10;  // a reader that takes no piece within this is gone
@@ -57,7 +57,7 @@ class Headers {
 }  // namespace
 
 int beginAnswer(lws* connection, const StaticPages& pages, HttpAnswer& answer) {
-    std::array<char, kMostPath> path{};
+    std::array<char, kMaxPath> path{};
     const int length = lws_hdr_copy(connection, path.data(), int(path.size()), WSI_TOKEN_GET_URI);
     const StaticFile* found = length > 0 ? pages.find(path.data()) : nullptr;
     const bool is_get = lws_hdr_total_length(connection, WSI_TOKEN_GET_URI) > 0;

@@ -5,7 +5,7 @@
 namespace bonemill::gateway {
 namespace {
 
-constexpr size_t kMostArrivals = 256;  // that the gateway has not taken yet
+constexpr size_t kMaxArrivals = 256;  // that the gateway has not taken yet
 
 }  // namespace
 
@@ -13,7 +13,7 @@ RelayedGuests::RelayedGuests(const RelayPlace& relay, std::function<void()> wake
     : wake_(std::move(wake)), dialer_(relay, [this](Descriptor line, const PeerAddress& guest) {
           {
               const std::lock_guard lock(mutex_);
-              if (arrivals_.size() >= kMostArrivals) return;
+              if (arrivals_.size() >= kMaxArrivals) return;
               arrivals_.push_back({std::move(line), {textOf(guest), true}});
           }
           wake_();

@@ -7,7 +7,7 @@ namespace bonemill::gateway {
 namespace {
 
 constexpr double kAhead_s = 0.3;
-constexpr double kMostCredit_s = 0.25;
+constexpr double kMaxCredit_s = 0.25;
 constexpr double kRateFading = 0.9;  // per measurement
 // The way may have become longer; but what waits on it in a queue of our own making must not count much.
 constexpr std::chrono::seconds kTripForgotten{10};
@@ -23,18 +23,18 @@ double secondsOf(std::chrono::steady_clock::duration time) {
 SendWindow::SendWindow(double bytes_per_s, Clock::time_point now)
     : bytes_per_s_(bytes_per_s),
       trip_measured_(now),
-      credit_(bytes_per_s * kMostCredit_s),
+      credit_(bytes_per_s * kMaxCredit_s),
       credited_(now),
       progress_(now) {}
 
 bool SendWindow::isOpen(Clock::time_point now) {
-    credit_ = std::min(credit_ + bytes_per_s_ * secondsOf(now - credited_), bytes_per_s_ * kMostCredit_s);
+    credit_ = std::min(credit_ + bytes_per_s_ * secondsOf(now - credited_), bytes_per_s_ * kMaxCredit_s);
     credited_ = now;
     return credit_ > 0 && bytesUnderWay() < window_;
 }
 
 size_t SendWindow::frameBytes() const {
-    return std::clamp(window_ / 4, kLeastFrame, kMostFrame);
+    return std::clamp(window_ / 4, kMinFrame, kMaxFrame);
 }
 
 void SendWindow::sent(size_t bytes, bool has_more, Clock::time_point now) {
@@ -74,8 +74,8 @@ void SendWindow::measure(const Frame& frame, Clock::time_point now) {
                                            : std::max(rate, link_bytes_per_s_);
     if (!frame.is_link_busy && link_bytes_per_s_ <= rate) return;
     const double span_s = std::min(shortest_trip_s_, 1.0) + kAhead_s;
-    const double most = std::max(bytes_per_s_ * span_s, double(kLeast));
-    window_ = size_t(std::clamp(link_bytes_per_s_ * span_s, double(kLeast), most));
+    const double most = std::max(bytes_per_s_ * span_s, double(kMin));
+    window_ = size_t(std::clamp(link_bytes_per_s_ * span_s, double(kMin), most));
 }
 
 bool SendWindow::isStalled(Clock::time_point now) const {

@@ -14,10 +14,10 @@ namespace bonemill::gateway {
 class SendWindow {
   public:
     using Clock = std::chrono::steady_clock;
-    static constexpr size_t kFirst = 64 << 10, kLeast = 16 << 10;  // bytes ahead
+    static constexpr size_t kFirst = 64 << 10, kMin = 16 << 10;  // bytes ahead
     static constexpr std::chrono::seconds kLongestSilence{30};     // with bytes under way
-    static constexpr size_t kLeastFrame = 8 << 10,
-                            kMostFrame = 64 << 10;  // bytes that a frame is filled up to
+    static constexpr size_t kMinFrame = 8 << 10,
+                            kMaxFrame = 64 << 10;  // bytes that a frame is filled up to
 
     // At most so many bytes per second are sent on average.
     SendWindow(double bytes_per_s, Clock::time_point now);

@@ -55,7 +55,7 @@ StaticPages::StaticPages(const std::filesystem::path& folder) {
         (is_packed ? entry.gzip : entry.bytes) = contentOf(at->path());
         entry.type = typeOf(file);
         bytes += entry.bytes.size() + entry.gzip.size();
-        if (files_.size() > kMostFiles || bytes > kMostBytes)
+        if (files_.size() > kMaxFiles || bytes > kMaxBytes)
             throw UserError("--page " + folder.string() + ": is too large for a page");
     }
     std::erase_if(files_, [](const auto& file) { return file.second.bytes.empty(); });

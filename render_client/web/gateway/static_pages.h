@@ -16,7 +16,7 @@ struct StaticFile {
 
 class StaticPages {
   public:
-    static constexpr size_t kMostFiles = 256, kMostBytes = 64 << 20;
+    static constexpr size_t kMaxFiles = 256, kMaxBytes = 64 << 20;
 
     // Reads a folder; one that is not there leaves a page that says so. Throws UserError where it is too
     // large.

@@ -33,12 +33,12 @@ struct Relay::Line {
 
 namespace {
 
-constexpr int kMostEvents = 64;
-constexpr size_t kMostRead = 16384;
-constexpr size_t kMostAccepted = 32;  // in one round: others are to be served, too
+constexpr int kMaxEvents = 64;
+constexpr size_t kMaxRead = 16384;
+constexpr size_t kMaxAccepted = 32;  // in one round: others are to be served, too
 constexpr int kRound_ms = 100;
 constexpr size_t kSpare = 32;         // descriptors
-constexpr int kMostWrongSecrets = 5;  // in the log at once, which strangers must not fill
+constexpr int kMaxWrongSecrets = 5;  // in the log at once, which strangers must not fill
 constexpr int64_t kWrongSecretEvery_ns = 60'000'000'000;
 constexpr auto kNever = std::chrono::steady_clock::time_point::max();
 
@@ -48,7 +48,7 @@ Relay::Relay(const RelayOptions& options, const RelayBounds& bounds)
     : options_(options),
       bounds_(bounds),
       listener_(listenOn(options.address, options.port)),
-      wrong_secrets_(kMostWrongSecrets, kWrongSecretEvery_ns) {
+      wrong_secrets_(kMaxWrongSecrets, kWrongSecretEvery_ns) {
     port_ = portOf(listener_.get());
     // Some are always left: a listener that cannot accept would be asked again and again.
     bounds_.lines = std::min(bounds_.lines, allowDescriptors(bounds_.lines + kSpare) - kSpare);
@@ -62,9 +62,9 @@ Relay::Relay(const RelayOptions& options, const RelayBounds& bounds)
 Relay::~Relay() = default;
 
 void Relay::run(const std::function<bool()>& should_stop) {
-    std::array<epoll_event, kMostEvents> events;
+    std::array<epoll_event, kMaxEvents> events;
     while (!should_stop()) {
-        const int count = epoll_wait(epoll_.get(), events.data(), kMostEvents, kRound_ms);
+        const int count = epoll_wait(epoll_.get(), events.data(), kMaxEvents, kRound_ms);
         for (int i = 0; i < count; ++i) {
             if (events[size_t(i)].data.ptr == nullptr) {
                 acceptAll();
@@ -80,7 +80,7 @@ void Relay::run(const std::function<bool()>& should_stop) {
 }
 
 void Relay::acceptAll() {
-    for (size_t i = 0; i < kMostAccepted; ++i) {
+    for (size_t i = 0; i < kMaxAccepted; ++i) {
         PeerAddress address{};
         Descriptor socket = acceptFrom(listener_.get(), address);
         if (!socket) return;
@@ -233,7 +233,7 @@ void Relay::join(Line& gateway_side, const GuestId& guest) {
 }
 
 void Relay::pass(Line& line) {
-    std::array<char, kMostRead> buffer;
+    std::array<char, kMaxRead> buffer;
     Line* const partner = line.partner;
     if (!partner || partner->to_say.size() >= bounds_.bytes_under_way) return;
     const size_t most = std::min(buffer.size(), bounds_.bytes_under_way - partner->to_say.size());

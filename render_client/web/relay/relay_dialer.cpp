@@ -16,8 +16,8 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostDials = 32;  // at once
-constexpr size_t kMostAskedGuests = 1024;
+constexpr size_t kMaxDials = 32;  // at once
+constexpr size_t kMaxAskedGuests = 1024;
 constexpr std::chrono::seconds kToAnswer{5}, kToBeAccepted{10}, kToBePinged{30};
 constexpr int kDialRound_ms = 200;
 
@@ -59,7 +59,7 @@ void RelayDialer::run() {
             if (progress != Progress::kGoesOn) dials_.erase(here);
         }
         beginControl(now);
-        for (; control_ && !asked_.empty() && dials_.size() < kMostDials; asked_.pop_front())
+        for (; control_ && !asked_.empty() && dials_.size() < kMaxDials; asked_.pop_front())
             beginGuest(asked_.front(), now);
     }
 }
@@ -168,7 +168,7 @@ bool RelayDialer::hearControl(Clock::time_point now) {
         std::copy_n(id, guest.id.size(), guest.id.begin());
         std::copy_n(address, guest.address.size(), guest.address.begin());
         heard_.erase(0, kGuestCameBytes);
-        if (asked_.size() < kMostAskedGuests) asked_.push_back(guest);
+        if (asked_.size() < kMaxAskedGuests) asked_.push_back(guest);
     }
     return true;
 }

@@ -219,7 +219,7 @@ TEST(Topics, NotesReachLateClientsAndGoWithTheRun) {
         Publisher other({.domain = testDomain(), .session = testSession()});
         other.publishRemark(0, noteOf(9));
         other.removeRemark(0);
-        other.publishRemark(kMostRemarks, noteOf(5));
+        other.publishRemark(kMaxRemarks, noteOf(5));
         ASSERT_TRUE(watching.pollUntil([&] { return watching.subscriber.malformedSamples() == 1; }));
         EXPECT_TRUE(has_both(watching));
     }

@@ -36,8 +36,8 @@ constexpr double kVoxel = 0.125e-3;         // m
 constexpr double kBurr = 1e-3;              // m, its radius
 constexpr double kContactStiffness = 1e12;  // N/m³, of a scene that says nothing
 constexpr size_t kEnoughWindows = 8;        // of the rest
-constexpr int kMostSessions = 5;            // until a busy machine leaves enough of them
-constexpr double kMostLate = 0.1;           // of the ticks
+constexpr int kMaxSessions = 5;            // until a busy machine leaves enough of them
+constexpr double kMaxLate = 0.1;           // of the ticks
 constexpr uint32_t kUnstable =
     kFaultBadDevicePose | kFaultSolve | kFaultForceClamped | kFaultStalled | kFaultImplausibleDevice;
 
@@ -79,7 +79,7 @@ struct LiveRun {
     uint32_t faults = 0;              // of all ticks
     double late_share = 0;            // of the ticks, while engaged
 
-    bool isInTime() const { return late_share <= kMostLate; }
+    bool isInTime() const { return late_share <= kMaxLate; }
     bool hasRest() const { return isInTime() && rest.windows >= kEnoughWindows; }
     bool isQuiet() const { return hasRest() && rest.force_rms <= kQuietForce && rest.hand_rms <= kQuietHand; }
 };
@@ -116,7 +116,7 @@ class LiveLoop : public testing::Test {
     // The machine may be too busy for what is wanted of a session, but not every time.
     LiveRun sessionWith(bool (LiveRun::*is_wanted)() const, const LiveScene& scene) {
         LiveRun run;
-        for (int i = 0; i < kMostSessions && !(run.*is_wanted)() && !HasFailure(); ++i) run = session(scene);
+        for (int i = 0; i < kMaxSessions && !(run.*is_wanted)() && !HasFailure(); ++i) run = session(scene);
         return run;
     }
     LiveRun quietSession(const LiveScene& scene) { return sessionWith(&LiveRun::isQuiet, scene); }

@@ -7,7 +7,7 @@
 namespace bonemill::test {
 namespace {
 
-constexpr size_t kFewestRows = 50;  // of a window
+constexpr size_t kMinRows = 50;  // of a window
 
 Eigen::Vector3d vectorAt(const std::vector<double>& cells, size_t first) {
     return {cells.at(first), cells.at(first + 1), cells.at(first + 2)};
@@ -56,7 +56,7 @@ std::vector<Window> windowsOf(const std::vector<LiveRow>& rows, double from, dou
     };
     for (double t = from; t + kWindow <= until; t += kWindow) {
         const LiveRow *const begin = rowAt(t), *const end = rowAt(t + kWindow);
-        if (size_t(end - begin) >= kFewestRows) windows.push_back(windowOf(begin, end));
+        if (size_t(end - begin) >= kMinRows) windows.push_back(windowOf(begin, end));
     }
     return windows;
 }

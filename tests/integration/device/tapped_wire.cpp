@@ -82,7 +82,7 @@ std::vector<WirePacket> TappedWire::take() {
 
 void TappedWire::relay(const std::stop_token& stop) {
     makeThreadRealtime({});  // as far as the machine grants it, like those at its ends
-    std::array<std::byte, wire::kLargestPacket> buffer;
+    std::array<std::byte, wire::kMaxPacket> buffer;
     while (!stop.stop_requested()) {
         socket_.waitUntil(monotonicNowNs() + 20 * kNsPerMillisecond);
         wire::Endpoint source;

@@ -1,5 +1,5 @@
 // Guests see what the server shows, and the server hears them as the guest list knows them.
-#include "haptic_server/teaching/lessons/remark_book.h"
+#include "haptic_server/teaching/lessons/remark_list.h"
 #include "tests/integration/gateway/gateway_guest.h"
 
 namespace bonemill::gateway {
@@ -73,7 +73,7 @@ TEST(Gateway, PassesOnNotesAndStrokesAlsoToWhoComesLater) {
         heard = server.publisher.takeCommands();
         return !heard.empty();
     }));
-    RemarkBook book(VolumeGeometry{});
+    RemarkList book(VolumeGeometry{});
     ASSERT_EQ(book.add(heard[0], 12.5).outcome, topics::DONE);
     server.publisher.publishRemark(5, *book.takeChanges().at(0).remark);
     topics::Remark broken;

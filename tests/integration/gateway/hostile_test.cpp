@@ -171,7 +171,7 @@ TEST(HostileGuest, OneAddressDoesNotTakeThePlacesOfAllOthers) {
         guest->poll(std::chrono::milliseconds(0));
         open += !guest->socket.hasEnded();
     }
-    EXPECT_EQ(open, Gateway::kMostUnknown.of_address);
+    EXPECT_EQ(open, Gateway::kMaxUnknown.of_address);
 }
 
 // Counts those that are still open, and closes all.
@@ -207,7 +207,7 @@ TEST(HostileGuest, WhoSaysNoHelloMakesRoomForOthers) {
     const auto now = Gateway::Clock::now();
     const auto come = [&](int address) { return gateway.come({"192.0.2." + std::to_string(address)}, now); };
     Guest* const first = come(1);
-    for (size_t n = 1; n < Gateway::kMostUnknown.all; ++n) ASSERT_TRUE(come(int(1 + n % 4)));
+    for (size_t n = 1; n < Gateway::kMaxUnknown.all; ++n) ASSERT_TRUE(come(int(1 + n % 4)));
     EXPECT_FALSE(first->shouldClose(now));
     EXPECT_EQ(come(1), nullptr) << "it has its share";
     EXPECT_NE(come(9), nullptr);

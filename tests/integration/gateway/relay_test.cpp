@@ -94,7 +94,7 @@ TEST(RelayedGateway, SilentGuestsOfOneAddressKeepNobodyElseOut) {
     gateway.startGateway();
     ASSERT_TRUE(gateway.waitUntilReached());
     std::vector<std::unique_ptr<TestGuest>> silent;
-    for (size_t n = 0; n < Gateway::kMostUnknown.of_address + 4; ++n)
+    for (size_t n = 0; n < Gateway::kMaxUnknown.of_address + 4; ++n)
         silent.push_back(std::make_unique<TestGuest>(gateway.throughRelay()));
     const test::WireTap elsewhere(gateway.relayPort(), "127.0.0.2");
     TestGuest anna(gateway.at(elsewhere.port()), kRelayedToken, true),
@@ -106,7 +106,7 @@ TEST(RelayedGateway, SilentGuestsOfOneAddressKeepNobodyElseOut) {
         guest->poll(std::chrono::milliseconds(0));
         open += !guest->socket.hasEnded();
     }
-    EXPECT_LE(open, Gateway::kMostUnknown.of_address);
+    EXPECT_LE(open, Gateway::kMaxUnknown.of_address);
 }
 
 TEST(RelayedGateway, AClassOfThirtyGetsTheWholeModel) {

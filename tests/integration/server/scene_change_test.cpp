@@ -12,7 +12,7 @@
 
 #include "common/device_messages/device_state.h"
 #include "common/lesson_csv/attempts_csv.h"
-#include "haptic_server/server/session/attempt_keeper.h"
+#include "haptic_server/server/session/attempt_controller.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/process.h"
 
@@ -166,7 +166,7 @@ TEST_F(SceneChange, ReachesViewersAndTheHandAtOnceWithoutAStepOfForce) {
     ASSERT_TRUE(waitForBoth([](const SceneSubscriber& viewer) { return viewer.lesson()->is_running(); }));
     const double start_s = one_.subscriber.status()->session_s();
     ASSERT_TRUE(waitForBoth([&](const SceneSubscriber& viewer) {
-        return viewer.status()->session_s() > start_s + AttemptKeeper::kShortest;
+        return viewer.status()->session_s() > start_s + AttemptController::kShortest;
     }));
 
     const uint64_t epoch_of_a = one_.subscriber.epoch();

@@ -10,7 +10,7 @@ void LeafTurns::count(LeafId leaf, size_t patches) noexcept {
     const auto at = std::ranges::find(known, leaf, &Leaf::id);
     if (at != known.end())
         at->patches += patches;
-    else if (count_ < kMostLeaves)
+    else if (count_ < kMaxLeaves)
         leaves_[count_++] = {leaf, patches, 0};
 }
 
@@ -19,8 +19,8 @@ void LeafTurns::share(size_t turns) noexcept {
     std::ranges::sort(leaves, [](const Leaf& a, const Leaf& b) {
         return a.patches != b.patches ? a.patches > b.patches : a.id < b.id;
     });
-    std::array<size_t, kMostLeaves> patches{};
-    const auto open = std::span(patches).first(std::min(turns, kMostLeaves));
+    std::array<size_t, kMaxLeaves> patches{};
+    const auto open = std::span(patches).first(std::min(turns, kMaxLeaves));
     for (Leaf& leaf : leaves) {
         const auto least = std::ranges::min_element(open);
         *least += leaf.patches;

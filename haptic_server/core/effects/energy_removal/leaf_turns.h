@@ -12,7 +12,7 @@ namespace bonemill {
 class LeafTurns {
   public:
     // Leaves beyond these, and those that were not counted, take turns by their number.
-    static constexpr size_t kMostLeaves = 64;
+    static constexpr size_t kMaxLeaves = 64;
 
     void clear() noexcept { count_ = 0; }
     // The leaf has so many patches more.
@@ -28,7 +28,7 @@ class LeafTurns {
         size_t patches;
         size_t turn;
     };
-    std::array<Leaf, kMostLeaves> leaves_;  // the first count_
+    std::array<Leaf, kMaxLeaves> leaves_;  // the first count_
     size_t count_ = 0;
 };
 

@@ -42,7 +42,7 @@ class ProtectedStructures final : public HapticEffect {
     std::shared_ptr<const BoneProperties> properties_;
     std::shared_ptr<const DistanceField> field_;
     const BoneModel& bone_;
-    std::array<bool, kMostMaterials + 1> is_protected_{};
+    std::array<bool, kMaxMaterials + 1> is_protected_{};
     PlaceMarks is_damaged_;           // by place in properties_
     Eigen::Vector2i next_row_{0, 0};  // y, z: where the last tick's search ended
     size_t damaged_ = 0;              // voxels

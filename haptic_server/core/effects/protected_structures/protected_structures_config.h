@@ -16,7 +16,7 @@ struct ProtectedStructuresConfig {
          "mm",
          "burr's surface to the nearest structure; of no meaning with id 0",
          [](const EffectRecord& r) -> ColumnValue { return double(r.protected_distance) * kPerMillimetre; },
-         {RunSummary::kLeast, "protected_distance_min_mm", "nearest to a protected structure"},
+         {RunSummary::kMin, "protected_distance_min_mm", "nearest to a protected structure"},
          {"mm"},
          [](const EffectRecord& r) { return r.protected_id != 0; }},
         {"protected_force_n",

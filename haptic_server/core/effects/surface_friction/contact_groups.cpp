@@ -9,7 +9,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kSmallestBox = 1e-9;  // m: of contacts at one place
+constexpr double kMinBox = 1e-9;  // m: of contacts at one place
 
 }  // namespace
 
@@ -22,8 +22,8 @@ void ContactGroups::gather(const EffectTick& tick, double burr_share) noexcept {
         if (shareOf(n) > 0) all.extend(R_TV * tick.contacts[n].r_V.cast<double>());
     if (all.isEmpty()) return;
 
-    std::array<ContactGroup, kMost> boxes{};
-    const Vector3d per_box = kBoxesPerAxis / all.sizes().array().max(kSmallestBox);
+    std::array<ContactGroup, kMax> boxes{};
+    const Vector3d per_box = kBoxesPerAxis / all.sizes().array().max(kMinBox);
     for (size_t n = 0; n < tick.contacts.size(); ++n) {
         const SurfaceContact& contact = tick.contacts[n];
         const double force = shareOf(n) * double(contact.force);

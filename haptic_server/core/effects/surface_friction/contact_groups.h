@@ -21,7 +21,7 @@ struct ContactGroup {
 class ContactGroups {
   public:
     static constexpr int kBoxesPerAxis = 4;
-    static constexpr size_t kMost = kBoxesPerAxis * kBoxesPerAxis * kBoxesPerAxis;
+    static constexpr size_t kMax = kBoxesPerAxis * kBoxesPerAxis * kBoxesPerAxis;
 
     // Gathers the last tick's contacts: one on the burr with burr_share of its force, any other with all of
     // it. What has no force is left out.
@@ -32,7 +32,7 @@ class ContactGroups {
     double force() const noexcept { return force_; }  // N, of all
 
   private:
-    std::array<ContactGroup, kMost> groups_;
+    std::array<ContactGroup, kMax> groups_;
     size_t count_ = 0;
     double force_ = 0;
 };

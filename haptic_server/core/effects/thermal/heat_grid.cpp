@@ -15,11 +15,11 @@ constexpr double kLongestShare = 0.9 * kStableShare;
 constexpr double kShortestTurn = 0.02;  // s: quicker turns would show nobody more
 constexpr double kTurnsPerSecond = 4000;
 constexpr double kPoolShare = 0.8;  // of the bricks that could have their turn in time
-constexpr size_t kMostBricks = 1024, kMostDeadBricks = 16384;
+constexpr size_t kMostBricks = 1024, kMaxDeadBricks = 16384;
 constexpr size_t kLookupsPerStep = 4;  // of a brick's cubes in the volume
 constexpr size_t kLookupsOfHeat = 2;   // of them, that dead bone leaves to the bricks whose turn it is
-constexpr int64_t kMostBricksToRevisit = 512;
-constexpr size_t kMostDeadSeen = 256;  // bricks with dead cells that a step looks through for stale ones
+constexpr int64_t kMaxBricksToRevisit = 512;
+constexpr size_t kMaxDeadSeen = 256;  // bricks with dead cells that a step looks through for stale ones
 // They are in K: a brick whose border is warmer than that opens its neighbour; one that is cooler all over is
 // closed when it has been open for a while. Cold matters less.
 constexpr float kWarm = 0.01f, kCold = -2, kSettledCold = -0.5f;
@@ -56,7 +56,7 @@ HeatGrid::HeatGrid(const HeatConfig& config, const VoxelVolume& bone, double dt)
     const double in_time = kPoolShare * double(most_turns_) * longest_ / dt;
     pool_.resize(std::min({kMostBricks, size_t(std::max(1.0, in_time)), directory_.size()}));
     hottest_.resize(pool_.size());
-    dead_pool_.resize(std::min(kMostDeadBricks, directory_.size()));
+    dead_pool_.resize(std::min(kMaxDeadBricks, directory_.size()));
     for (size_t n = pool_.size(); n > 0; --n) free_.push_back(uint32_t(n - 1));
     active_.reserve(pool_.size());
     lookups_ = kLookupsPerStep;
@@ -163,7 +163,7 @@ void HeatGrid::noteChange(const IndexBox& voxels) noexcept {
         return Eigen::Vector3i(cell.unaryExpr([](int v) { return v >> kShift; }));
     };
     const IndexBox box{brickOf(voxels.min, -1), brickOf(voxels.max, +1)};
-    if (box.count() > kMostBricksToRevisit) return noteChangeEverywhere();
+    if (box.count() > kMaxBricksToRevisit) return noteChangeEverywhere();
     forEachIndex(box.clamped(Eigen::Vector3i::Zero(), bricks_.array() - 1),
                  [&](const Eigen::Vector3i& index) {
                      if (Brick* brick = find(index)) brick->is_stale = true;
@@ -198,7 +198,7 @@ void HeatGrid::markDeadStale(size_t first, size_t end) noexcept {
 
 // Dead cells whose bone is gone are not counted any more, whether their brick is open or not.
 void HeatGrid::reviewDead() noexcept {
-    for (size_t n = 0; n < kMostDeadSeen && stale_dead_ > 0 && lookups_ > kLookupsOfHeat; ++n) {
+    for (size_t n = 0; n < kMaxDeadSeen && stale_dead_ > 0 && lookups_ > kLookupsOfHeat; ++n) {
         next_dead_ = next_dead_ + 1 < dead_used_ ? next_dead_ + 1 : 0;
         DeadCells& dead = dead_pool_[next_dead_];
         if (!dead.is_stale) continue;

@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostSources = 256;  // in a tick; of more contacts every nth takes the heat of n, in turn
+constexpr size_t kMaxSources = 256;  // in a tick; of more contacts every nth takes the heat of n, in turn
 
 }  // namespace
 
@@ -21,7 +21,7 @@ void Thermal::putIn(const EffectTick& tick) noexcept {
     if (per_moment == 0) return;
     size_t count = 0;
     double chosen = 0;
-    const size_t every = tick.burr_load.contacts / kMostSources + 1;
+    const size_t every = tick.burr_load.contacts / kMaxSources + 1;
     const size_t first = turn_++ % every;
     const auto isChosen = [&](size_t n) { return n % every == first; };
     forEachBurrContact(tick, [&](const SurfaceContact& contact, const Eigen::Vector3d&, double rho) {

@@ -30,7 +30,7 @@ void VirtualFixture::begin(EffectTick& tick) noexcept {
 }
 
 EnergyTerm VirtualFixture::energy(const EffectTick&, const Pose& X_VT) const noexcept {
-    std::array<DistanceSample, BurrProbes::kMost> samples;
+    std::array<DistanceSample, BurrProbes::kMax> samples;
     size_t count = 0;
     double least = field_->reach();
     for (const BurrProbe& probe : burr_) {

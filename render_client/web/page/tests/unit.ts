@@ -9,7 +9,7 @@ import { read } from '../src/link/bounds';
 import { shownText, Malformed } from '../src/link/checks';
 import { CommandOutbox } from '../src/link/command_outbox';
 import { decodeMaterials, decodeNode, decoderReady } from '../src/link/node_codec';
-import { NodeBook } from '../src/link/node_book';
+import { NodeList } from '../src/link/node_list';
 import * as payloads from '../src/link/payloads';
 import { Placement } from '../src/link/place_node';
 import { kVertexBytes, Role, type CommandOrder, type StatusView } from '../src/shared/messages';
@@ -130,7 +130,7 @@ test('nothing in a payload passes unchecked', () => {
 });
 
 test('the newer epoch wins, then the newer revision, and there is an end to it', () => {
-  const book = new NodeBook();
+  const book = new NodeList();
   assert.ok(book.begins(5n) && !book.begins(5n) && !book.begins(4n));
   book.hold(7, 2, 100);
   assert.ok(book.isNews(7, 5n, 3) && !book.isNews(7, 5n, 2) && !book.isNews(8, 4n, 9));

@@ -64,7 +64,7 @@ TEST(TopicsFuzz, StructureMesh) {
         if (!parsed) return false;
         EXPECT_FALSE(parsed->mesh.isEmpty());
         EXPECT_EQ(parsed->mesh.leaf, 3u);
-        EXPECT_LE(parsed->mesh.vertices.size(), kMostStructureVertices);
+        EXPECT_LE(parsed->mesh.vertices.size(), kMaxStructureVertices);
         for (const uint32_t index : parsed->mesh.indices) EXPECT_LT(index, parsed->mesh.vertices.size());
         EXPECT_TRUE(parsed->mesh.origin.allFinite() && parsed->mesh.step.allFinite());
         EXPECT_TRUE(parsed->warning_distance > 0 && parsed->warning_distance <= 1);
@@ -152,10 +152,10 @@ TEST(TopicsFuzz, Remark) {
             EXPECT_TRUE(parsed->session_s() >= 0 && parsed->session_s() <= 1e9);
             EXPECT_LE(parsed->color(), 0xffffffu);
             EXPECT_LE(parsed->author().size(), 64u);
-            EXPECT_LE(lettersOf(parsed->note()), kMostNoteLetters);
+            EXPECT_LE(lettersOf(parsed->note()), kMaxNoteLetters);
             const int points = parsed->points_m_size() / 3;
             EXPECT_EQ(parsed->points_m_size() % 3, 0);
-            EXPECT_TRUE(parsed->note().empty() ? points >= 2 && points <= kMostRemarkPoints : points <= 1);
+            EXPECT_TRUE(parsed->note().empty() ? points >= 2 && points <= kMaxRemarkPoints : points <= 1);
             for (const float number : parsed->points_m()) EXPECT_LE(std::abs(number), 1e6f);
             return true;
         });
@@ -231,7 +231,7 @@ TEST(TopicsFuzz, HandPointer) {
         if (!wish) return false;
         EXPECT_EQ(wish->sender, 7u);
         EXPECT_TRUE(wish->X_WT.isFinite());
-        EXPECT_LE(wish->X_WT.position.norm(), kLargestDeviceReach);
+        EXPECT_LE(wish->X_WT.position.norm(), kMaxDeviceReach);
         EXPECT_NEAR(wish->X_WT.rotation.norm(), 1, 1e-9);
         EXPECT_LE(wish->buttons, uint32_t{kButtonRemove | kButtonAdd});
         return true;

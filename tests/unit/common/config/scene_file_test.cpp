@@ -265,7 +265,7 @@ TEST_F(SceneFile, toolsHaveNamesOfTheirOwn) {
     EXPECT_NE(refusal(volume + "tool { name: 'tool 2' } tool { }"), "accepted");
     EXPECT_EQ(refusal(volume + "tool { } tool { }"), "accepted");
     std::string many = volume;
-    for (int n = 0; n < kMostTools; ++n) many += "tool { }\n";
+    for (int n = 0; n < kMaxTools; ++n) many += "tool { }\n";
     EXPECT_EQ(refusal(many), "accepted");
     EXPECT_EQ(refusal(many + "tool { }"),
               "s.textproto:18: field `tool[16]` is one tool too many: a scene has at most 16");

@@ -120,15 +120,15 @@ TEST_F(DdsTest, InventedSendersOfAStreamTakeBoundedMemoryAndKeepOutNobody) {
     uint64_t heard = 0;
     const auto hear = [&](const HandPointerSample& one, const SampleInfo&) { heard = one.sender; };
     Writer<HandPointerSample> hostile(participant_), honest(participant_);
-    for (sample.sender = 1; sample.sender <= 2 * kMostStreamKeys; ++sample.sender) hostile.write(sample);
-    EXPECT_EQ(reader.take(10 * kMostStreamKeys, hear), size_t(kMostStreamKeys));
+    for (sample.sender = 1; sample.sender <= 2 * kMaxStreamKeys; ++sample.sender) hostile.write(sample);
+    EXPECT_EQ(reader.take(10 * kMaxStreamKeys, hear), size_t(kMaxStreamKeys));
     EXPECT_EQ(reader.take(1, hear), 0u);
     EXPECT_TRUE(honest.write(sample));
     EXPECT_EQ(reader.take(1, hear), 1u);
     EXPECT_EQ(heard, sample.sender);
     WaitSet wait_set(participant_);
     wait_set.add([&reader] { return reader.handle(); });
-    for (sample.sender = 1; sample.sender <= 2 * kMostStreamKeys; ++sample.sender) {
+    for (sample.sender = 1; sample.sender <= 2 * kMaxStreamKeys; ++sample.sender) {
         hostile.write(sample);
         if (sample.sender % 64 == 0) reader.take(64, hear);
     }
@@ -158,14 +158,14 @@ TEST_F(DdsTest, LogsAWriterThatDoesNotMatch) {
     description.qos.bestEffort();
     const AnyWriter writer(other, description);
     for (int i = 0; i < 1000 && sink->last_raw().empty(); ++i) std::this_thread::sleep_for(10ms);
-    for (uint64_t i = 0; i < 2 * kMostNamedMismatches; ++i) const AnyWriter more(other, description);
+    for (uint64_t i = 0; i < 2 * kMaxNamedMismatches; ++i) const AnyWriter more(other, description);
 
     spdlog::set_default_logger(logger_before);
     const auto lines = sink->last_formatted();
     ASSERT_FALSE(lines.empty());
     EXPECT_NE(lines[0].find("bonemill_node_mesh"), std::string::npos) << lines[0];
     EXPECT_EQ(writer.matchedReaders(), 0);
-    EXPECT_LE(lines.size(), kMostNamedMismatches) << "they must not fill the log";
+    EXPECT_LE(lines.size(), kMaxNamedMismatches) << "they must not fill the log";
 }
 
 TEST(Participant, RefusesADomainThatHasNoPorts) {

@@ -91,7 +91,7 @@ TEST(DensityCodec, RefusesWhatIsNoBrick) {
     EXPECT_FALSE(decoder.scanned(bytes, kEdge - 1));
     EXPECT_FALSE(decoder.scanned(bytes, kEdge + 1));
     EXPECT_FALSE(decoder.scanned(bytes, 0));
-    EXPECT_FALSE(decoder.scanned(bytes, kMostBrickEdge + 1));
+    EXPECT_FALSE(decoder.scanned(bytes, kMaxBrickEdge + 1));
     EXPECT_FALSE(decoder.scanned("", kEdge));
     EXPECT_FALSE(decoder.scanned(bytes.substr(0, bytes.size() - 1), kEdge));
     std::string shorter_ladder = bytes;

@@ -56,9 +56,9 @@ TEST(DeviceMessages, placeAndSpeedsMustBePossible) {
     struct {
         double (DeviceSample::*vector)[3];
         double most;
-    } const cases[] = {{&DeviceSample::p_DT, kLargestDeviceReach},
-                       {&DeviceSample::v_DT, kLargestDeviceSpeed},
-                       {&DeviceSample::w_DT, kLargestDeviceSpin}};
+    } const cases[] = {{&DeviceSample::p_DT, kMaxDeviceReach},
+                       {&DeviceSample::v_DT, kMaxDeviceSpeed},
+                       {&DeviceSample::w_DT, kMaxDeviceSpin}};
     for (const auto& [vector, most] : cases) {
         for (int i = 0; i < 3; ++i) {
             DeviceSample sample = restingSample();

@@ -76,7 +76,7 @@ TEST(McapFormat, TheCrcIsTheUsualOne) {
 TEST(McapFormat, AMessageLargerThanAChunkHasOneOfItsOwn) {
     mcap::Writer writer("bonemill", "test");
     writer.addChannel({1, 0, "large", "bytes"});
-    const std::string large(mcap::kMostChunk + 1, 'x');
+    const std::string large(mcap::kMaxChunk + 1, 'x');
     writer.addMessage(1, 1, "small");
     writer.addMessage(1, 2, large);
     writer.finish();
@@ -99,9 +99,9 @@ std::string fileOf(uint64_t channels, size_t schema_bytes) {
 
 // They pack well, and are kept.
 TEST(McapFormat, MoreSchemasAndChannelsThanAreKeptAreRefused) {
-    EXPECT_TRUE(readMcap(fileOf(mcap::kMostRecords - 1, 10)).reading.is_whole);
-    EXPECT_TRUE(readMcap(fileOf(1, mcap::kMostRecordBytes - 1000)).reading.is_whole);
-    for (const std::string& file : {fileOf(mcap::kMostRecords, 10), fileOf(1, mcap::kMostRecordBytes)}) {
+    EXPECT_TRUE(readMcap(fileOf(mcap::kMaxRecords - 1, 10)).reading.is_whole);
+    EXPECT_TRUE(readMcap(fileOf(1, mcap::kMaxRecordBytes - 1000)).reading.is_whole);
+    for (const std::string& file : {fileOf(mcap::kMaxRecords, 10), fileOf(1, mcap::kMaxRecordBytes)}) {
         const auto content = readMcap(file);
         EXPECT_EQ(content.reading.problem.rfind("there are too many schemas and channels", 0), 0u)
             << content.reading.problem;

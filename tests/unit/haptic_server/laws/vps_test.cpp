@@ -92,7 +92,7 @@ TEST(ToolPoints, LieOnTheToolAsDenselyAsAsked) {
     const ShapeField tool({CapsuleShape{{0, 0, 0}, {0, 20e-3, 0}, 0.5e-3}});
     for (const double spacing : {0.1e-3, 1e-5}) {
         const ToolPoints points(tool, spacing);
-        EXPECT_LE(points.count(), ToolPoints::kMost);
+        EXPECT_LE(points.count(), ToolPoints::kMax);
         const double area = 2 * M_PI * 0.5e-3 * 21e-3;
         const double per_cell = double(points.count()) * points.spacing() * points.spacing() / area;
         EXPECT_GT(per_cell, 1.0);

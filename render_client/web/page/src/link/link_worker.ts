@@ -7,7 +7,7 @@ import { demand, Malformed } from './checks';
 import { CommandOutbox } from './command_outbox';
 import { commandOf, announcementOf, HandSpeaker } from './speech';
 import { decodeNode, decoderReady, type DecodedNode } from './node_codec';
-import { NodeBook } from './node_book';
+import { NodeList } from './node_list';
 import * as payloads from './payloads';
 import { Placement } from './place_node';
 import { SessionSocket } from './session_socket';
@@ -19,7 +19,7 @@ const kMostKeys = 1024;  // viewers, remarks and pictures each
 const scope = self as unknown as { postMessage(message: FromLink, transfer?: Transferable[]): void };
 const post = (message: FromLink, transfer: Transferable[] = []) => scope.postMessage(message, transfer);
 
-const book = new NodeBook();
+const book = new NodeList();
 const outbox = new CommandOutbox();
 const keys = new Map<string, Set<string>>();
 let sender = '';

@@ -28,7 +28,7 @@ constexpr Endpoint kControllerPlace{kLoopback, 4040}, kHostPlace{kLoopback, 4041
 constexpr uint32_t kNoNumbers[] = {0x7fc00000, 0xff800000, 0x7ff80000, 0xfff00000};
 
 struct Datagram {
-    std::array<std::byte, kLargestPacket> bytes{};
+    std::array<std::byte, kMaxPacket> bytes{};
     size_t size = 0;
     std::span<const std::byte> content() const { return std::span(bytes).first(size); }
 };
@@ -87,7 +87,7 @@ class Damage {
                     std::memcpy(&d.bytes[place / 4 * 4], &kNoNumbers[below(4)], 4);
                     break;
                 case 3:
-                    if (below(8) == 0) d.size = 1 + below(kLargestPacket);
+                    if (below(8) == 0) d.size = 1 + below(kMaxPacket);
                     break;
                 default:  // the numbers of the session: a few steps on
                     d.bytes[below(2) ? 12 : 16] ^= std::byte(below(16));
@@ -104,7 +104,7 @@ class Damage {
   private:
     Datagram noise() {
         Datagram d;
-        d.size = 1 + below(kLargestPacket);
+        d.size = 1 + below(kMaxPacket);
         for (size_t i = 0; i < d.size; ++i) d.bytes[i] = std::byte(random_());
         return d;
     }

@@ -99,7 +99,7 @@ struct Path {
 // The solve is without damping and converged, so that only what the contact itself gives or takes is left.
 AccuracySettings converged(Preset preset) {
     AccuracySettings settings = presetSettings(preset);
-    settings.iterations = AccuracySettings::kMostIterations;
+    settings.iterations = AccuracySettings::kMaxIterations;
     return settings;
 }
 
@@ -129,9 +129,9 @@ struct PathEnergy {
 };
 
 // A tool that snaps may need more than one solve to come to rest again.
-constexpr int kMostSolves = 50;
+constexpr int kMaxSolves = 50;
 bool hasEnded(const SpoStep& step) {
-    return int(step.iterations) < AccuracySettings::kMostIterations && !step.is_motion_clamped;
+    return int(step.iterations) < AccuracySettings::kMaxIterations && !step.is_motion_clamped;
 }
 
 PathEnergy run(const ContactScene& scene, Preset preset, const Path& path) {
@@ -147,7 +147,7 @@ PathEnergy run(const ContactScene& scene, Preset preset, const Path& path) {
     for (int tick = 0; tick < path.ticks(); ++tick) {
         const Pose device = path.at(tick);
         SpoStep step;
-        for (int n = 0; n == 0 || (n < kMostSolves && !hasEnded(step)); ++n) {
+        for (int n = 0; n == 0 || (n < kMaxSolves && !hasEnded(step)); ++n) {
             step = model.advance(spo, device);
             spo = step.X_VT;
         }

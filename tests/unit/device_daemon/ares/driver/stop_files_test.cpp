@@ -31,7 +31,7 @@ TEST(StopFiles, TheNewestStayAndWhatIsNotOneStaysToo) {
     size_t stops = 0;
     for (const auto& entry : fs::directory_iterator(folder.path()))
         stops += entry.is_regular_file() && !entry.is_symlink();
-    EXPECT_EQ(stops, kMostStopFiles + 2) << "and the user's own";
+    EXPECT_EQ(stops, kMaxStopFiles + 2) << "and the user's own";
     EXPECT_FALSE(fs::exists(folder / stopName(20)));
     EXPECT_TRUE(fs::exists(folder / stopName(21)));
     EXPECT_TRUE(fs::exists(folder / "notes.csv"));

@@ -42,7 +42,7 @@ TYPED_TEST(Codec, RefusesEveryFlippedBitAndEveryOtherLength) {
         bytes[bit / 8] ^= std::byte(1u << bit % 8);
         EXPECT_FALSE(open<TypeParam>(bytes)) << bit;
     }
-    for (size_t size = 0; size < kLargestPacket; ++size) {
+    for (size_t size = 0; size < kMaxPacket; ++size) {
         test::Bytes bytes = valid;
         bytes.resize(size);
         EXPECT_EQ(open<TypeParam>(bytes).has_value(), size == valid.size()) << size;

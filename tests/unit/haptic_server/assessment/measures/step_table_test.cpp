@@ -18,8 +18,8 @@ TEST(StepTable, ALongAttemptGetsWiderSteps) {
     StepTable table(1);
     constexpr int kSeconds = 24 * 3600;
     for (int n = 0; n < kSeconds; ++n) table.add(n, {.time = 1, .removed = 2, .distance = double(n)});
-    EXPECT_LE(table.rows().size(), StepTable::kMostRows);
-    EXPECT_GT(table.rows().size(), StepTable::kMostRows / 2);
+    EXPECT_LE(table.rows().size(), StepTable::kMaxRows);
+    EXPECT_GT(table.rows().size(), StepTable::kMaxRows / 2);
     EXPECT_EQ(table.step(), 64);
     double time = 0, removed = 0;
     for (size_t row = 0; row < table.rows().size(); ++row) {
@@ -35,7 +35,7 @@ TEST(StepTable, AStepMayBeJumpedOver) {
     table.add(0.5e-12, {.time = 1});
     table.add(7.5, {.time = 1});  // very much at once
     table.add(0, {.time = 1});    // belongs to the newest
-    EXPECT_LE(table.rows().size(), StepTable::kMostRows);
+    EXPECT_LE(table.rows().size(), StepTable::kMaxRows);
     EXPECT_EQ(table.rows().front().time, 1);
     EXPECT_EQ(table.rows().back().time, 2);
 }

@@ -100,12 +100,12 @@ TEST(Strokes, AForceBetweenTheLimitsNeitherBeginsNorEndsAContact) {
 TEST(StrokeList, KeepsABoundedNumberAndCountsAll) {
     StrokeList strokes;
     StrokeMeasures stroke;
-    for (size_t n = 0; n < StrokeList::kMostKept + 10; ++n) {
+    for (size_t n = 0; n < StrokeList::kMaxKept + 10; ++n) {
         stroke.length = double(n % 3);
         strokes.add(stroke);
     }
-    EXPECT_EQ(strokes.count(), StrokeList::kMostKept + 10);
-    EXPECT_EQ(strokes.kept().size(), StrokeList::kMostKept);
+    EXPECT_EQ(strokes.count(), StrokeList::kMaxKept + 10);
+    EXPECT_EQ(strokes.kept().size(), StrokeList::kMaxKept);
     EXPECT_EQ(strokes.median(&StrokeMeasures::length), 1);
     EXPECT_TRUE(std::isnan(strokes.median(&StrokeMeasures::sparc)));
 }

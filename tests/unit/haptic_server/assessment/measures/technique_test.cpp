@@ -206,9 +206,9 @@ TEST(Technique, AnHourTakesNoMoreMemoryThanItsTables) {
     RecordProperty("ns_per_tick", int(1e9 * double(spent) / CLOCKS_PER_SEC / ticks));
     RecordProperty("bytes", int(sizeof(Technique)));
     const std::vector<SeriesTable> tables = technique.series();
-    EXPECT_LE(tables[0].index.values.size(), StepTable::kMostRows);
+    EXPECT_LE(tables[0].index.values.size(), StepTable::kMaxRows);
     EXPECT_NEAR(tables[0].index.values.back(), 3600, 4);
-    EXPECT_LE(technique.moments().size(), WorstMoments::kMostKept);
+    EXPECT_LE(technique.moments().size(), WorstMoments::kMaxKept);
     EXPECT_LE(sizeof(Technique), size_t(512) << 10);
     EXPECT_NEAR(valueOf(technique.figures(), "time.contact"), 2400, 10);
     EXPECT_GT(technique.strokes().strokes().count(), 6000);

@@ -189,8 +189,8 @@ TEST(BoneHistory, LeavesAsScannedCostNothingAndUnchangedOnesAreShared) {
 
 TEST(BoneHistory, TheOldestCheckpointGoesAndIdsAreNotGivenAgain) {
     MilledBall ball;
-    for (size_t n = 0; n < Checkpoints::kMost + 2; ++n) ball.checkpoints.save(double(n));
-    EXPECT_EQ(ball.checkpoints.kept().size(), Checkpoints::kMost);
+    for (size_t n = 0; n < Checkpoints::kMax + 2; ++n) ball.checkpoints.save(double(n));
+    EXPECT_EQ(ball.checkpoints.kept().size(), Checkpoints::kMax);
     EXPECT_EQ(ball.checkpoints.kept().front().id, 3u);
     EXPECT_EQ(ball.checkpoints.kept().front().session_s, 2);
     EXPECT_FALSE(ball.checkpoints.restore(2));
@@ -207,7 +207,7 @@ TEST(BoneHistory, ADroppedCheckpointIsStillReached) {
     ball.groove(13e-3);
     ball.checkpoints.restore(1);
     ASSERT_TRUE(ball.restoreSome());
-    for (size_t n = 0; n < Checkpoints::kMost; ++n) ball.checkpoints.save(1);
+    for (size_t n = 0; n < Checkpoints::kMax; ++n) ball.checkpoints.save(1);
     EXPECT_FALSE(ball.checkpoints.restore(1));
     ball.restoreAll();
     EXPECT_EQ(ball.densities(), first);

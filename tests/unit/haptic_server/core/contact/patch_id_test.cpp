@@ -5,7 +5,7 @@
 namespace bonemill {
 namespace {
 
-constexpr int kLast = BlockKey::kMostPerAxis - 1;
+constexpr int kLast = BlockKey::kMaxPerAxis - 1;
 
 TEST(BlockKey, GivesBackTheIndexThatItWasMadeOf) {
     for (const Eigen::Vector3i& index :

@@ -51,7 +51,7 @@ TEST_F(ContactGroupsTest, KeepForceMomentAndWhatATranslationStretches) {
     contacts.giveTo(bench.tick);
     for (const double share : {0.0, 0.3, 1.0}) {
         groups.gather(bench.tick, share);
-        EXPECT_LE(groups.groups().size(), ContactGroups::kMost);
+        EXPECT_LE(groups.groups().size(), ContactGroups::kMax);
         const Sums wanted = sumsOf(share);
         Sums sums;
         for (const ContactGroup& group : groups.groups()) {

@@ -34,7 +34,7 @@ TEST(LeafTurns, NoTickHasMoreThanAnotherByMoreThanTheFullestLeaf) {
     std::mt19937 random(11);
     for (int round = 0; round < 2000; ++round) {
         const size_t shares = 1 + random() % 8;
-        std::vector<size_t> patches(1 + random() % LeafTurns::kMostLeaves);
+        std::vector<size_t> patches(1 + random() % LeafTurns::kMaxLeaves);
         LeafTurns turns;
         for (size_t n = 0; n < patches.size(); ++n)
             turns.count(LeafId(3 * n), patches[n] = 1 + random() % 400);
@@ -52,9 +52,9 @@ TEST(LeafTurns, NoTickHasMoreThanAnotherByMoreThanTheFullestLeaf) {
 
 TEST(LeafTurns, MoreLeavesThanThereIsRoomForStillHaveATick) {
     LeafTurns turns;
-    for (LeafId leaf = 0; leaf < 2 * LeafTurns::kMostLeaves; ++leaf) turns.count(leaf, 1);
+    for (LeafId leaf = 0; leaf < 2 * LeafTurns::kMaxLeaves; ++leaf) turns.count(leaf, 1);
     turns.share(4);
-    for (LeafId leaf = 0; leaf < 2 * LeafTurns::kMostLeaves; ++leaf) EXPECT_LT(turns.turnOf(leaf, 4), 4u);
+    for (LeafId leaf = 0; leaf < 2 * LeafTurns::kMaxLeaves; ++leaf) EXPECT_LT(turns.turnOf(leaf, 4), 4u);
 }
 
 }  // namespace

@@ -189,7 +189,7 @@ TEST(VirtualFixture, ClosedPathsOfTheHandGainNoEnergy) {
         const SpoTool tool{&scene.tool, burrOf(BurrKind::kBall), 50};
         GradientModel model(config, {scene.bone.volume, scene.bone.lattice, scene.bone.shell}, tool, 1e-3);
         AccuracySettings settings = presetSettings(Preset::kBalanced);
-        settings.iterations = AccuracySettings::kMostIterations;
+        settings.iterations = AccuracySettings::kMaxIterations;
         model.setAccuracy(settings);
         model.setEffects(host.weights(), host.energy());
         constexpr int kTicks = 8000;

@@ -49,7 +49,7 @@ double slopeOf(const VoxelVolume& volume) {
     return std::min(iso, kMaxDensity - iso) / volume.spacing().maxCoeff();
 }
 double limitAt(const VoxelVolume& volume, double d, int direction) {
-    const bool is_far = d >= BurrLimit::kLargestReach * volume.spacing().maxCoeff();
+    const bool is_far = d >= BurrLimit::kMaxReach * volume.spacing().maxCoeff();
     if (is_far) return direction < 0 ? kMaxDensity : 0;
     return std::clamp(volume.iso() - direction * slopeOf(volume) * d, 0.0, double(kMaxDensity));
 }

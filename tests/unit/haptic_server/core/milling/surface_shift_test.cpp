@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double kEnergy = 0.4e9;  // J/m³
 constexpr double kReach = 1.2e-3;  // m
-constexpr size_t kMostCells = 1'000'000;
+constexpr size_t kMaxCells = 1'000'000;
 
 struct Plane {
     Vector3d point{2.51e-3, 2.48e-3, 2.53e-3}, normal;
@@ -52,7 +52,7 @@ bool isOfPlane(const BoneModel& bone, const Vector3d& p) {
 
 // The surface is lowered everywhere within kReach of the plane's point by this much, in so many ticks.
 double lower(BoneModel& bone, const Plane& plane, double recession, int ticks) {
-    SurfaceShift shift(bone, 1.5 * kReach, 65536, kMostCells);
+    SurfaceShift shift(bone, 1.5 * kReach, 65536, kMaxCells);
     const SpecificEnergy u(uniform(), nullptr, bone.volume.iso());
     double spent = 0;
     for (int n = 0; n < ticks; ++n) {
@@ -113,7 +113,7 @@ TEST(SurfaceShift, MovesNoFartherThanAQuarterOfAVoxelOrTheDepth) {
     const Plane plane{.normal = Vector3d::UnitZ()};
     for (const double depth : {1e-3, 5e-6}) {
         BoneModel bone = halfSpace(plane, Vector3d::Constant(0.125e-3), 1);
-        SurfaceShift shift(bone, 1.5 * kReach, 65536, kMostCells);
+        SurfaceShift shift(bone, 1.5 * kReach, 65536, kMaxCells);
         shift.begin(bone, plane.point);
         forEachPoint(bone, [&](const Vector3d& p, double, PatchId patch) {
             if (plane.sideways(p) < kReach && isOfPlane(bone, p)) shift.add(bone, patch, 1, depth);
@@ -125,7 +125,7 @@ TEST(SurfaceShift, MovesNoFartherThanAQuarterOfAVoxelOrTheDepth) {
             if (plane.sideways(p) < kReach / 2 && isOfPlane(bone, p))
                 lowest = std::min(lowest, plane.heightOf(p));
         });
-        EXPECT_NEAR(lowest, -std::min(depth, SurfaceShift::kMostShift * 0.125e-3), 0.3e-6);
+        EXPECT_NEAR(lowest, -std::min(depth, SurfaceShift::kMaxShift * 0.125e-3), 0.3e-6);
     }
 }
 

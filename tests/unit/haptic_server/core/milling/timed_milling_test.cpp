@@ -92,9 +92,9 @@ TEST(TimedMilling, WorksAtAndBeyondTheBorder) {
 
 // Bricks that a tick has no time for come in the next ones, and in the end nothing is different.
 TEST(TimedMilling, ATickWithTooMuchToDoLeavesTheRestForTheNext) {
-    constexpr size_t kMostCells = 1500;
+    constexpr size_t kMaxCells = 1500;
     BoneModel bone = solidBlock(), at_once = solidBlock();
-    TimedMilling milling({.removal_rate = 1e9, .most_cells = kMostCells}, bone.volume, bone.lattice,
+    TimedMilling milling({.removal_rate = 1e9, .most_cells = kMaxCells}, bone.volume, bone.lattice,
                          5 * kVoxel * 2);
     TimedMilling whole({.removal_rate = 1e9}, at_once.volume, at_once.lattice, 5 * kVoxel * 2);
     const Eigen::Vector3d center(8.1e-3, 7.9e-3, 8.3e-3);
@@ -103,7 +103,7 @@ TEST(TimedMilling, ATickWithTooMuchToDoLeavesTheRestForTheNext) {
     for (int n = 0; n < 20; ++n) {
         const MillingResult result = milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
         ticks_cut_short += result.is_cut_short;
-        EXPECT_LE(result.removed_voxels, kMostCells);
+        EXPECT_LE(result.removed_voxels, kMaxCells);
         if (n == 0) {
             EXPECT_GT(result.removed_voxels, 0u);
         }

@@ -21,10 +21,10 @@ ContactScene flatScene(const Vector3d& normal = Vector3d::UnitZ()) {
             {.levels = {{1}, {2}}}};
 }
 
-constexpr double kMostForce = 12;  // N, of the coupling
+constexpr double kMaxForce = 12;  // N, of the coupling
 
 SpoTool toolOf(const ContactScene& scene, double radius = kRadius) {
-    return {&scene.tool, {.radius = radius}, kMostForce};
+    return {&scene.tool, {.radius = radius}, kMaxForce};
 }
 
 // Runs until the tool rests.
@@ -45,7 +45,7 @@ TEST(GradientModel, SettlesWhereCouplingAndContactBalance) {
     const ContactScene scene = flatScene();
     const GradientConfig config{};
     const double kappa = config.contact.stiffness_per_area, k = config.coupling.translation_stiffness;
-    const double most = kMostForce;
+    const double most = kMaxForce;
     for (const Preset preset : {Preset::kBalanced, Preset::kExact})
         for (const double depth : {0.2e-3, 1e-3, 3e-3}) {
             GradientModel model(config, scene.world(), toolOf(scene), 1e-3);

@@ -16,7 +16,7 @@ using Records = std::vector<TickRecord>;
 
 constexpr double kTranslationStiffness = 3000;  // N/m, of both laws' coupling
 constexpr double kSaturationForce = 50;         // N
-constexpr double kMostMotion = 0.5e-3;          // m per tick: 0.5 m/s
+constexpr double kMaxMotion = 0.5e-3;          // m per tick: 0.5 m/s
 
 Eigen::Vector3d forceOf(const TickRecord& r) {
     return Eigen::Vector3d(r.f_hand_W);
@@ -125,7 +125,7 @@ TEST(AccuracySwitch, WhileMillingTheForceFollowsTheToolAndHasNoPeaks) {
         const TickRecord &before = records[n - 1], &now = records[n];
         const double tool = (toolOf(now) - toolOf(before)).norm(),
                      device = (deviceOf(now) - deviceOf(before)).norm();
-        EXPECT_LE(tool, kMostMotion * (1 + 1e-9)) << n;
+        EXPECT_LE(tool, kMaxMotion * (1 + 1e-9)) << n;
         // The thesis' spring k s and the saturating one, F_m tanh(k s / F_m), differ by (k s)³ / (3 F_m²)
         // at most.
         const double between_laws =

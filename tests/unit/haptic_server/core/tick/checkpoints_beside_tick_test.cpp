@@ -101,7 +101,7 @@ TEST(CheckpointsBesideTick, EachIsTheBoneBetweenTwoTicks) {
     Threads threads;
     threads.run([&](int n) { threads.ball.checkpoints.save(n); });
     EXPECT_GT(threads.io.removed, 100u);
-    ASSERT_EQ(threads.ball.checkpoints.kept().size(), Checkpoints::kMost);
+    ASSERT_EQ(threads.ball.checkpoints.kept().size(), Checkpoints::kMax);
     const std::set<uint64_t> states(threads.io.states.begin(), threads.io.states.end());
     std::set<uint64_t> found;
     for (const Checkpoints::Checkpoint& checkpoint : threads.ball.checkpoints.kept()) {

@@ -12,8 +12,8 @@
 namespace bonemill::test {
 namespace {
 
-constexpr double kMostJolt = 0.3;      // N per tick
-constexpr double kMostRecovery = 0.5;  // s
+constexpr double kMaxJolt = 0.3;      // N per tick
+constexpr double kMaxRecovery = 0.5;  // s
 
 struct JoltTrial {
     JoltEvent event;
@@ -28,9 +28,9 @@ class Jolts : public testing::TestWithParam<JoltTrial> {};
 TEST_P(Jolts, AreNotFeltAndPassSoon) {
     const JoltFigures figures = GetParam().event.run(GetParam().variant);
     EXPECT_TRUE(figures.is_finite);
-    EXPECT_LE(figures.jolt, kMostJolt);
+    EXPECT_LE(figures.jolt, kMaxJolt);
     EXPECT_TRUE(figures.on_side);
-    EXPECT_LE(figures.recovery, kMostRecovery);
+    EXPECT_LE(figures.recovery, kMaxRecovery);
 }
 
 // Every event with the default preset, and with the other two those in which the contact itself decides.

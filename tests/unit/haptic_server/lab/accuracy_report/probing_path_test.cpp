@@ -87,7 +87,7 @@ TEST(ProbingPlaces, AreOnTheScenariosWayAndBeside) {
     TouchProbe probe(bone, tool);
     const auto places = findProbingPlaces(wayDown(), bone, test::kBurr, probe);
     ASSERT_GE(places.size(), 3u);
-    ASSERT_LE(places.size(), kMostPlaces);
+    ASSERT_LE(places.size(), kMaxPlaces);
     EXPECT_NEAR(places[0].X_WT.position.x(), 3e-3, 1e-9);
     EXPECT_NEAR(places[0].X_WT.position.z(), 4e-3, 5e-6);
     for (const ProbingPlace& place : places) {

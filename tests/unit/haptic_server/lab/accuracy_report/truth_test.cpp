@@ -32,7 +32,7 @@ TEST(Truth, RestingBurrOnAPlaneHasTheForceAndDepthOfTheClosedForm) {
     const auto truth = computeTruth(strokes, tick, bone, probe, 2);
     ASSERT_EQ(truth.size(), 2u);
     for (size_t n = 0; n < truth.size(); ++n) {
-        EXPECT_EQ(truth[n].refinement, kLeastRefinement);
+        EXPECT_EQ(truth[n].refinement, kMinRefinement);
         ASSERT_EQ(truth[n].answers.size(), strokes[n].device.size());
         const double depth = depthUnderSpring(tick, strokes[n].deepest);
         const double force = forceOnSphere(tick.gradient.contact.stiffness_per_area, test::kBurr, depth);
@@ -46,10 +46,10 @@ TEST(Truth, RestingBurrOnAPlaneHasTheForceAndDepthOfTheClosedForm) {
 
 TEST(Truth, CoarserVoxelsAreRefinedMore) {
     const FixedTickConfig tick;
-    EXPECT_EQ(wantedRefinement(0.1e-3, tick), kLeastRefinement);
-    EXPECT_EQ(wantedRefinement(5e-3, tick), kMostRefinement);
+    EXPECT_EQ(wantedRefinement(0.1e-3, tick), kMinRefinement);
+    EXPECT_EQ(wantedRefinement(5e-3, tick), kMaxRefinement);
     const int refinement = wantedRefinement(0.5e-3, tick);
-    EXPECT_GT(refinement, kLeastRefinement);
+    EXPECT_GT(refinement, kMinRefinement);
     const double width = contactWidth(tick.gradient.contact.stiffness_per_area, test::kBurr, 1);
     EXPECT_GE(width / (0.5e-3 / refinement), 8);
     EXPECT_LT(width / (0.5e-3 / (refinement - 1)), 8);
@@ -70,7 +70,7 @@ TEST(Truth, IsThatOfTheWholeBone) {
     const auto truth = computeTruth(strokes, tick, bone, probe, 2);
 
     BoneModel whole =
-        test::boneOf(refinedPart(bone.volume, {{-1, -1, -1}, bone.volume.dims()}, kLeastRefinement));
+        test::boneOf(refinedPart(bone.volume, {{-1, -1, -1}, bone.volume.dims()}, kMinRefinement));
     tick.accuracy = truthSettings();
     for (size_t n = 0; n < strokes.size(); ++n) {
         const auto oracle = answersOf(runPath(tick, whole, inputsOf(strokes[n].device, tick.dt)));

@@ -63,7 +63,7 @@ std::vector<JournalTick> thereAndBack(const std::vector<JournalTick>& ticks) {
 }
 
 TEST(InputColumns, GiveEveryTickBackToTheBit) {
-    const auto ticks = ticksOf(test::recordedTicks(kMostTicksPerInputs));
+    const auto ticks = ticksOf(test::recordedTicks(kMaxTicksPerInputs));
     expectSame(thereAndBack(ticks), ticks);
     const std::vector<JournalTick> later(ticks.begin() + 500, ticks.begin() + 601);
     expectSame(thereAndBack(later), later);

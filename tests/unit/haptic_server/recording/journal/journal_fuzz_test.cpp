@@ -58,11 +58,11 @@ TEST(JournalFuzz, AnyMessagesAreReadOrRefused) {
         std::ofstream(path, std::ios::binary) << writer.take();
         try {
             const JournalContent content = readJournalContent(path, KeepInputs::kYes);
-            EXPECT_LE(content.ticks, 5 * kMostTicksPerInputs);
+            EXPECT_LE(content.ticks, 5 * kMaxTicksPerInputs);
             for (const journal::Inputs& inputs : content.inputs) {
                 std::vector<JournalTick> ticks;
                 decodeInputs(inputs, ticks);
-                EXPECT_LE(ticks.size(), kMostTicksPerInputs);
+                EXPECT_LE(ticks.size(), kMaxTicksPerInputs);
             }
             ++read;
         } catch (const UserError&) {

@@ -31,7 +31,7 @@ TEST(DeviceHistory, ADeviceThatComesAndGoesWithoutEndIsOnlyCounted) {
     DeviceHistory history;
     for (int n = 0; n < 10'000; ++n)
         history.add(n, statusOf(n % 2 ? SafetyState::kReady : SafetyState::kPaused));
-    EXPECT_EQ(history.kept().size(), DeviceHistory::kMostKept);
+    EXPECT_EQ(history.kept().size(), DeviceHistory::kMaxKept);
     EXPECT_EQ(history.count(), 10'000u);
 }
 

@@ -22,8 +22,8 @@ TEST(Keyframes, TheLastOneThatIsNotBehind) {
 }
 
 TEST(Keyframes, ThinOutWhereTheyTakeTooMuchAndKeepTheFirstOne) {
-    constexpr size_t kMost = 64 * 1000;
-    Keyframes keyframes({{0, nullptr}}, kMost * sizeof(Density));
+    constexpr size_t kMax = 64 * 1000;
+    Keyframes keyframes({{0, nullptr}}, kMax * sizeof(Density));
     for (uint64_t tick = 1; tick < 2000; ++tick) keyframes.add({tick, boneOf(1000)});
     EXPECT_LT(keyframes.size(), 200u);
     EXPECT_GT(keyframes.size(), 30u);

@@ -146,7 +146,7 @@ TEST_F(DeviceLinkIoTest, ALateTickLivesThroughThePeriodsBeforeIt) {
     daemon_.writeSample(sampleAt(0));
     ASSERT_TRUE(io.read(input));
     EXPECT_GE(input.periods, 6);
-    EXPECT_LE(input.periods, LivedPeriods::kMostNs / config_.period_ns);
+    EXPECT_LE(input.periods, LivedPeriods::kMaxNs / config_.period_ns);
 }
 
 // The device says how far it reaches; before it has, ten metres are believed.
@@ -271,11 +271,11 @@ TEST_F(DeviceLinkIoTest, AFloodOfSamplesDoesNotHurryTheTick) {
         for (uint64_t n = 0; !is_over; ++n)
             daemon_.writeSample(sampleAt(n % 3 ? 0.001 : std::numeric_limits<double>::quiet_NaN()));
     });
-    constexpr int kTicks = 100, kMostTicks = 20'000;  // on a busy machine the flood may be late
+    constexpr int kTicks = 100, kMaxTicks = 20'000;  // on a busy machine the flood may be late
     int64_t first = 0, last = 0;
     uint32_t faults = 0;
     int ticks = 0;
-    for (int tick = 0; tick < kTicks || (!(faults & kFaultEarlySamples) && tick < kMostTicks); ++tick) {
+    for (int tick = 0; tick < kTicks || (!(faults & kFaultEarlySamples) && tick < kMaxTicks); ++tick) {
         DeviceInput input;
         ASSERT_TRUE(io.read(input));
         if (tick > 0) {

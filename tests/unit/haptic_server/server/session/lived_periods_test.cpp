@@ -52,7 +52,7 @@ TEST(LivedPeriods, AreBoundedAfterALongBreak) {
         lived.begin(now);
         slow.begin(now);
     }
-    EXPECT_EQ(lived.begin(10'000'000'000), LivedPeriods::kMostNs / kPeriodNs);
+    EXPECT_EQ(lived.begin(10'000'000'000), LivedPeriods::kMaxNs / kPeriodNs);
     EXPECT_EQ(lived.begin(10'001'000'000), 1);
     EXPECT_EQ(slow.begin(10'000'000'000), 1);
 }

@@ -47,7 +47,7 @@ TEST_F(SceneFolder, SaysWhatATraineeWantsToKnow) {
 TEST_F(SceneFolder, ABrokenSceneIsListedWithItsProblem) {
     write("bad.textproto", "volume { pth: 'x' }");
     write("lost.textproto", "volume { path: 'lost.nrrd' }");
-    test::writeFile(folder_ / "big.png", kPng + std::string(kMostPictureBytes, 'x'));
+    test::writeFile(folder_ / "big.png", kPng + std::string(kMaxPictureBytes, 'x'));
     write("big.textproto", "volume { path: 'big.png' }");
     const auto scenes = listedScenes();
     ASSERT_EQ(scenes.size(), 3u);
@@ -75,9 +75,9 @@ TEST_F(SceneFolder, OfTwoFilesOfOneNameTheFirstCounts) {
 }
 
 TEST_F(SceneFolder, ThereIsABoundToThem) {
-    for (size_t n = 0; n < kMostListedScenes + 2; ++n)
+    for (size_t n = 0; n < kMaxListedScenes + 2; ++n)
         write("s" + std::to_string(n) + ".textproto", "volume { path: '/' }");
-    EXPECT_EQ(listedScenes().size(), kMostListedScenes);
+    EXPECT_EQ(listedScenes().size(), kMaxListedScenes);
 }
 
 }  // namespace

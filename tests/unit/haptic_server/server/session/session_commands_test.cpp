@@ -78,10 +78,10 @@ class SessionCommandsTest : public testing::Test {
     std::atomic<bool> stop_requested_{false};
     SessionExport bone_export_;
     std::atomic<uint32_t> reset_orders_{0};
-    LessonBook lesson_{listed(), ClassTable("")};
+    LessonState lesson_{listed(), ClassTable("")};
     std::string told_;                                  // to the device
-    JournalKeeper journal_{ball_.history, ball_.bone};  // that goes nowhere
-    AttemptKeeper attempts_;
+    JournalRecorder journal_{ball_.history, ball_.bone};  // that goes nowhere
+    AttemptController attempts_;
     OrderLimits limits_;
     SessionCommands commands_;
 };
@@ -266,12 +266,12 @@ TEST_F(SessionCommandsTest, NotesAreForWhoMayCommandAndNotTooOften) {
 }
 
 TEST_F(SessionCommandsTest, OfAttemptsTheOldestAreForgotten) {
-    for (int n = 0; n < LessonBook::kMostAttempts + 3; ++n) {
+    for (int n = 0; n < LessonState::kMaxAttempts + 3; ++n) {
         lesson_.beginAttempt("Ann");
         lesson_.endAttempt({});
     }
     const auto lesson = lesson_.takeChanged();
-    EXPECT_EQ(lesson->attempts_size(), LessonBook::kMostAttempts);
+    EXPECT_EQ(lesson->attempts_size(), LessonState::kMaxAttempts);
     EXPECT_EQ(lesson->attempts(0).number(), 4u);
 }
 

@@ -64,14 +64,14 @@ TEST(DensityWishes, ForgetTheLeastRecentOfTooManyAndTheSilent) {
     constexpr uint64_t kInvented = 10'000;
     for (uint64_t sender = 1; sender <= kInvented; ++sender) {
         wishes.receive(sender, sender, {{1, 0}}, int64_t(sender));
-        ASSERT_LE(wishes.wishes().size(), DensityWishes::kMostSenders);
+        ASSERT_LE(wishes.wishes().size(), DensityWishes::kMaxSenders);
     }
-    for (const auto& wish : wishes.wishes()) EXPECT_GT(wish.sender, kInvented - DensityWishes::kMostSenders);
+    for (const auto& wish : wishes.wishes()) EXPECT_GT(wish.sender, kInvented - DensityWishes::kMaxSenders);
     wishes.receive(kInvented, kInvented, {{2, 0}}, kInvented + 1);
-    EXPECT_EQ(wishes.wishes().size(), DensityWishes::kMostSenders) << "a sender has one wish";
+    EXPECT_EQ(wishes.wishes().size(), DensityWishes::kMaxSenders) << "a sender has one wish";
     wishes.receive(kInvented, kInvented, {}, kInvented + 2);
     wishes.forgetSilent(kInvented + 2);
-    EXPECT_EQ(wishes.wishes().size(), DensityWishes::kMostSenders - 1) << "who shows none is forgotten";
+    EXPECT_EQ(wishes.wishes().size(), DensityWishes::kMaxSenders - 1) << "who shows none is forgotten";
     wishes.forgetSilent(kInvented + DensityWishes::kSilence_ns);
     EXPECT_TRUE(wishes.wishes().empty());
 }
@@ -84,7 +84,7 @@ TEST(DensityWishes, OfWhoInventsSendersDriveOutNobodyElses) {
     EXPECT_EQ(wishes.wishes().at(0).bricks.size(), 1u) << "nobody else speaks for it";
     for (uint64_t sender = 100; sender < 3000; ++sender)
         wishes.receive(sender, 8 + sender % 5, {{2, 0}}, int64_t(sender));
-    EXPECT_EQ(wishes.wishes().size(), DensityWishes::kMostSenders);
+    EXPECT_EQ(wishes.wishes().size(), DensityWishes::kMaxSenders);
     EXPECT_TRUE(std::ranges::any_of(wishes.wishes(), [](const auto& wish) { return wish.sender == 1; }));
 }
 

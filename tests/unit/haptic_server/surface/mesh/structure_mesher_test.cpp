@@ -87,7 +87,7 @@ void expectNear(const Distance& distance, const Vector3d& spacing, double worst,
     ASSERT_EQ(meshes.size(), 1u);
     EXPECT_EQ(meshes[0].leaf, kStructure);
     EXPECT_TRUE(isClosed(meshes[0]));
-    EXPECT_LE(meshes[0].indices.size() / 3, kMostStructureTriangles);
+    EXPECT_LE(meshes[0].indices.size() / 3, kMaxStructureTriangles);
     const Deviation deviation = deviationOf(meshes[0], distance);
     const double voxel = spacing.maxCoeff();
     EXPECT_LT(deviation.worst / voxel, worst);
@@ -111,7 +111,7 @@ TEST(StructureMesher, ALargeOneHasFewTriangles) {
     const Distance ball = [](const Vector3d& p) { return (p - Vector3d::Constant(0.03)).norm() - 0.0285; };
     const auto meshes = structuresOf(ball, Vector3d::Constant(4e-4), 150);
     ASSERT_EQ(meshes.size(), 1u);
-    EXPECT_LE(meshes[0].indices.size() / 3, kMostStructureTriangles);
+    EXPECT_LE(meshes[0].indices.size() / 3, kMaxStructureTriangles);
     EXPECT_LT(deviationOf(meshes[0], ball).worst, 2e-4);
 }
 

@@ -43,7 +43,7 @@ TEST(ResultJson, RefusesWhatIsNone) {
     };
     EXPECT_THROW(parseResult("", "a.json"), UserError);
     EXPECT_THROW(parseResult("[]", "a.json"), UserError);
-    EXPECT_THROW(parseResult(std::string(kLargestResult + 1, ' '), "a.json"), UserError);
+    EXPECT_THROW(parseResult(std::string(kMaxResult + 1, ' '), "a.json"), UserError);
     auto changed = json;
     changed["bonemill_result"] = 2;
     refuses(changed);

@@ -49,7 +49,7 @@ TEST_P(TwoGroups, WelchIsTTestOfR) {
 
 TEST_P(TwoGroups, MannWhitneyIsThatOfCoinAndExactRankTests) {
     const RankTest test = mannWhitney(a, b);
-    EXPECT_EQ(test.is_exact, a.size() + b.size() <= kMostExact);
+    EXPECT_EQ(test.is_exact, a.size() + b.size() <= kMaxExact);
     expectAll(of(test), name + ".mann_whitney");
 }
 

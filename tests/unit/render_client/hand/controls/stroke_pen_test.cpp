@@ -107,7 +107,7 @@ TEST_F(Drawing, AStrokeIsPartedWhereNoBoneIs) {
     int n = 0;
     for (const PixelPoint& at : controls_.pen().takeWay())
         ++n % 20 ? controls_.pen().add(boneAt(at)) : controls_.pen().lift();
-    EXPECT_EQ(controls_.pen().takeOrders("Anna").size(), StrokePen::kMostStrokes);
+    EXPECT_EQ(controls_.pen().takeOrders("Anna").size(), StrokePen::kMaxStrokes);
 }
 
 TEST_F(Drawing, ALongStrokeIsThinnedToWhatAServerTakes) {
@@ -116,8 +116,8 @@ TEST_F(Drawing, ALongStrokeIsThinnedToWhatAServerTakes) {
     const auto orders = draw();
     ASSERT_EQ(orders.size(), 1u);
     const auto& points = orders[0].add_remark().points_m();
-    EXPECT_LE(points.size(), 3 * kMostRemarkPoints);
-    EXPECT_GT(points.size(), 3 * kMostRemarkPoints / 3);
+    EXPECT_LE(points.size(), 3 * kMaxRemarkPoints);
+    EXPECT_GT(points.size(), 3 * kMaxRemarkPoints / 3);
     EXPECT_NEAR(points[points.size() - 3], 0.9, 1e-3);
     EXPECT_LT(orders[0].ByteSizeLong(), 4000u);
 }

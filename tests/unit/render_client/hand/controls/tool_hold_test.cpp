@@ -8,7 +8,7 @@
 #include <random>
 
 #include "common/device_messages/device_messages.h"
-#include "render_client/hand/controls/hold_watch.h"
+#include "render_client/hand/controls/hold_monitor.h"
 #include "render_client/look/camera/orbit_camera.h"
 #include "tests/support/controlled_viewer.h"
 
@@ -225,10 +225,10 @@ TEST(ToolHold, ARightDragTurnsTheToolOnTheSpot) {
     expectAt(view.pixelOf(hold.wish().position), {seen.x + 10, seen.y}, "it stays in its hole");
 }
 
-TEST(HoldWatch, AToolThatTheBoneHasCaughtIsFreedAndThenOnlyTheUserCanHelp) {
-    using Advice = HoldWatch::Advice;
-    HoldWatch watch;
-    HoldWatch::Sight sight{.now = 100, .burr_radius = 1e-3, .from_wish = 5e-3};
+TEST(HoldMonitor, AToolThatTheBoneHasCaughtIsFreedAndThenOnlyTheUserCanHelp) {
+    using Advice = HoldMonitor::Advice;
+    HoldMonitor watch;
+    HoldMonitor::Sight sight{.now = 100, .burr_radius = 1e-3, .from_wish = 5e-3};
     const auto adviceWithin = [&](double seconds) {
         for (const double end = sight.now + seconds; sight.now < end; sight.now += 0.02)
             if (const Advice advice = watch.look(sight); advice != Advice::kNone) return advice;
@@ -256,10 +256,10 @@ TEST(HoldWatch, AToolThatTheBoneHasCaughtIsFreedAndThenOnlyTheUserCanHelp) {
     EXPECT_EQ(adviceWithin(0.2), Advice::kFree);
 }
 
-TEST(HoldWatch, WhoMillsInTheAirIsToldOnceHowToComeNearer) {
-    using Advice = HoldWatch::Advice;
-    HoldWatch watch;
-    HoldWatch::Sight sight{.now = 100, .burr_radius = 1e-3, .presses = true};
+TEST(HoldMonitor, WhoMillsInTheAirIsToldOnceHowToComeNearer) {
+    using Advice = HoldMonitor::Advice;
+    HoldMonitor watch;
+    HoldMonitor::Sight sight{.now = 100, .burr_radius = 1e-3, .presses = true};
     const auto adviceWithin = [&](double seconds) {
         for (const double end = sight.now + seconds; sight.now < end; sight.now += 0.02)
             if (const Advice advice = watch.look(sight); advice != Advice::kNone) return advice;

@@ -70,9 +70,9 @@ TEST_F(Controls, AKeyMakesTextLargerWithinBounds) {
     type('J', true);
     EXPECT_NEAR(settings_.text_scale, 1, 1e-12);
     for (int i = 0; i < 50; ++i) type('J');
-    EXPECT_EQ(settings_.text_scale, ViewSettings::kMostText);
+    EXPECT_EQ(settings_.text_scale, ViewSettings::kMaxText);
     for (int i = 0; i < 50; ++i) type('J', true);
-    EXPECT_EQ(settings_.text_scale, ViewSettings::kLeastText);
+    EXPECT_EQ(settings_.text_scale, ViewSettings::kMinText);
 }
 
 TEST_F(Controls, StereoGoesRoundThreeModes) {

@@ -361,13 +361,13 @@ TEST(Payloads, RemarksAreChecked) {
         return parseRemark(bytesOf(remark.SerializeAsString()), place).has_value();
     };
     EXPECT_TRUE(is_accepted(validRemark("x", 0)));
-    EXPECT_TRUE(is_accepted(validRemark("", kMostRemarkPoints)));
+    EXPECT_TRUE(is_accepted(validRemark("", kMaxRemarkPoints)));
     EXPECT_TRUE(is_accepted(validRemark(std::string(300, 'x'), 1)));
-    EXPECT_FALSE(is_accepted(validRemark("x", 0), kMostRemarks)) << "a place that no server has";
+    EXPECT_FALSE(is_accepted(validRemark("x", 0), kMaxRemarks)) << "a place that no server has";
     EXPECT_FALSE(is_accepted(validRemark("", 1)));
     EXPECT_FALSE(is_accepted(validRemark("\n", 1))) << "nothing of it can be shown";
     EXPECT_FALSE(is_accepted(validRemark("x", 2)));
-    EXPECT_FALSE(is_accepted(validRemark("", kMostRemarkPoints + 1)));
+    EXPECT_FALSE(is_accepted(validRemark("", kMaxRemarkPoints + 1)));
     EXPECT_FALSE(is_accepted(validRemark(std::string(301, 'x'), 1)));
     const std::function<void(topics::Remark&)> damages[] = {
         [](topics::Remark& r) { r.set_epoch(0); },

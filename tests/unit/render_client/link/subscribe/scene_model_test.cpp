@@ -135,7 +135,7 @@ DecodedNode largeNode(uint32_t leaf, size_t triangles, uint32_t revision = 1) {
 
 TEST(SceneModel, TrianglesAreBoundedInAll) {
     SceneModel model = begun();
-    constexpr size_t kEach = SceneModel::kMostTriangles / 4 + 1;
+    constexpr size_t kEach = SceneModel::kMaxTriangles / 4 + 1;
     for (uint32_t leaf = 0; leaf < 4; ++leaf)
         EXPECT_EQ(model.applyNode(largeNode(leaf, kEach), kNow), leaf < 3);
     EXPECT_TRUE(model.applyNode(largeNode(2, kEach, 2), kNow)) << "it takes its own place";

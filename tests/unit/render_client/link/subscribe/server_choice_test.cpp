@@ -8,7 +8,7 @@ namespace {
 using namespace std::chrono_literals;
 using Verdict = ServerChoice::Verdict;
 
-constexpr uint64_t kOurs = 1, kOther = 2, kLargestEpoch = UINT64_MAX;
+constexpr uint64_t kOurs = 1, kOther = 2, kMaxEpoch = UINT64_MAX;
 const ServerChoice::Clock::time_point kStart{100s};
 
 ServerChoice::Message status(uint64_t epoch, uint64_t server) {
@@ -59,8 +59,8 @@ TEST(ServerChoice, OurEpochLetsNobodyIn) {
 TEST(ServerChoice, AForgedNodeDoesNotOutliveARestart) {
     ServerChoice choice = withOurs();
     constexpr uint64_t kRestarted = 3;
-    EXPECT_EQ(choice.judge(node(kLargestEpoch, kOther), true, kStart), Verdict::kOther);
-    EXPECT_EQ(choice.judge(node(kLargestEpoch, kOther), false, kStart), Verdict::kOther);
+    EXPECT_EQ(choice.judge(node(kMaxEpoch, kOther), true, kStart), Verdict::kOther);
+    EXPECT_EQ(choice.judge(node(kMaxEpoch, kOther), false, kStart), Verdict::kOther);
     EXPECT_EQ(choice.judge(node(20, kRestarted), false, kStart), Verdict::kOther);
     EXPECT_EQ(choice.judge(status(20, kRestarted), false, kStart), Verdict::kOurs);
     EXPECT_TRUE(choice.takeLost()) << "its node was refused";
@@ -69,9 +69,9 @@ TEST(ServerChoice, AForgedNodeDoesNotOutliveARestart) {
 
 TEST(ServerChoice, WhoHasNeverSpokenMakesRoom) {
     ServerChoice choice;
-    EXPECT_EQ(choice.judge(node(kLargestEpoch, kOther), false, kStart), Verdict::kOurs);
+    EXPECT_EQ(choice.judge(node(kMaxEpoch, kOther), false, kStart), Verdict::kOurs);
     EXPECT_EQ(choice.judge(status(10, kOurs), true, kStart), Verdict::kOurs);
-    EXPECT_EQ(choice.judge(node(kLargestEpoch, kOther), true, kStart), Verdict::kOther);
+    EXPECT_EQ(choice.judge(node(kMaxEpoch, kOther), true, kStart), Verdict::kOther);
 }
 
 TEST(ServerChoice, WhoHasSpokenMaySayAnythingWhenOursIsGone) {

@@ -30,7 +30,7 @@ TEST(ViewerList, AParticipantSpeaksForFewAndForNoneOfAnothers) {
     list.hear(viewer(1, "Anna"), 7, kHeard);
     for (uint64_t sender = 1; sender < 5000; ++sender)
         list.hear(viewer(sender, "forged"), 8, kHeard + sender * 1us);
-    ASSERT_EQ(list.viewers().size(), 1 + ViewerList::kMostOfParticipant);
+    ASSERT_EQ(list.viewers().size(), 1 + ViewerList::kMaxOfParticipant);
     EXPECT_EQ(list.viewers()[0].name(), "Anna");
     EXPECT_EQ(list.viewers().back().sender(), 4999u) << "the last that it speaks for";
     list.hear(viewer(6000), 9, kHeard);
@@ -41,11 +41,11 @@ TEST(ViewerList, ManyWhoInventViewersKeepOutNobody) {
     ViewerList list;
     for (uint64_t sender = 100; sender < 2000; ++sender)
         list.hear(viewer(sender, "forged"), 8 + sender % 32, kHeard + sender * 1us);
-    EXPECT_EQ(list.viewers().size(), ViewerList::kMostViewers);
+    EXPECT_EQ(list.viewers().size(), ViewerList::kMaxViewers);
     list.hear(viewer(1, "Anna"), 7, kHeard);
     for (uint64_t sender = 2000; sender < 4000; ++sender)
         list.hear(viewer(sender, "forged"), 8 + sender % 32, kHeard + sender * 1us);
-    EXPECT_EQ(list.viewers().size(), ViewerList::kMostViewers);
+    EXPECT_EQ(list.viewers().size(), ViewerList::kMaxViewers);
     EXPECT_EQ(list.viewers()[0].name(), "Anna");
 }
 

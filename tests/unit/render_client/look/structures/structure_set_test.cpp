@@ -150,7 +150,7 @@ TEST(StructureSet, TheBurrComesFromTheSceneInfo) {
 TEST(ThicknessField, IsTheDistanceToTheNextStructure) {
     const StructureSet structures = twoBalls();
     const ThicknessField field = thicknessField(structures, kWarning);
-    EXPECT_LE(field.size.prod(), ThicknessField::kMostSamples);
+    EXPECT_LE(field.size.prod(), ThicknessField::kMaxSamples);
     ASSERT_EQ(field.shares.size(), size_t(field.size.prod()));
     int near = 0;
     for (int k = 0; k < field.size.z(); ++k)
@@ -178,8 +178,8 @@ TEST(ThicknessField, IsBoundedHoweverLargeAStructureIs) {
         StructureSet structures;
         structures.set(mesh, kWarning);
         const ThicknessField field = thicknessField(structures, kWarning);
-        EXPECT_LE(field.size.cast<int64_t>().prod(), ThicknessField::kMostSamples) << size.transpose();
-        EXPECT_LE(field.size.maxCoeff(), ThicknessField::kMostPerAxis) << size.transpose();
+        EXPECT_LE(field.size.cast<int64_t>().prod(), ThicknessField::kMaxSamples) << size.transpose();
+        EXPECT_LE(field.size.maxCoeff(), ThicknessField::kMaxPerAxis) << size.transpose();
         EXPECT_EQ(field.shares.size(), size_t(field.size.prod()));
     }
 }

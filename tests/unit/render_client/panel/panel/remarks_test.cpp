@@ -110,7 +110,7 @@ TEST_F(PanelRemarks, EachCanBeErasedAndAllAfterAQuestion) {
 }
 
 TEST_F(PanelRemarks, BoxesDrawAndHideAndAListIsBounded) {
-    for (uint32_t n = 0; n < kMostRemarks; ++n) keep(n, n + 1, "note");
+    for (uint32_t n = 0; n < kMaxRemarks; ++n) keep(n, n + 1, "note");
     click("Draw (Shift+L)");
     EXPECT_TRUE(controls_.isDrawing());
     click("Show (Shift+R)");

@@ -141,7 +141,7 @@ TEST(GuestStream, WhoAcknowledgesNothingIsSentABoundedAmountAndIsStalled) {
         stream.note(session.tool());
         sent += stream.next(session.now).size();
     }
-    EXPECT_LE(sent, SendWindow::kFirst + GuestStream::kMostTogether);
+    EXPECT_LE(sent, SendWindow::kFirst + GuestStream::kMaxTogether);
     EXPECT_FALSE(stream.isStalled(session.now));
     session.now += 11s;
     EXPECT_TRUE(stream.isStalled(session.now));

@@ -1,4 +1,4 @@
-#include "device_daemon/control/safety/motion_watch.h"
+#include "device_daemon/control/safety/motion_monitor.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ DeviceReading movingAt(const Eigen::Vector3d& v, const Eigen::Vector3d& w = Eige
 }
 
 // Returns after how many s it names a cause, and which; a year when it names none in 10 s.
-std::pair<double, StopCause> tripOf(MotionWatch& watch, const DeviceReading& reading, const Wrench& given) {
+std::pair<double, StopCause> tripOf(MotionMonitor& watch, const DeviceReading& reading, const Wrench& given) {
     for (int i = 1; i <= 10000; ++i) {
         const StopCause cause = watch.check(reading, given, kWatchDt);
         if (cause != StopCause::kNone) return {i * kWatchDt, cause};
@@ -26,8 +26,8 @@ std::pair<double, StopCause> tripOf(MotionWatch& watch, const DeviceReading& rea
     return {3e7, StopCause::kNone};
 }
 
-TEST(MotionWatch, LetsTheHandMill) {
-    MotionWatch watch;
+TEST(MotionMonitor, LetsTheHandMill) {
+    MotionMonitor watch;
     // 20 N against a hand that gives way at 50 mm/s for ever is beyond what milling does.
     for (int i = 0; i < 60000; ++i) {
         const double t = i * kWatchDt;
@@ -39,13 +39,13 @@ TEST(MotionWatch, LetsTheHandMill) {
     }
 }
 
-TEST(MotionWatch, StopsAHandleThatFlies) {
-    MotionWatch watch;
+TEST(MotionMonitor, StopsAHandleThatFlies) {
+    MotionMonitor watch;
     EXPECT_EQ(tripOf(watch, movingAt({2, 0, 0}), {}).second, StopCause::kSpeed);
     watch.restart();
     const auto [time, cause] = tripOf(watch, movingAt({0, 0, 0}, {0, 30, 0}), {});
     EXPECT_EQ(cause, StopCause::kSpeed);
-    EXPECT_LE(time, MotionWatch::kFastSamples * kWatchDt + 1e-12);
+    EXPECT_LE(time, MotionMonitor::kFastSamples * kWatchDt + 1e-12);
     watch.restart();
     EXPECT_EQ(tripOf(watch, movingAt({std::numeric_limits<double>::quiet_NaN(), 0, 0}), {}).second,
               StopCause::kSpeed);
@@ -53,37 +53,37 @@ TEST(MotionWatch, StopsAHandleThatFlies) {
     EXPECT_EQ(tripOf(watch, movingAt({0.9, 0, 0}), {}).second, StopCause::kNone);
 }
 
-TEST(MotionWatch, ASpeedThatIsNoNumberBlindsThePowersWatchForNoLonger) {
-    MotionWatch watch;
+TEST(MotionMonitor, ASpeedThatIsNoNumberBlindsThePowersWatchForNoLonger) {
+    MotionMonitor watch;
     const Wrench given{{40, 0, 0}, {0, 0, 0}};
     EXPECT_EQ(watch.check(movingAt({std::numeric_limits<double>::quiet_NaN(), 0, 0}), given, kWatchDt),
               StopCause::kNone);
     EXPECT_EQ(tripOf(watch, movingAt({0.9, 0, 0}), given).second, StopCause::kPower);
 }
 
-TEST(MotionWatch, OneFastSampleAloneIsNoise) {
-    MotionWatch watch;
+TEST(MotionMonitor, OneFastSampleAloneIsNoise) {
+    MotionMonitor watch;
     for (int i = 0; i < 1000; ++i)
         EXPECT_EQ(watch.check(movingAt({i % 2 ? 5.0 : 0.0, 0, 0}), {}, kWatchDt), StopCause::kNone);
 }
 
-TEST(MotionWatch, StopsMotorsThatDriveTheHand) {
-    MotionWatch watch({.max_power = 10});
+TEST(MotionMonitor, StopsMotorsThatDriveTheHand) {
+    MotionMonitor watch({.max_power = 10});
     // 50 N at 0.5 m/s are 25 W: beyond 10 W after the time in which a filter of kPowerTime gets to 10/25.
     const auto [time, cause] = tripOf(watch, movingAt({0.5, 0, 0}), {{50, 0, 0}, {0, 0, 0}});
     EXPECT_EQ(cause, StopCause::kPower);
-    EXPECT_NEAR(time, -MotionWatch::kPowerTime * std::log(1 - 10.0 / 25), 1.5e-3);
+    EXPECT_NEAR(time, -MotionMonitor::kPowerTime * std::log(1 - 10.0 / 25), 1.5e-3);
     watch.restart();
     EXPECT_EQ(tripOf(watch, movingAt({-0.5, 0, 0}), {{50, 0, 0}, {0, 0, 0}}).second,
               StopCause::kNone);  // the hand works
 }
 
-TEST(MotionWatch, StopsWhatGivesTooMuchEnergy) {
-    MotionWatch watch({.max_power = 10, .max_energy = 3});
+TEST(MotionMonitor, StopsWhatGivesTooMuchEnergy) {
+    MotionMonitor watch({.max_power = 10, .max_energy = 3});
     // 8 W are within the power; the energy goes to 8 J with kEnergyTime.
     const auto [time, cause] = tripOf(watch, movingAt({0.4, 0, 0}), {{20, 0, 0}, {0, 0, 0}});
     EXPECT_EQ(cause, StopCause::kEnergy);
-    EXPECT_NEAR(time, -MotionWatch::kEnergyTime * std::log(1 - 3.0 / 8), 5e-3);
+    EXPECT_NEAR(time, -MotionMonitor::kEnergyTime * std::log(1 - 3.0 / 8), 5e-3);
     watch.restart();
     // Torque counts as well.
     EXPECT_EQ(tripOf(watch, movingAt({0, 0, 0}, {8, 0, 0}), {{}, {1, 0, 0}}).second, StopCause::kEnergy);
@@ -97,8 +97,8 @@ TEST(MotionWatch, StopsWhatGivesTooMuchEnergy) {
     }
 }
 
-TEST(MotionWatch, StopsMotorsThatDoNotDoWhatTheyAreTold) {
-    MotionWatch watch({.max_force = 20});
+TEST(MotionMonitor, StopsMotorsThatDoNotDoWhatTheyAreTold) {
+    MotionMonitor watch({.max_force = 20});
     DeviceReading dead;
     dead.has_applied = true;
     const auto [time, cause] = tripOf(watch, dead, {{0, 0, 10}, {0, 0, 0}});
@@ -121,8 +121,8 @@ TEST(MotionWatch, StopsMotorsThatDoNotDoWhatTheyAreTold) {
     }
 }
 
-TEST(MotionWatch, AMismatchIsOneAgainstWhatTheDeviceItselfHasOrdered) {
-    MotionWatch watch({.max_force = 20});
+TEST(MotionMonitor, AMismatchIsOneAgainstWhatTheDeviceItselfHasOrdered) {
+    MotionMonitor watch({.max_force = 20});
     const Wrench given{{0, 0, 20}, {0, 0, 0}};
     DeviceReading limited;  // its motors cannot give more than 8 N of it, and do
     limited.has_applied = true;
@@ -137,12 +137,12 @@ TEST(MotionWatch, AMismatchIsOneAgainstWhatTheDeviceItselfHasOrdered) {
     EXPECT_EQ(tripOf(watch, limited, given).second, StopCause::kForceMismatch);
 }
 
-TEST(MotionWatch, HotMotorsGetLessAndThenNothing) {
-    EXPECT_EQ(MotionWatch::warmShare(0), 1);
-    EXPECT_EQ(MotionWatch::warmShare(0.8), 1);
-    EXPECT_NEAR(MotionWatch::warmShare(0.9), 0.65, 1e-12);
-    EXPECT_NEAR(MotionWatch::warmShare(1.5), 0.3, 1e-12);
-    MotionWatch watch;
+TEST(MotionMonitor, HotMotorsGetLessAndThenNothing) {
+    EXPECT_EQ(MotionMonitor::warmShare(0), 1);
+    EXPECT_EQ(MotionMonitor::warmShare(0.8), 1);
+    EXPECT_NEAR(MotionMonitor::warmShare(0.9), 0.65, 1e-12);
+    EXPECT_NEAR(MotionMonitor::warmShare(1.5), 0.3, 1e-12);
+    MotionMonitor watch;
     DeviceReading hot;
     hot.load = 0.99;
     EXPECT_EQ(watch.check(hot, {}, kWatchDt), StopCause::kNone);

@@ -1,4 +1,4 @@
-#include "haptic_server/teaching/lessons/remark_book.h"
+#include "haptic_server/teaching/lessons/remark_list.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,8 @@ Eigen::Vector3d pointOf(const topics::Remark& remark, int n) {
 std::string noteProblem(const topics::Remark& remark) {
     const size_t letters = lettersOf(remark.note());
     if (remark.note().find_first_not_of(' ') == std::string::npos) return "the note is empty";
-    if (letters > kMostNoteLetters)
-        return "the note has " + std::to_string(letters) + " letters; " + std::to_string(kMostNoteLetters) +
+    if (letters > kMaxNoteLetters)
+        return "the note has " + std::to_string(letters) + " letters; " + std::to_string(kMaxNoteLetters) +
                " at most";
     if (hasUnprintable(remark.note())) return "the note has characters that cannot be printed";
     if (remark.points_m_size() > 3) return "a note belongs to one place at most";
@@ -27,8 +27,8 @@ std::string noteProblem(const topics::Remark& remark) {
 std::string strokeProblem(const topics::Remark& remark) {
     const int points = remark.points_m_size() / 3;
     if (points < 2) return "there is neither a note nor a stroke of two points";
-    if (points > kMostRemarkPoints)
-        return "the stroke has " + std::to_string(points) + " points; " + std::to_string(kMostRemarkPoints) +
+    if (points > kMaxRemarkPoints)
+        return "the stroke has " + std::to_string(points) + " points; " + std::to_string(kMaxRemarkPoints) +
                " at most";
     return "";
 }
@@ -36,13 +36,13 @@ std::string strokeProblem(const topics::Remark& remark) {
 }  // namespace
 
 // What is not finite is not near either.
-bool RemarkBook::isNear(const Eigen::Vector3d& p_W) const {
+bool RemarkList::isNear(const Eigen::Vector3d& p_W) const {
     const Eigen::Array3d p_V = volume_.X_WV.inverse() * p_W;
     const Eigen::Array3d size = volume_.dims.cast<double>().array() * volume_.spacing.array();
     return (p_V >= -kFarthest).all() && (p_V <= size + kFarthest).all();
 }
 
-std::string RemarkBook::problemOf(const topics::Remark& remark) const {
+std::string RemarkList::problemOf(const topics::Remark& remark) const {
     if (remark.points_m_size() % 3 != 0) return "a point has three coordinates";
     if (std::string problem = remark.note().empty() ? strokeProblem(remark) : noteProblem(remark);
         !problem.empty())
@@ -53,8 +53,8 @@ std::string RemarkBook::problemOf(const topics::Remark& remark) const {
 }
 
 // Returns that of the oldest one where there is no other.
-uint32_t RemarkBook::freePlace() const {
-    if (kept_.size() >= kMostRemarks)
+uint32_t RemarkList::freePlace() const {
+    if (kept_.size() >= kMaxRemarks)
         return std::ranges::min_element(kept_, {}, [](const auto& kept) { return kept.second.number(); })
             ->first;
     uint32_t place = 0;
@@ -62,7 +62,7 @@ uint32_t RemarkBook::freePlace() const {
     return place;
 }
 
-Answer RemarkBook::add(const topics::Command& command, double session_s) {
+Answer RemarkList::add(const topics::Command& command, double session_s) {
     const topics::Remark& asked = command.add_remark();
     if (const std::string problem = problemOf(asked); !problem.empty()) return Answer::refused(problem);
     topics::Remark remark;
@@ -79,7 +79,7 @@ Answer RemarkBook::add(const topics::Command& command, double session_s) {
     return Answer::done();
 }
 
-Answer RemarkBook::erase(uint32_t number) {
+Answer RemarkList::erase(uint32_t number) {
     const auto erased = std::erase_if(kept_, [&](const auto& kept) {
         const bool is_meant = number == 0 || kept.second.number() == number;
         if (is_meant) changed_.insert(kept.first);
@@ -91,7 +91,7 @@ Answer RemarkBook::erase(uint32_t number) {
     return Answer::done();
 }
 
-std::vector<RemarkBook::Change> RemarkBook::takeChanges() {
+std::vector<RemarkList::Change> RemarkList::takeChanges() {
     std::vector<Change> changes;
     for (const uint32_t place : std::exchange(changed_, {})) {
         const auto kept = kept_.find(place);

@@ -1,4 +1,4 @@
-#include "render_client/hand/controls/eye_watch.h"
+#include "render_client/hand/controls/eye_reporter.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@ namespace {
 using std::chrono::milliseconds;
 
 // How often it is due in a second in which the camera is asked about every ms.
-int countDue(EyeWatch& watch, EyeWatch::Clock::time_point& now, Camera& camera, double moved_per_ms) {
+int countDue(EyeReporter& watch, EyeReporter::Clock::time_point& now, Camera& camera, double moved_per_ms) {
     int count = 0;
     for (int ms = 0; ms < 1000; ++ms) {
         now += milliseconds(1);
@@ -20,9 +20,9 @@ int countDue(EyeWatch& watch, EyeWatch::Clock::time_point& now, Camera& camera, 
     return count;
 }
 
-TEST(EyeWatch, TellsTwentyTimesPerSecondWhatMovesAndOnceWhatRests) {
-    EyeWatch watch;
-    EyeWatch::Clock::time_point now;
+TEST(EyeReporter, TellsTwentyTimesPerSecondWhatMovesAndOnceWhatRests) {
+    EyeReporter watch;
+    EyeReporter::Clock::time_point now;
     Camera camera;
     EXPECT_EQ(countDue(watch, now, camera, 0), 1);
     EXPECT_EQ(countDue(watch, now, camera, 1e-3), 20);
@@ -31,12 +31,12 @@ TEST(EyeWatch, TellsTwentyTimesPerSecondWhatMovesAndOnceWhatRests) {
     EXPECT_NEAR(countDue(watch, now, camera, 1e-6), 10, 1) << "1 mm per s, told every 0.1 mm";
 }
 
-TEST(EyeWatch, TellsOfATurnAndOfAnotherAngleOfView) {
-    EyeWatch watch;
-    EyeWatch::Clock::time_point now;
+TEST(EyeReporter, TellsOfATurnAndOfAnotherAngleOfView) {
+    EyeReporter watch;
+    EyeReporter::Clock::time_point now;
     Camera camera;
     watch.told(now, camera);
-    now += EyeWatch::kPeriod;
+    now += EyeReporter::kPeriod;
     EXPECT_FALSE(watch.isDue(now, camera));
     Camera turned = camera;
     turned.R_WC = Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitY()).toRotationMatrix();
@@ -46,7 +46,7 @@ TEST(EyeWatch, TellsOfATurnAndOfAnotherAngleOfView) {
     EXPECT_TRUE(watch.isDue(now, wider));
 }
 
-TEST(EyeWatch, TheMessageHasTheCamerasPose) {
+TEST(EyeReporter, TheMessageHasTheCamerasPose) {
     Camera camera;
     camera.eye_W = {0.1, 0.2, 0.3};
     camera.R_WC = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();

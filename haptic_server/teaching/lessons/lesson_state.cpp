@@ -1,4 +1,4 @@
-#include "haptic_server/teaching/lessons/lesson_book.h"
+#include "haptic_server/teaching/lessons/lesson_state.h"
 
 #include <spdlog/spdlog.h>
 
@@ -36,7 +36,7 @@ topics::Attempt onlyThatItWas(const topics::Attempt& attempt) {
 
 }  // namespace
 
-LessonBook::LessonBook(std::vector<ListedScene> scenes, ClassTable table)
+LessonState::LessonState(std::vector<ListedScene> scenes, ClassTable table)
     : scenes_(std::move(scenes)), table_(std::move(table)) {
     for (const ListedScene& scene : scenes_) {
         topics::SceneChoice& choice = *lesson_.add_scenes();
@@ -45,19 +45,19 @@ LessonBook::LessonBook(std::vector<ListedScene> scenes, ClassTable table)
     }
 }
 
-std::optional<topics::Lesson> LessonBook::takeChanged() {
+std::optional<topics::Lesson> LessonState::takeChanged() {
     const std::lock_guard lock(mutex_);
     if (!std::exchange(has_changed_, false)) return std::nullopt;
     return lesson_;
 }
 
-void LessonBook::enterScene(const std::string& file) {
+void LessonState::enterScene(const std::string& file) {
     const std::lock_guard lock(mutex_);
     lesson_.set_scene_id(idOfScene(scenes_, file));
     has_changed_ = true;
 }
 
-std::optional<Answer> LessonBook::orderScene(const topics::Command& command) {
+std::optional<Answer> LessonState::orderScene(const topics::Command& command) {
     const std::lock_guard lock(mutex_);
     const std::string& id = command.choose_scene();
     const auto scene = std::find_if(scenes_.begin(), scenes_.end(),
@@ -73,24 +73,24 @@ std::optional<Answer> LessonBook::orderScene(const topics::Command& command) {
     return std::nullopt;
 }
 
-std::optional<LessonBook::SceneOrder> LessonBook::takeOrder() {
+std::optional<LessonState::SceneOrder> LessonState::takeOrder() {
     const std::lock_guard lock(mutex_);
     return std::exchange(order_, std::nullopt);
 }
 
-void LessonBook::answerOrder(const topics::Command& command, const Answer& answer) {
+void LessonState::answerOrder(const topics::Command& command, const Answer& answer) {
     const std::lock_guard lock(mutex_);
     lesson_.clear_changing_to();
     has_changed_ = true;
     answers_.emplace_back(command, answer);
 }
 
-void LessonBook::answerLater(const topics::Command& command, const Answer& answer) {
+void LessonState::answerLater(const topics::Command& command, const Answer& answer) {
     const std::lock_guard lock(mutex_);
     answers_.emplace_back(command, answer);
 }
 
-std::vector<std::pair<topics::Command, Answer>> LessonBook::takeAnswers() {
+std::vector<std::pair<topics::Command, Answer>> LessonState::takeAnswers() {
     const std::lock_guard lock(mutex_);
     for (const TableWriter::Written& written : table_.takeWritten()) {
         if (written.order) answers_.emplace_back(*written.order, answerTo(*written.order, written.problem));
@@ -99,14 +99,14 @@ std::vector<std::pair<topics::Command, Answer>> LessonBook::takeAnswers() {
     return std::exchange(answers_, {});
 }
 
-void LessonBook::takeVerdict(uint32_t attempt, const topics::Verdict& verdict) {
+void LessonState::takeVerdict(uint32_t attempt, const topics::Verdict& verdict) {
     for (topics::Attempt& kept : *lesson_.mutable_attempts())
         if (kept.number() == attempt) *kept.mutable_verdict() = verdict;
     has_changed_ = true;
 }
 
 // What Protobuf has parsed is UTF-8.
-std::string LessonBook::traineeProblem(const std::string& trainee) {
+std::string LessonState::traineeProblem(const std::string& trainee) {
     if (trainee.find_first_not_of(' ') == std::string::npos) return "give the trainee's name or number";
     if (trainee.size() > kLongestTrainee)
         return "the trainee's name has " + std::to_string(trainee.size()) + " bytes; " +
@@ -116,7 +116,7 @@ std::string LessonBook::traineeProblem(const std::string& trainee) {
     return "";
 }
 
-void LessonBook::beginAttempt(const std::string& trainee) {
+void LessonState::beginAttempt(const std::string& trainee) {
     const std::lock_guard lock(mutex_);
     ++attempts_begun_;
     lesson_.set_is_running(true);
@@ -125,12 +125,12 @@ void LessonBook::beginAttempt(const std::string& trainee) {
     has_changed_ = true;
 }
 
-bool LessonBook::isAttemptRunning() const {
+bool LessonState::isAttemptRunning() const {
     const std::lock_guard lock(mutex_);
     return lesson_.is_running();
 }
 
-int LessonBook::attemptsOf(const std::string& trainee) const {
+int LessonState::attemptsOf(const std::string& trainee) const {
     const std::lock_guard lock(mutex_);
     const auto is_one = [&](const topics::Attempt& attempt) {
         return attempt.trainee() == trainee && attempt.scene_id() == lesson_.scene_id();
@@ -139,14 +139,14 @@ int LessonBook::attemptsOf(const std::string& trainee) const {
            (lesson_.is_running() && lesson_.trainee() == trainee ? 1 : 0);
 }
 
-void LessonBook::dropAttempt() {
+void LessonState::dropAttempt() {
     const std::lock_guard lock(mutex_);
     --attempts_begun_;
     lesson_.set_is_running(false);
     has_changed_ = true;
 }
 
-void LessonBook::endAttempt(topics::Attempt attempt, const std::optional<topics::Command>& order,
+void LessonState::endAttempt(topics::Attempt attempt, const std::optional<topics::Command>& order,
                             std::optional<AttemptJudgement> judgement, Told told) {
     const std::lock_guard lock(mutex_);
     lesson_.set_is_running(false);
@@ -160,7 +160,7 @@ void LessonBook::endAttempt(topics::Attempt attempt, const std::optional<topics:
         if (order) answers_.emplace_back(*order, answerTo(*order, problem));
     }
     auto& attempts = *lesson_.mutable_attempts();
-    if (attempts.size() == kMostAttempts) attempts.DeleteSubrange(0, 1);
+    if (attempts.size() == kMaxAttempts) attempts.DeleteSubrange(0, 1);
     *attempts.Add() = told == Told::kAll ? std::move(attempt) : onlyThatItWas(attempt);
     has_changed_ = true;
 }

@@ -1,4 +1,4 @@
-#include "haptic_server/server/session/attempt_keeper.h"
+#include "haptic_server/server/session/attempt_controller.h"
 
 #include <spdlog/spdlog.h>
 
@@ -15,7 +15,7 @@
 namespace bonemill {
 namespace {
 
-JudgedAttempt judgedAttempt(const Technique& technique, const TaskWatch::Result& of_task) {
+JudgedAttempt judgedAttempt(const Technique& technique, const TaskMonitor::Result& of_task) {
     if (!of_task.problem.empty()) throw std::runtime_error(of_task.problem);
     JudgedAttempt judged{of_task.assessment, {}};
     judged.assessment.series = technique.series();
@@ -28,9 +28,9 @@ JudgedAttempt judgedAttempt(const Technique& technique, const TaskWatch::Result&
 
 }  // namespace
 
-AttemptKeeper::AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& history,
-                             JournalKeeper& journal, double voxel_volume, const scene::Scene& scene,
-                             std::function<void(bool begins)> tell_device, TaskWatch* task)
+AttemptController::AttemptController(LessonState& book, Recorder& recorder, BoneHistory& history,
+                             JournalRecorder& journal, double voxel_volume, const scene::Scene& scene,
+                             std::function<void(bool begins)> tell_device, TaskMonitor* task)
     : book_(book),
       recorder_(recorder),
       history_(history),
@@ -41,11 +41,11 @@ AttemptKeeper::AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& 
       task_(task),
       material_names_(materialNamesOf(scene)),
       scene_hash_(sceneHashOf(scene)),
-      told_(scene.assessment().exam() ? LessonBook::Told::kOnlyThatItWas : LessonBook::Told::kAll) {}
+      told_(scene.assessment().exam() ? LessonState::Told::kOnlyThatItWas : LessonState::Told::kAll) {}
 
-std::optional<Answer> AttemptKeeper::start(const topics::Command& order) {
+std::optional<Answer> AttemptController::start(const topics::Command& order) {
     const std::string& trainee = order.start_attempt();
-    if (const std::string problem = LessonBook::traineeProblem(trainee); !problem.empty())
+    if (const std::string problem = LessonState::traineeProblem(trainee); !problem.empty())
         return Answer::refused(problem);
     if (const std::string problem = limitProblem(trainee); !problem.empty()) return Answer::refused(problem);
     const bool is_answered_later = book_.isAttemptRunning() && end(order);
@@ -63,7 +63,7 @@ std::optional<Answer> AttemptKeeper::start(const topics::Command& order) {
     return Answer::done();
 }
 
-std::optional<Answer> AttemptKeeper::stop(const topics::Command& order) {
+std::optional<Answer> AttemptController::stop(const topics::Command& order) {
     if (!book_.isAttemptRunning()) return Answer::refused("no attempt is under way");
     const bool is_answered_later = end(order);
     history_.pauseMilling(true);
@@ -72,22 +72,22 @@ std::optional<Answer> AttemptKeeper::stop(const topics::Command& order) {
     return Answer::done();
 }
 
-void AttemptKeeper::stop() {
+void AttemptController::stop() {
     if (book_.isAttemptRunning()) end(std::nullopt);
 }
 
-void AttemptKeeper::noteRestored() {
+void AttemptController::noteRestored() {
     if (!book_.isAttemptRunning()) recorder_.beginAttempt(history_.newestOrder());
 }
 
-std::string AttemptKeeper::limitProblem(const std::string& trainee) const {
+std::string AttemptController::limitProblem(const std::string& trainee) const {
     if (!task_ || !task_->task() || task_->task()->most_attempts == 0) return "";
     if (book_.attemptsOf(trainee) < task_->task()->most_attempts) return "";
     return "'" + trainee + "' has had all " + std::to_string(task_->task()->most_attempts) +
            " attempts at this scene (assessment.most_attempts)";
 }
 
-void AttemptKeeper::round() {
+void AttemptController::round() {
     countTime();
     if (!task_ || !task_->task() || task_->task()->time_limit_s <= 0) return;
     if (!book_.isAttemptRunning() || time_s_ < task_->task()->time_limit_s) return;
@@ -97,13 +97,13 @@ void AttemptKeeper::round() {
     if (tell_device_) tell_device_(false);
 }
 
-void AttemptKeeper::countTime() {
+void AttemptController::countTime() {
     const int64_t now_ns = monotonicNowNs();
     if (!history_.isMillingPaused()) time_s_ += secondsOfNs(now_ns - counted_ns_);
     counted_ns_ = now_ns;
 }
 
-bool AttemptKeeper::end(const std::optional<topics::Command>& order) {
+bool AttemptController::end(const std::optional<topics::Command>& order) {
     countTime();
     // While the bone is still going back to the scan nothing was removed.
     const int64_t removed_voxels = history_.isRestoring() ? 0 : history_.missingVoxels();
@@ -125,10 +125,10 @@ bool AttemptKeeper::end(const std::optional<topics::Command>& order) {
 
 // The judging of the bone has begun when this returns. Of an attempt that no tick has seen there is nothing
 // to tell.
-std::optional<AttemptJudgement> AttemptKeeper::judgement(std::optional<double> breach) {
+std::optional<AttemptJudgement> AttemptController::judgement(std::optional<double> breach) {
     const std::shared_ptr<Technique> technique = recorder_.takeTechnique();
     if (technique) technique->finish();
-    std::shared_future<TaskWatch::Result> judged;
+    std::shared_future<TaskMonitor::Result> judged;
     if (task_) judged = task_->endAttempt(breach, technique ? technique->figures() : Figures{});
     if (!technique || technique->isEmpty()) return std::nullopt;
     AttemptJudgement judgement;

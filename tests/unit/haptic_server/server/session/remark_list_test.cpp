@@ -1,4 +1,4 @@
-#include "haptic_server/teaching/lessons/remark_book.h"
+#include "haptic_server/teaching/lessons/remark_list.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@ namespace bonemill {
 namespace {
 
 // The volume is a cube of 20 mm at x = 100 mm in W.
-class RemarkBookTest : public testing::Test {
+class RemarkListTest : public testing::Test {
   protected:
     static VolumeGeometry volume() {
         VolumeGeometry geometry;
@@ -34,10 +34,10 @@ class RemarkBookTest : public testing::Test {
     }
     std::string add(const topics::Command& command) { return book_.add(command, 12.5).text; }
 
-    RemarkBook book_{volume()};
+    RemarkList book_{volume()};
 };
 
-TEST_F(RemarkBookTest, TheServerSaysWhoSaidWhatAndWhen) {
+TEST_F(RemarkListTest, TheServerSaysWhoSaidWhatAndWhen) {
     topics::Command command = noteOf(
         "drill \xc3\xbc"
         "ber here",
@@ -67,17 +67,17 @@ TEST_F(RemarkBookTest, TheServerSaysWhoSaidWhatAndWhen) {
     EXPECT_EQ(book_.takeChanges().at(0).remark->author(), std::string(63, 'x')) << "whole letters only";
 }
 
-TEST_F(RemarkBookTest, WhatIsEmptyTooMuchOrNowhereIsRefusedWithAReason) {
+TEST_F(RemarkListTest, WhatIsEmptyTooMuchOrNowhereIsRefusedWithAReason) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     std::string umlauts;
-    for (size_t n = 0; n < kMostNoteLetters; ++n) umlauts += "\xc3\xbc";
+    for (size_t n = 0; n < kMaxNoteLetters; ++n) umlauts += "\xc3\xbc";
     const std::pair<topics::Command, std::string> cases[] = {
         {noteOf(""), "refused: there is neither a note nor a stroke of two points"},
         {strokeOf(1), "refused: there is neither a note nor a stroke of two points"},
         {noteOf("  "), "refused: the note is empty"},
         {noteOf(umlauts + "x"), "refused: the note has 301 letters; 300 at most"},
         {noteOf("a\nb"), "refused: the note has characters that cannot be printed"},
-        {strokeOf(kMostRemarkPoints + 1), "refused: the stroke has 301 points; 300 at most"},
+        {strokeOf(kMaxRemarkPoints + 1), "refused: the stroke has 301 points; 300 at most"},
         {noteOf("x", {0.1f, 0}), "refused: a point has three coordinates"},
         {noteOf("x", {0.1f, 0, 0, 0.1f, 0, 0}), "refused: a note belongs to one place at most"},
         {noteOf("x", {0.1f, kNan, 0}), "refused: point 1 is not at the bone"},
@@ -89,12 +89,12 @@ TEST_F(RemarkBookTest, WhatIsEmptyTooMuchOrNowhereIsRefusedWithAReason) {
     EXPECT_EQ(book_.count(), 0u);
     EXPECT_TRUE(book_.takeChanges().empty());
     EXPECT_EQ(add(noteOf(umlauts)), "done") << "letters count, not bytes";
-    EXPECT_EQ(add(strokeOf(kMostRemarkPoints)), "done");
+    EXPECT_EQ(add(strokeOf(kMaxRemarkPoints)), "done");
     EXPECT_EQ(add(noteOf("x", {0.1f, 0.069f, 0})), "done") << "beside the bone";
     EXPECT_EQ(book_.takeChanges().back().remark->number(), 3u) << "what is refused has no number";
 }
 
-TEST_F(RemarkBookTest, WhatIsErasedIsGoneAndItsPlaceFree) {
+TEST_F(RemarkListTest, WhatIsErasedIsGoneAndItsPlaceFree) {
     for (const char* text : {"one", "two", "three"}) ASSERT_EQ(add(noteOf(text)), "done");
     book_.takeChanges();
     EXPECT_EQ(book_.erase(4).text, "refused: there is no note or stroke 4; it may be erased already");
@@ -114,9 +114,9 @@ TEST_F(RemarkBookTest, WhatIsErasedIsGoneAndItsPlaceFree) {
     EXPECT_EQ(book_.erase(0).text, "done");
 }
 
-TEST_F(RemarkBookTest, TheOldestMakesRoom) {
-    for (uint32_t n = 0; n < kMostRemarks; ++n) ASSERT_EQ(add(noteOf("x")), "done");
-    EXPECT_EQ(book_.takeChanges().size(), kMostRemarks);
+TEST_F(RemarkListTest, TheOldestMakesRoom) {
+    for (uint32_t n = 0; n < kMaxRemarks; ++n) ASSERT_EQ(add(noteOf("x")), "done");
+    EXPECT_EQ(book_.takeChanges().size(), kMaxRemarks);
     ASSERT_EQ(book_.erase(11).text, "done");
     ASSERT_EQ(add(noteOf("fits")), "done");
     book_.takeChanges();
@@ -127,7 +127,7 @@ TEST_F(RemarkBookTest, TheOldestMakesRoom) {
         EXPECT_EQ(changes[0].place, place);
         EXPECT_EQ(changes[0].remark->note(), "newer");
     }
-    EXPECT_EQ(book_.count(), kMostRemarks);
+    EXPECT_EQ(book_.count(), kMaxRemarks);
     EXPECT_EQ(book_.erase(1).text, "refused: there is no note or stroke 1; it may be erased already");
 }
 

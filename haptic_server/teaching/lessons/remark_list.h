@@ -16,16 +16,16 @@
 
 namespace bonemill {
 
-class RemarkBook {
+class RemarkList {
   public:
     static constexpr double kFarthest = 0.05;     // m, of a point from the scanned volume
     static constexpr size_t kLongestAuthor = 64;  // bytes
 
     // Points must lie in or near this volume.
-    explicit RemarkBook(const VolumeGeometry& volume) : volume_(volume) {}
+    explicit RemarkList(const VolumeGeometry& volume) : volume_(volume) {}
 
     // Takes Command.add_remark: number, author, role and clock are filled in from the sender. The oldest one
-    // makes room where kMostRemarks are kept.
+    // makes room where kMaxRemarks are kept.
     Answer add(const topics::Command& command, double session_s);
     // Takes Command.erase_remark: a number, or 0 for all.
     Answer erase(uint32_t number);

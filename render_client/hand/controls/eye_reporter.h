@@ -21,12 +21,12 @@ inline topics::Eye eyeOf(const Camera& camera) {
     return eye;
 }
 
-class EyeWatch {
+class EyeReporter {
   public:
     using Clock = std::chrono::steady_clock;
     static constexpr std::chrono::milliseconds kPeriod{50};
-    static constexpr double kLeastMove = 1e-4;      // m
-    static constexpr double kLeastTurn = 1.745e-3;  // rad: 0.1 degree; also of the angle of view
+    static constexpr double kMinMove = 1e-4;      // m
+    static constexpr double kMinTurn = 1.745e-3;  // rad: 0.1 degree; also of the angle of view
 
     bool isDue(Clock::time_point now, const Camera& camera) const {
         return !told_ || (now - told_at_ >= kPeriod && hasMoved(camera));
@@ -39,8 +39,8 @@ class EyeWatch {
   private:
     bool hasMoved(const Camera& camera) const {
         const Eigen::AngleAxisd turn(Eigen::Matrix3d(told_->R_WC.transpose() * camera.R_WC));
-        return (camera.eye_W - told_->eye_W).norm() > kLeastMove || turn.angle() > kLeastTurn ||
-               std::abs(camera.field_of_view - told_->field_of_view) > kLeastTurn;
+        return (camera.eye_W - told_->eye_W).norm() > kMinMove || turn.angle() > kMinTurn ||
+               std::abs(camera.field_of_view - told_->field_of_view) > kMinTurn;
     }
 
     std::optional<Camera> told_;

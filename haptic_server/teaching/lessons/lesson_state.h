@@ -20,12 +20,12 @@
 
 namespace bonemill {
 
-class LessonBook {
+class LessonState {
   public:
-    static constexpr int kMostAttempts = 256;
+    static constexpr int kMaxAttempts = 256;
     static constexpr size_t kLongestTrainee = 48;  // bytes
 
-    LessonBook(std::vector<ListedScene> scenes, ClassTable table);
+    LessonState(std::vector<ListedScene> scenes, ClassTable table);
 
     // The publisher thread asks what is to be shown, once per change; the epoch is still missing, and so are
     // the pictures of the scenes, which never change.

@@ -13,9 +13,9 @@
 
 namespace bonemill {
 
-class JournalKeeper {
+class JournalRecorder {
   public:
-    JournalKeeper(BoneHistory& history, const BoneModel& bone) : history_(history), bone_(bone) {}
+    JournalRecorder(BoneHistory& history, const BoneModel& bone) : history_(history), bone_(bone) {}
 
     // From now on it goes there (null: nowhere); how the bone is now comes first.
     void begin(Journal* journal, const Checkpoints& checkpoints);

@@ -1,4 +1,4 @@
-#include "haptic_server/server/session/journal_keeper.h"
+#include "haptic_server/server/session/journal_recorder.h"
 
 #include "common/rt/clock.h"
 
@@ -10,33 +10,33 @@ constexpr int64_t kBonePeriodNs = 150 * kNsPerMillisecond;
 
 }  // namespace
 
-void JournalKeeper::begin(Journal* journal, const Checkpoints& checkpoints) {
+void JournalRecorder::begin(Journal* journal, const Checkpoints& checkpoints) {
     journal_ = journal;
     if (!journal_) return;
     noteBone();
     for (const Checkpoints::Checkpoint& checkpoint : checkpoints.kept()) noteCheckpoint(checkpoint);
 }
 
-void JournalKeeper::noteBone() {
+void JournalRecorder::noteBone() {
     last_bone_ns_ = monotonicNowNs();
     const uint64_t order = history_.finishedOrder();
     if (order != history_.newestOrder()) return;  // it is on its way to something that is known
     journal_->putBone(history_.snapshot(bone_), order);
 }
 
-void JournalKeeper::round() {
+void JournalRecorder::round() {
     if (journal_ && monotonicNowNs() - last_bone_ns_ >= kBonePeriodNs) noteBone();
 }
 
-void JournalKeeper::end() {
+void JournalRecorder::end() {
     if (journal_) noteBone();
 }
 
-void JournalKeeper::noteCheckpoint(const Checkpoints::Checkpoint& checkpoint) {
+void JournalRecorder::noteCheckpoint(const Checkpoints::Checkpoint& checkpoint) {
     if (journal_) journal_->putCheckpoint(checkpoint.snapshot, checkpoint.id, checkpoint.session_s);
 }
 
-void JournalKeeper::expectPutBack(uint32_t checkpoint) {
+void JournalRecorder::expectPutBack(uint32_t checkpoint) {
     if (!journal_) return;
     journal::PutBack put_back;
     put_back.set_bone_order(history_.newestOrder() + 1);
@@ -44,7 +44,7 @@ void JournalKeeper::expectPutBack(uint32_t checkpoint) {
     journal_->put(JournalTopic::kPutBack, put_back);
 }
 
-void JournalKeeper::noteOrder(const topics::Command& command, const std::string& result) {
+void JournalRecorder::noteOrder(const topics::Command& command, const std::string& result) {
     if (!journal_) return;
     journal::Order order;
     order.set_tick(journal_->ticks());
@@ -53,7 +53,7 @@ void JournalKeeper::noteOrder(const topics::Command& command, const std::string&
     journal_->put(JournalTopic::kOrder, order);
 }
 
-void JournalKeeper::noteEye(const SeenEye& eye) {
+void JournalRecorder::noteEye(const SeenEye& eye) {
     if (!journal_) return;
     journal::Camera camera;
     camera.set_sender(eye.sender);
@@ -66,7 +66,7 @@ void JournalKeeper::noteEye(const SeenEye& eye) {
     journal_->put(JournalTopic::kCamera, camera);
 }
 
-void JournalKeeper::noteAttemptBegan(const std::string& trainee, uint64_t bone_order) {
+void JournalRecorder::noteAttemptBegan(const std::string& trainee, uint64_t bone_order) {
     if (!journal_) return;
     journal::Event event;
     event.set_tick(journal_->ticks());
@@ -75,7 +75,7 @@ void JournalKeeper::noteAttemptBegan(const std::string& trainee, uint64_t bone_o
     journal_->put(JournalTopic::kEvent, event);
 }
 
-void JournalKeeper::noteAttemptEnded(const topics::Attempt& attempt) {
+void JournalRecorder::noteAttemptEnded(const topics::Attempt& attempt) {
     if (!journal_) return;
     journal::Event event;
     event.set_tick(journal_->ticks());
@@ -83,7 +83,7 @@ void JournalKeeper::noteAttemptEnded(const topics::Attempt& attempt) {
     journal_->put(JournalTopic::kEvent, event);
 }
 
-void JournalKeeper::noteAttemptDropped() {
+void JournalRecorder::noteAttemptDropped() {
     if (!journal_) return;
     journal::Event event;
     event.set_tick(journal_->ticks());

@@ -18,7 +18,7 @@
 
 namespace bonemill {
 
-class TaskWatch {
+class TaskMonitor {
   public:
     struct Result {
         Assessment assessment;
@@ -27,11 +27,11 @@ class TaskWatch {
     };
 
     // `task` is null in a scene without one: then nothing is watched. References must outlive this object.
-    TaskWatch(std::shared_ptr<const JudgedTask> task, const BoneModel& bone, BoneHistory& history);
+    TaskMonitor(std::shared_ptr<const JudgedTask> task, const BoneModel& bone, BoneHistory& history);
     // Waits for the judgement under way: it works on this object, whoever else waits for it.
-    ~TaskWatch();
-    TaskWatch(const TaskWatch&) = delete;
-    TaskWatch& operator=(const TaskWatch&) = delete;
+    ~TaskMonitor();
+    TaskMonitor(const TaskMonitor&) = delete;
+    TaskMonitor& operator=(const TaskMonitor&) = delete;
 
     const JudgedTask* task() const noexcept { return task_.get(); }
     // Are viewers to see the zones on the bone now? For any thread.

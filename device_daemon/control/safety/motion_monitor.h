@@ -18,7 +18,7 @@ struct MotionLimits {
     double max_force = 50;            // N, of the device: what a mismatch is compared with
 };
 
-class MotionWatch {
+class MotionMonitor {
   public:
     static constexpr double kPowerTime = 0.02;  // s
     static constexpr double kEnergyTime = 1;    // s
@@ -28,11 +28,11 @@ class MotionWatch {
     static constexpr double kMismatchShare = 0.25;  // of the ordered force
     static constexpr double kMismatchFloor = 0.05;  // of the device's largest force
     static constexpr int kFastSamples = 3;          // in a row: one alone may be noise
-    // Motors hotter than this get less, down to kLeastShare at a load of 1, where the device stops.
+    // Motors hotter than this get less, down to kMinShare at a load of 1, where the device stops.
     static constexpr double kWarmLoad = 0.8;
-    static constexpr double kLeastShare = 0.3;
+    static constexpr double kMinShare = 0.3;
 
-    explicit MotionWatch(const MotionLimits& limits = {}) noexcept : limits_(limits) {}
+    explicit MotionMonitor(const MotionLimits& limits = {}) noexcept : limits_(limits) {}
     void setLimits(const MotionLimits& limits) noexcept { limits_ = limits; }
 
     // Forgets what was: the device engages, or its motors are off.

@@ -9,14 +9,14 @@
 
 namespace bonemill {
 
-class DeafWatch {
+class SilenceMonitor {
   public:
     using Clock = std::chrono::steady_clock;
     static constexpr std::chrono::milliseconds kFirstSilence{6000};
     static constexpr std::chrono::seconds kLongestSilence{30};
 
     // After so much silence, then twice as much and so on up to kLongestSilence.
-    explicit DeafWatch(std::chrono::milliseconds first = kFirstSilence, Clock::time_point now = Clock::now())
+    explicit SilenceMonitor(std::chrono::milliseconds first = kFirstSilence, Clock::time_point now = Clock::now())
         : first_(first), patience_(first), since_(now) {}
 
     // Is to be told often that time passes. Returns how long the caller has slept in between, if it has:

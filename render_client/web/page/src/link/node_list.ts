@@ -10,7 +10,7 @@ interface Held {
   triangles: number;
 }
 
-export class NodeBook {
+export class NodeList {
   epoch = 0n;
   private readonly held = new Map<number, Held>();
   private triangles = 0;

@@ -1,10 +1,10 @@
-#include "haptic_server/server/session/task_watch.h"
+#include "haptic_server/server/session/task_monitor.h"
 
 #include <gtest/gtest.h>
 
 #include "haptic_server/recording/journal/journal.h"
 #include "haptic_server/recording/journal/journal_reader.h"
-#include "haptic_server/server/session/attempt_keeper.h"
+#include "haptic_server/server/session/attempt_controller.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/haptic_server/core/bone/milled_ball.h"
 
@@ -30,7 +30,7 @@ class TaskWatching : public testing::Test {
   protected:
     TaskWatching() : task_(ballTask(ball_.bone)) {}
 
-    topics::TaskState stateOf(const TaskWatch& watch, bool is_running, double time_s = 0) const {
+    topics::TaskState stateOf(const TaskMonitor& watch, bool is_running, double time_s = 0) const {
         topics::Status status;
         watch.describe(is_running, time_s, status);
         return status.task();
@@ -41,7 +41,7 @@ class TaskWatching : public testing::Test {
 };
 
 TEST_F(TaskWatching, ASceneWithoutATaskIsNotWatched) {
-    TaskWatch watch(nullptr, ball_.bone, ball_.history);
+    TaskMonitor watch(nullptr, ball_.bone, ball_.history);
     watch.round();
     watch.beginAttempt();
     EXPECT_FALSE(watch.endAttempt({}, {}).valid());
@@ -54,7 +54,7 @@ TEST_F(TaskWatching, ASceneWithoutATaskIsNotWatched) {
 
 TEST_F(TaskWatching, LiveItTellsWhatIsGoneAndHowTheGatesStand) {
     task_->time_limit_s = 60;
-    TaskWatch watch(task_, ball_.bone, ball_.history);
+    TaskMonitor watch(task_, ball_.bone, ball_.history);
     EXPECT_TRUE(watch.showsZones());
     watch.beginAttempt();
     watch.round();
@@ -69,7 +69,7 @@ TEST_F(TaskWatching, LiveItTellsWhatIsGoneAndHowTheGatesStand) {
 
     ball_.groove(10e-3);        // in the target
     ball_.groove(10e-3, 5e-3);  // in the leeway
-    TaskWatch late(task_, ball_.bone, ball_.history);
+    TaskMonitor late(task_, ball_.bone, ball_.history);
     const double gone = double(ball_.history.missingVoxels()) * 0.125;
     const auto counted = [&] {
         state = stateOf(late, true, 20);
@@ -81,12 +81,12 @@ TEST_F(TaskWatching, LiveItTellsWhatIsGoneAndHowTheGatesStand) {
 }
 
 TEST_F(TaskWatching, AnAttemptIsJudgedWhenItHasEnded) {
-    TaskWatch watch(task_, ball_.bone, ball_.history);
+    TaskMonitor watch(task_, ball_.bone, ball_.history);
     watch.beginAttempt();
     ball_.groove(10e-3);
     const auto judged = watch.endAttempt(1.5e-3, {{"force.max", 1, "Largest force", 3, "N"}});
     watch.finish();
-    const TaskWatch::Result* const result = &judged.get();
+    const TaskMonitor::Result* const result = &judged.get();
     EXPECT_EQ(result->problem, "");
     EXPECT_FALSE(result->assessment.hasPassed());
     EXPECT_TRUE(result->assessment.gates[0].is_passed);
@@ -105,7 +105,7 @@ TEST_F(TaskWatching, AnAttemptIsJudgedWhenItHasEnded) {
 
 TEST_F(TaskWatching, AfterwardsZonesShowBetweenAttemptsAndInAnExaminationNever) {
     task_->feedback = TaskFeedback::kAfterwards;
-    TaskWatch watch(task_, ball_.bone, ball_.history);
+    TaskMonitor watch(task_, ball_.bone, ball_.history);
     EXPECT_FALSE(watch.showsZones());
     EXPECT_EQ(stateOf(watch, true).zones_size(), 0);
     watch.beginAttempt();
@@ -118,7 +118,7 @@ TEST_F(TaskWatching, AfterwardsZonesShowBetweenAttemptsAndInAnExaminationNever) 
 
     task_->feedback = TaskFeedback::kNever;
     task_->time_limit_s = 60;
-    TaskWatch exam(task_, ball_.bone, ball_.history);
+    TaskMonitor exam(task_, ball_.bone, ball_.history);
     exam.endAttempt({}, {});
     exam.finish();
     EXPECT_FALSE(exam.showsZones());
@@ -132,7 +132,7 @@ class LimitedAttempts : public TaskWatching {
   protected:
     LimitedAttempts() : ring_(16), recorder_(ring_, 1'000'000) {}
 
-    std::string start(AttemptKeeper& attempts, const std::string& trainee) {
+    std::string start(AttemptController& attempts, const std::string& trainee) {
         topics::Command order;
         order.set_start_attempt(trainee);
         const auto answer = attempts.start(order);
@@ -141,14 +141,14 @@ class LimitedAttempts : public TaskWatching {
 
     SpscRing<TickRecord> ring_;
     Recorder recorder_;
-    LessonBook lesson_{{}, ClassTable("")};
-    JournalKeeper journal_{ball_.history, ball_.bone};  // that goes nowhere
+    LessonState lesson_{{}, ClassTable("")};
+    JournalRecorder journal_{ball_.history, ball_.bone};  // that goes nowhere
 };
 
 TEST_F(LimitedAttempts, EachTraineeHasSoMany) {
     task_->most_attempts = 2;
-    TaskWatch watch(task_, ball_.bone, ball_.history);
-    AttemptKeeper attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(), {},
+    TaskMonitor watch(task_, ball_.bone, ball_.history);
+    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(), {},
                            {}, &watch);
     for (int n = 0; n < 2; ++n) {
         EXPECT_NE(start(attempts, "Ann").find("refused"), 0u);
@@ -164,8 +164,8 @@ TEST_F(LimitedAttempts, EachTraineeHasSoMany) {
 
 TEST_F(LimitedAttempts, AnAttemptEndsWithItsTime) {
     task_->time_limit_s = 1e-3;
-    TaskWatch watch(task_, ball_.bone, ball_.history);
-    AttemptKeeper attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(), {},
+    TaskMonitor watch(task_, ball_.bone, ball_.history);
+    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(), {},
                            {}, &watch);
     start(attempts, "Ann");
     ball_.restoreAll();
@@ -184,7 +184,7 @@ TEST_F(LimitedAttempts, TheJournalSaysThatOneWasDropped) {
     const ScannedBone scanned{ball_.history.scanned(), ball_.bone.lattice};
     Journal journal(config, scanned);
     journal_.begin(&journal, Checkpoints(ball_.history, ball_.bone));
-    AttemptKeeper attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(), {});
+    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(), {});
     start(attempts, "Ann");
     attempts.stop();
     start(attempts, "Bob");
@@ -203,11 +203,11 @@ TEST_F(LimitedAttempts, TheJournalSaysThatOneWasDropped) {
 
 TEST_F(LimitedAttempts, OfAnExaminationOnlyTheTimeIsTold) {
     task_->is_exam = true;
-    TaskWatch watch(task_, ball_.bone, ball_.history);
+    TaskMonitor watch(task_, ball_.bone, ball_.history);
     scene::Scene scene;
     scene.mutable_assessment()->set_exam(true);
     scene.mutable_effects()->mutable_thermal();
-    AttemptKeeper attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(),
+    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(),
                            scene, {}, &watch);
     start(attempts, "Ann");
     ball_.restoreAll();

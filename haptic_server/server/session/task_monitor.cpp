@@ -1,4 +1,4 @@
-#include "haptic_server/server/session/task_watch.h"
+#include "haptic_server/server/session/task_monitor.h"
 
 #include <spdlog/spdlog.h>
 
@@ -33,7 +33,7 @@ void addGate(topics::TaskState& state, const GateResult& gate, topics::TaskState
 
 }  // namespace
 
-TaskWatch::TaskWatch(std::shared_ptr<const JudgedTask> task, const BoneModel& bone, BoneHistory& history)
+TaskMonitor::TaskMonitor(std::shared_ptr<const JudgedTask> task, const BoneModel& bone, BoneHistory& history)
     : task_(std::move(task)),
       bone_(bone),
       history_(history),
@@ -43,11 +43,11 @@ TaskWatch::TaskWatch(std::shared_ptr<const JudgedTask> task, const BoneModel& bo
     tally_.emplace(history.scanned(), bone.volume, bone.lattice, *task_);
 }
 
-TaskWatch::~TaskWatch() {
+TaskMonitor::~TaskMonitor() {
     if (judging_.valid()) judging_.wait();
 }
 
-void TaskWatch::round() {
+void TaskMonitor::round() {
     using namespace std::chrono_literals;
     if (judging_.valid() && judging_.wait_for(0s) == std::future_status::ready) finish();
     const int64_t now_ns = monotonicNowNs();
@@ -56,12 +56,12 @@ void TaskWatch::round() {
     next_update_ns_ = now_ns + kUpdatePeriodNs;
 }
 
-void TaskWatch::beginAttempt() {
+void TaskMonitor::beginAttempt() {
     last_.reset();
     if (task_ && task_->feedback == TaskFeedback::kAfterwards) shows_zones_ = false;
 }
 
-std::shared_future<TaskWatch::Result> TaskWatch::endAttempt(std::optional<double> breach, Figures technique) {
+std::shared_future<TaskMonitor::Result> TaskMonitor::endAttempt(std::optional<double> breach, Figures technique) {
     if (!task_) return {};
     judging_ = std::async(std::launch::async, [this, breach, technique = std::move(technique),
                                                snapshot = history_.snapshot(bone_),
@@ -86,14 +86,14 @@ std::shared_future<TaskWatch::Result> TaskWatch::endAttempt(std::optional<double
     return judging_;
 }
 
-void TaskWatch::finish() {
+void TaskMonitor::finish() {
     if (!judging_.valid()) return;
     if (const Result& result = judging_.get(); result.problem.empty()) last_ = result.assessment;
     judging_ = {};
 }
 
 // Of what is counted all along.
-Figures TaskWatch::runningFigures() const {
+Figures TaskMonitor::runningFigures() const {
     ProductCounts counts = scanned_counts_;
     for (size_t zone = 0; zone < counts.zones.size(); ++zone)
         counts.zones[zone].removed = tally_->removed()[zone];
@@ -105,7 +105,7 @@ Figures TaskWatch::runningFigures() const {
     return figures;
 }
 
-void TaskWatch::describeZones(topics::TaskState& state) const {
+void TaskMonitor::describeZones(topics::TaskState& state) const {
     const double voxel_mm3 = bone_.volume.voxelVolume() * kPerCubicMillimetre;
     for (size_t n = 0; n < task_->zones.size(); ++n) {
         topics::TaskState::Zone& zone = *state.add_zones();
@@ -116,7 +116,7 @@ void TaskWatch::describeZones(topics::TaskState& state) const {
     }
 }
 
-void TaskWatch::describe(bool is_running, double time_s, topics::Status& status) const {
+void TaskMonitor::describe(bool is_running, double time_s, topics::Status& status) const {
     if (!task_) return;
     topics::TaskState state;
     if (is_running && task_->time_limit_s > 0) state.set_time_left_s(task_->time_limit_s - time_s);

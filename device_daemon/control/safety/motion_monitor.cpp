@@ -1,4 +1,4 @@
-#include "device_daemon/control/safety/motion_watch.h"
+#include "device_daemon/control/safety/motion_monitor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,28 +13,28 @@ double shareOf(double dt, double time) noexcept {
 
 }  // namespace
 
-void MotionWatch::restart() noexcept {
+void MotionMonitor::restart() noexcept {
     fast_samples_ = 0;
     power_ = energy_ = mismatched_for_ = 0;
     given_smooth_.setZero();
     applied_smooth_.setZero();
 }
 
-StopCause MotionWatch::check(const DeviceReading& reading, const Wrench& given_D, double dt) noexcept {
+StopCause MotionMonitor::check(const DeviceReading& reading, const Wrench& given_D, double dt) noexcept {
     if (isTooFast(reading)) return StopCause::kSpeed;
     if (reading.load >= 1) return StopCause::kOverTemperature;
     if (const StopCause cause = checkPower(reading, given_D, dt); cause != StopCause::kNone) return cause;
     return isMismatched(reading, given_D, dt) ? StopCause::kForceMismatch : StopCause::kNone;
 }
 
-bool MotionWatch::isTooFast(const DeviceReading& reading) noexcept {
+bool MotionMonitor::isTooFast(const DeviceReading& reading) noexcept {
     const bool is_fast =
         !(reading.v_DT.norm() <= limits_.max_speed) || !(reading.w_DT.norm() <= limits_.max_angular_speed);
     fast_samples_ = is_fast ? fast_samples_ + 1 : 0;
     return fast_samples_ >= kFastSamples;
 }
 
-StopCause MotionWatch::checkPower(const DeviceReading& reading, const Wrench& given_D, double dt) noexcept {
+StopCause MotionMonitor::checkPower(const DeviceReading& reading, const Wrench& given_D, double dt) noexcept {
     const double power = given_D.force.dot(reading.v_DT) + given_D.torque.dot(reading.w_DT);
     if (!std::isfinite(power)) return StopCause::kNone;  // isTooFast() counts such samples
     power_ += shareOf(dt, kPowerTime) * (power - power_);
@@ -44,7 +44,7 @@ StopCause MotionWatch::checkPower(const DeviceReading& reading, const Wrench& gi
     return StopCause::kNone;
 }
 
-bool MotionWatch::isMismatched(const DeviceReading& reading, const Wrench& given_D, double dt) noexcept {
+bool MotionMonitor::isMismatched(const DeviceReading& reading, const Wrench& given_D, double dt) noexcept {
     if (!reading.has_applied) return false;
     const double share = shareOf(dt, kMismatchTime);
     const Eigen::Vector3d ordered = reading.applied_share * given_D.force;
@@ -56,10 +56,10 @@ bool MotionWatch::isMismatched(const DeviceReading& reading, const Wrench& given
     return mismatched_for_ > kMismatchLasts;
 }
 
-double MotionWatch::warmShare(double load) noexcept {
+double MotionMonitor::warmShare(double load) noexcept {
     if (!(load > kWarmLoad)) return 1;
     const double way = std::min((load - kWarmLoad) / (1 - kWarmLoad), 1.0);
-    return 1 - way * (1 - kLeastShare);
+    return 1 - way * (1 - kMinShare);
 }
 
 }  // namespace bonemill

@@ -9,15 +9,15 @@
 
 #include "common/commands/answer.h"
 #include "haptic_server/core/bone/bone_history.h"
-#include "haptic_server/server/session/journal_keeper.h"
+#include "haptic_server/server/session/journal_recorder.h"
 #include "haptic_server/server/session/recorder.h"
 #include "haptic_server/server/session/shown_effects.h"
-#include "haptic_server/server/session/task_watch.h"
-#include "haptic_server/teaching/lessons/lesson_book.h"
+#include "haptic_server/server/session/task_monitor.h"
+#include "haptic_server/teaching/lessons/lesson_state.h"
 
 namespace bonemill {
 
-class AttemptKeeper {
+class AttemptController {
   public:
     // A shorter attempt that removed nothing was begun by mistake: it counts as none.
     static constexpr double kShortest = 2;  // s
@@ -25,12 +25,12 @@ class AttemptKeeper {
     // References must outlive this object. `tell_device` is told when an attempt begins (true) and when the
     // one under way ends without another. `task` (null: none) has each attempt judged, and may limit their
     // number and time.
-    AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& history, JournalKeeper& journal,
+    AttemptController(LessonState& book, Recorder& recorder, BoneHistory& history, JournalRecorder& journal,
                   double voxel_volume, const scene::Scene& scene,
-                  std::function<void(bool begins)> tell_device = {}, TaskWatch* task = nullptr);
+                  std::function<void(bool begins)> tell_device = {}, TaskMonitor* task = nullptr);
 
     // The bone goes back to the scan, and milling goes on. Where
-    // an attempt that is recorded ends with the order, the answer comes with LessonBook::takeAnswers().
+    // an attempt that is recorded ends with the order, the answer comes with LessonState::takeAnswers().
     std::optional<Answer> start(const topics::Command& order);
     // Likewise; milling is paused until it is resumed, or another attempt begins.
     std::optional<Answer> stop(const topics::Command& order);
@@ -51,17 +51,17 @@ class AttemptKeeper {
     bool end(const std::optional<topics::Command>& order);
     std::optional<AttemptJudgement> judgement(std::optional<double> breach);
 
-    LessonBook& book_;
+    LessonState& book_;
     Recorder& recorder_;
     BoneHistory& history_;
-    JournalKeeper& journal_;
+    JournalRecorder& journal_;
     double voxel_mm3_;
     ShownEffects effects_;
     std::function<void(bool begins)> tell_device_;
-    TaskWatch* task_;
+    TaskMonitor* task_;
     std::vector<std::string> material_names_;
     uint64_t scene_hash_;
-    LessonBook::Told told_;
+    LessonState::Told told_;
     double time_s_ = 0;
     int64_t counted_ns_ = 0;  // CLOCK_MONOTONIC until which it is counted
 };

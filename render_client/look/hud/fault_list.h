@@ -20,20 +20,20 @@ struct FaultEntry {
     bool lasts = false;  // it is not over
 };
 
-class FaultBook {
+class FaultList {
   public:
     using Clock = std::chrono::steady_clock;
     static constexpr std::chrono::milliseconds kShown{5000};  // at least
     static constexpr std::chrono::milliseconds kFade{1500};
-    static constexpr size_t kMostShown = 2;
-    static constexpr size_t kMostKept = 64;  // bounds what invented names can take
+    static constexpr size_t kMaxShown = 2;
+    static constexpr size_t kMaxKept = 64;  // bounds what invented names can take
 
     // Takes what stands in the way at this time; session_s is the session's clock.
     void observe(const std::vector<Condition>& conditions, double session_s, Clock::time_point now);
     // Another session begins.
     void clear() { kept_.clear(); }
 
-    // Returns what is to be said now: what lasts before what fades, the worst first, at most kMostShown; of
+    // Returns what is to be said now: what lasts before what fades, the worst first, at most kMaxShown; of
     // more, the last one says how many.
     std::vector<HudNotice> said(Clock::time_point now) const;
     // The first fault comes first.

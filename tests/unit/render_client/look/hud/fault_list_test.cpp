@@ -1,4 +1,4 @@
-#include "render_client/look/hud/fault_book.h"
+#include "render_client/look/hud/fault_list.h"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@ const Condition kEnd{"end", "The session has ended."};
 
 class Faults : public testing::Test {
   protected:
-    void at(FaultBook::Clock::duration time, const std::vector<Condition>& conditions) {
-        now_ = FaultBook::Clock::time_point(100s) + time;
+    void at(FaultList::Clock::duration time, const std::vector<Condition>& conditions) {
+        now_ = FaultList::Clock::time_point(100s) + time;
         book_.observe(conditions, std::chrono::duration<double>(time).count(), now_);
     }
     std::string said() const {
@@ -25,8 +25,8 @@ class Faults : public testing::Test {
     }
     float opacity() const { return book_.said(now_).at(0).opacity; }
 
-    FaultBook book_;
-    FaultBook::Clock::time_point now_;
+    FaultList book_;
+    FaultList::Clock::time_point now_;
 };
 
 TEST_F(Faults, WhatLastsIsSaidUntilItIsOverAndFades) {
@@ -44,16 +44,16 @@ TEST_F(Faults, WhatLastsIsSaidUntilItIsOverAndFades) {
 TEST_F(Faults, WhatIsOverAtOnceIsStillSaidLongEnoughToBeRead) {
     at(0s, {kSilence});
     at(100ms, {});
-    at(FaultBook::kShown - 1ms, {});
+    at(FaultList::kShown - 1ms, {});
     EXPECT_EQ(opacity(), 1);
-    at(FaultBook::kShown + FaultBook::kFade, {});
+    at(FaultList::kShown + FaultList::kFade, {});
     EXPECT_EQ(said(), "");
 }
 
 TEST_F(Faults, WhatTheServerLatchesIsSaidOnce) {
     at(0s, {kOverrun});
     EXPECT_EQ(said(), "|" + kOverrun.text);
-    at(FaultBook::kShown + FaultBook::kFade, {kOverrun});
+    at(FaultList::kShown + FaultList::kFade, {kOverrun});
     EXPECT_EQ(said(), "") << "it is still latched";
     at(1h, {kOverrun});
     EXPECT_EQ(said(), "");
@@ -116,8 +116,8 @@ TEST_F(Faults, NoFloodOfNamesFillsTheMemory) {
     std::vector<Condition> flood;
     for (int i = 0; i < 1000; ++i) flood.push_back({std::to_string(i), "x", HudTone::kAlarm, true, false});
     at(0s, flood);
-    EXPECT_EQ(book_.faults().size(), FaultBook::kMostKept);
-    EXPECT_EQ(book_.said(now_).size(), FaultBook::kMostShown);
+    EXPECT_EQ(book_.faults().size(), FaultList::kMaxKept);
+    EXPECT_EQ(book_.said(now_).size(), FaultList::kMaxShown);
 }
 
 }  // namespace

@@ -8,12 +8,12 @@
 
 namespace bonemill {
 
-class HoldWatch {
+class HoldMonitor {
   public:
     static constexpr double kPatience = 2;    // s that the tool is caught, or mills in the air
     static constexpr double kFar = 6e-3;      // m from where it is wanted: more is caught
     static constexpr double kFarBurrs = 4;    // the same in burr radii, if that is more
-    static constexpr int kMostRescues = 2;    // in a row; then only the user can help
+    static constexpr int kMaxRescues = 2;    // in a row; then only the user can help
     static constexpr double kLongestGap = 1;  // s between two looks; what was in a longer one is not known
 
     enum class Advice {
@@ -40,9 +40,9 @@ class HoldWatch {
         if (is_near || sight.presses) caught_since_ = sight.now;
         if (!sight.presses) is_told_ = false;
         if (!sight.presses || sight.touches || !sight.can_mill) pressed_since_ = sight.now;
-        if (sight.now - caught_since_ > kPatience && rescues_ <= kMostRescues) {
+        if (sight.now - caught_since_ > kPatience && rescues_ <= kMaxRescues) {
             caught_since_ = sight.now;
-            return ++rescues_ <= kMostRescues ? Advice::kFree : Advice::kHelp;
+            return ++rescues_ <= kMaxRescues ? Advice::kFree : Advice::kHelp;
         }
         if (is_told_ || sight.now - pressed_since_ <= kPatience) return Advice::kNone;
         is_told_ = true;

@@ -9,10 +9,10 @@
 
 namespace bonemill {
 
-class BreachWatch {
+class BreachMonitor {
   public:
     // `burrs` are the tools' in the scene's order. The bone is copied.
-    BreachWatch(const VoxelVolume& scanned, const PlannedLine& line, std::vector<BurrProbes> burrs)
+    BreachMonitor(const VoxelVolume& scanned, const PlannedLine& line, std::vector<BurrProbes> burrs)
         : X_VW_(scanned.geometry().X_WV.inverse()),
           meter_(std::make_shared<const SolidBone>(scanned, line), line),
           burrs_(std::move(burrs)) {}
