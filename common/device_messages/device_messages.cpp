@@ -25,9 +25,8 @@ bool isPlausible(const HandleDynamics& handle) noexcept {
     constexpr double kMaxTime = 1;  // s
     return isNoneOrWithin(handle.mass, 1e-4, 1e3) && isNoneOrWithin(handle.inertia, 1e-9, 1e2) &&
            isNoneOrWithin(handle.damping, 0, 1e5) && isNoneOrWithin(handle.angular_damping, 0, 1e4) &&
-           isNoneOrWithin(handle.amplifier_time, 0, kMaxTime) &&
-           isNoneOrWithin(handle.delay, 0, kMaxTime) && isNoneOrWithin(handle.encoder_step, 1e-12, 1e-2) &&
-           isNoneOrWithin(handle.encoder_angle, 1e-12, 1);
+           isNoneOrWithin(handle.amplifier_time, 0, kMaxTime) && isNoneOrWithin(handle.delay, 0, kMaxTime) &&
+           isNoneOrWithin(handle.encoder_step, 1e-12, 1e-2) && isNoneOrWithin(handle.encoder_angle, 1e-12, 1);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 constexpr uint64_t kMaxHeader = 4096;
 constexpr uint64_t kMaxPlain = kMaxChunk + kMaxMessage;
 constexpr uint64_t kMaxPacked = kMaxPlain + kMaxPlain / 128;  // more than zstd ever makes of it
-constexpr uint64_t kMaxTorn = uint64_t(1) << 20;                // of one chunk
+constexpr uint64_t kMaxTorn = uint64_t(1) << 20;              // of one chunk
 
 // The rest of the file, of which no more is read than is there.
 class Input {

@@ -1,7 +1,7 @@
 // All contact laws: our own and those of other schools, for a tick that can choose any (TickConfig::laws).
 #pragma once
 
-#include "haptic_server/core/spo/spo_models.h"
+#include "haptic_server/core/equilibrium/spo_models.h"
 
 namespace bonemill {
 

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "haptic_server/core/spo/spo_model.h"
+#include "haptic_server/core/equilibrium/spo_model.h"
 #include "haptic_server/core/tool/tool_field.h"
 
 namespace bonemill {

@@ -6,9 +6,9 @@
 namespace bonemill::bench {
 namespace {
 
-constexpr double kFaceOffset = 0.3;       // voxels: not in step with the grid
+constexpr double kFaceOffset = 0.3;   // voxels: not in step with the grid
 constexpr double kMaxHeading = 1.05;  // rad to either side
-constexpr double kWindingTime = 1.0;      // s
+constexpr double kWindingTime = 1.0;  // s
 
 double faceHeight(int edge) {
     return edge / 2 + kFaceOffset;  // voxels

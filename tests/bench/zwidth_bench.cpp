@@ -117,8 +117,7 @@ ZwidthRow Setup::row(const char* quantity, double coupling, double contact, doub
 ZwidthRow zwidth(const Setup& setup) {
     ZwidthRow best;
     for (const double contact : kContactFactors) {
-        const double coupling =
-            largestStable([&](double f) { return setup.isStable(f, contact, kMaxDrag); });
+        const double coupling = largestStable([&](double f) { return setup.isStable(f, contact, kMaxDrag); });
         const ZwidthRow row = setup.row(setup.tunes_baseline ? "tuned" : "zwidth", coupling,
                                         contact * (coupling > 0), kMaxDrag);
         if (best.variant.empty() || row.rendered > best.rendered) best = row;

@@ -9,7 +9,7 @@
 namespace bonemill::test {
 namespace {
 
-constexpr double kPush = 2;            // N, by the hand's spring or, with no hand, a weight
+constexpr double kPush = 2;        // N, by the hand's spring or, with no hand, a weight
 constexpr double kMaxBuzz = 0.05;  // N RMS
 
 template <class Kind>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "haptic_server/core/bone/bone_model.h"
-#include "haptic_server/core/spo/gradient_model.h"
+#include "haptic_server/core/equilibrium/gradient_model.h"
 #include "tests/support/test_bodies.h"
 
 namespace bonemill::test {

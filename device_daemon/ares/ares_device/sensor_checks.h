@@ -67,7 +67,7 @@ class FrozenCheck {
 
     static constexpr double kChangedTime = 0.1;  // s, after the push has changed
     static constexpr double kSteadyTime = 10;    // s
-    static constexpr double kMinPush = 1;      // N, beyond twice the friction
+    static constexpr double kMinPush = 1;        // N, beyond twice the friction
 
   private:
     double least_push_;  // N

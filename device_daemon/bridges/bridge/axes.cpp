@@ -5,8 +5,7 @@
 namespace bonemill::bridge {
 
 std::optional<Eigen::Quaterniond> repairedRotation(const Eigen::Matrix3d& matrix) noexcept {
-    constexpr double kMaxStretch =
-        0.1;  // a rotation stretches nothing; vendors' are wrong by less than 1e-3
+    constexpr double kMaxStretch = 0.1;  // a rotation stretches nothing; vendors' are wrong by less than 1e-3
     if (!matrix.allFinite()) return std::nullopt;
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
     if (svd.info() != Eigen::Success) return std::nullopt;

@@ -20,7 +20,7 @@ RumbleLevel rumbleOf(double force, bool is_cutting) noexcept;
 
 class RumbleMotors {
   public:
-    static constexpr double kFullForce = 8;     // N
+    static constexpr double kFullForce = 8;   // N
     static constexpr double kMinForce = 0.3;  // N; below it the strong motor rests
 
     RumbleMotors() = default;

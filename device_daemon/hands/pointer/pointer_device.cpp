@@ -12,8 +12,8 @@ namespace bonemill {
 namespace {
 
 constexpr std::chrono::milliseconds kStopDelay{50};  // how late the thread may notice that it shall end
-constexpr size_t kMaxWishesAtOnce = 256;            // more are a flood of foreign sessions
-constexpr uint64_t kMaxNamedWishes = 4;             // malformed ones in the log
+constexpr size_t kMaxWishesAtOnce = 256;             // more are a flood of foreign sessions
+constexpr uint64_t kMaxNamedWishes = 4;              // malformed ones in the log
 // So often the log says at once who holds, and so often beyond that: hostile viewers must not fill it.
 constexpr int64_t kNamedAtOnce = 100, kNameEveryNs = kNsPerSecond;
 
@@ -92,23 +92,22 @@ void PointerDevice::listen() {
 }
 
 void PointerDevice::takeWishes() {
-    reader_.take(kMaxWishesAtOnce,
-                 [this](const dds::HandPointerSample& sample, const dds::SampleInfo& info) {
-                     if (!info.has_data || sample.session != config_.session) return;
-                     const auto wish = parseHandWish(dds::payloadOf(sample), sample.sender);
-                     if (!wish) {
-                         if (++malformed_ <= kMaxNamedWishes)
-                             spdlog::warn("dropped a malformed wish of viewer {}", sample.sender);
-                         return;
-                     }
-                     const uint64_t epoch = epoch_.load(std::memory_order_relaxed);
-                     if (wish->is_holding && epoch != 0 && wish->epoch != epoch) return;
-                     const int64_t now_ns = monotonicNowNs();
-                     const auto before = holder_.holder(now_ns);
-                     if (!holder_.take(*wish, now_ns)) return;
-                     nameChange(before, holder_.holder(now_ns), now_ns);
-                     publish(*wish);
-                 });
+    reader_.take(kMaxWishesAtOnce, [this](const dds::HandPointerSample& sample, const dds::SampleInfo& info) {
+        if (!info.has_data || sample.session != config_.session) return;
+        const auto wish = parseHandWish(dds::payloadOf(sample), sample.sender);
+        if (!wish) {
+            if (++malformed_ <= kMaxNamedWishes)
+                spdlog::warn("dropped a malformed wish of viewer {}", sample.sender);
+            return;
+        }
+        const uint64_t epoch = epoch_.load(std::memory_order_relaxed);
+        if (wish->is_holding && epoch != 0 && wish->epoch != epoch) return;
+        const int64_t now_ns = monotonicNowNs();
+        const auto before = holder_.holder(now_ns);
+        if (!holder_.take(*wish, now_ns)) return;
+        nameChange(before, holder_.holder(now_ns), now_ns);
+        publish(*wish);
+    });
 }
 
 void PointerDevice::nameChange(const std::optional<uint64_t>& before, const std::optional<uint64_t>& after,

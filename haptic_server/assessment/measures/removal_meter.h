@@ -25,9 +25,9 @@ class RemovalMeter {
     void append(Figures& figures) const;
 
   private:
-    static constexpr double kNear = 2e-3;       // m from a structure
+    static constexpr double kNear = 2e-3;     // m from a structure
     static constexpr double kMinForce = 0.2;  // N: below, the force has no direction that counts
-    static constexpr double kSide = 45;         // degrees from the bone's normal: beyond, the side cuts
+    static constexpr double kSide = 45;       // degrees from the bone's normal: beyond, the side cuts
 
     void addAngle(const TickStep& step) noexcept;
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kHighestFrequency = 10;  // Hz
-constexpr double kMinMagnitude = 0.05;  // of the largest
+constexpr double kMinMagnitude = 0.05;    // of the largest
 constexpr int kPadding = 4;               // powers of two
 
 using Complex = std::complex<double>;

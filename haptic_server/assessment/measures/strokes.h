@@ -16,8 +16,8 @@ namespace bonemill {
 // removal.
 class TurnStrokes {
   public:
-    static constexpr int kReach = 3;              // samples, 60 ms
-    static constexpr double kLongestGap = 0.2;    // s without removal
+    static constexpr int kReach = 3;             // samples, 60 ms
+    static constexpr double kLongestGap = 0.2;   // s without removal
     static constexpr size_t kMaxSamples = 1000;  // of a stroke, 20 s: there it is cut
 
     void add(const MotionSample& sample);

@@ -10,7 +10,7 @@ namespace bonemill {
 namespace {
 
 constexpr int64_t kMaxGridVoxels = 16'000'000;  // time and memory are bounded
-constexpr double kMargin = 4e-3;                 // m around what is gone or shall be
+constexpr double kMargin = 4e-3;                // m around what is gone or shall be
 
 IndexBox gridBoxOf(const IndexBox& changed, const VoxelVolume& volume) {
     const Eigen::Vector3i margin = (kMargin / volume.spacing().array()).ceil().cast<int>();

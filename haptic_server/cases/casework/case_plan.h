@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "haptic_server/cases/casework/case_request.h"
-#include "haptic_server/scans/analysis/bone_pieces.h"
-#include "haptic_server/scans/analysis/metal.h"
 #include "haptic_server/scans/densify/densify.h"
+#include "haptic_server/scans/find_bone/bone_pieces.h"
+#include "haptic_server/scans/find_bone/metal.h"
 
 namespace bonemill {
 

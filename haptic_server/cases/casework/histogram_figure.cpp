@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/text/printed_text.h"
-#include "haptic_server/scans/analysis/value_histogram.h"
+#include "haptic_server/scans/find_bone/value_histogram.h"
 
 namespace bonemill {
 namespace {

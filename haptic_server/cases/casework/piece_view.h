@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "haptic_server/core/volume/raw_volume.h"
-#include "haptic_server/scans/analysis/bone_pieces.h"
+#include "haptic_server/scans/find_bone/bone_pieces.h"
 
 namespace bonemill {
 

@@ -7,27 +7,27 @@
 #include "common/base/units.h"
 #include "common/text/printed_text.h"
 #include "haptic_server/cases/casework/piece_view.h"
-#include "haptic_server/scans/analysis/volume_text.h"
+#include "haptic_server/scans/find_bone/volume_text.h"
 
 namespace bonemill {
 namespace {
 
 constexpr size_t kMaxColours = 8;   // pieces: those that make-case lists; the others are grey
 constexpr double kMaxPixels = 420;  // along the longest edge
-constexpr double kPale = 0.7;        // how white a piece is that is left out
+constexpr double kPale = 0.7;       // how white a piece is that is left out
 constexpr double kDrawn = 780, kAround = 80, kBetween = 110, kLegend = 380;  // pixels of the figure
 constexpr double kMargin = 0.03;                                             // of the longest edge
 constexpr size_t kMaxMetal = 20;
 
 const std::array<Colour, kMaxColours + 1> kColours = {{{222, 190, 130},
-                                                        {70, 130, 220},
-                                                        {210, 70, 60},
-                                                        {80, 170, 80},
-                                                        {150, 100, 200},
-                                                        {60, 180, 180},
-                                                        {240, 150, 50},
-                                                        {230, 120, 170},
-                                                        {150, 150, 150}}};
+                                                       {70, 130, 220},
+                                                       {210, 70, 60},
+                                                       {80, 170, 80},
+                                                       {150, 100, 200},
+                                                       {60, 180, 180},
+                                                       {240, 150, 50},
+                                                       {230, 120, 170},
+                                                       {150, 150, 150}}};
 
 struct SideOfFigure {
     const char* file;
@@ -189,8 +189,7 @@ PiecesFigure piecesFigure(const RawVolume& scan, const CasePlan& plan) {
                << "\"\nset ylabel \"" << axisName(side.up, scan.lacks_patient_axes) << "\"\n";
         if (plan.region) script << regionIn(side, *plan.region);
         script << metalIn(side, plan.metal, geometry);
-        const std::vector<PieceView::Pixel> labels =
-            views[n].labelsOf(uint8_t(std::min(count, kMaxColours)));
+        const std::vector<PieceView::Pixel> labels = views[n].labelsOf(uint8_t(std::min(count, kMaxColours)));
         for (size_t piece = 0; piece < labels.size(); ++piece)
             if (labels[piece].column >= 0)
                 script << "set label \"" << piece + 1 << "\" at "

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMaxAdvances = 64;
 constexpr double kMinAdvance = 1e-3;  // of the step
-constexpr double kRounding = 2e-7;  // m, of two distances in single precision some cm from the tool point
+constexpr double kRounding = 2e-7;    // m, of two distances in single precision some cm from the tool point
 
 }  // namespace
 

@@ -18,7 +18,7 @@ constexpr int kCandidates = 1 + int(std::size(kShares) * std::size(kTimes));
 constexpr double kWalls[] = {std::numeric_limits<double>::infinity(), 4, 1, 0.3, 0};
 constexpr int kLoopsPerAdvance = 6;
 constexpr double kMinStiffness = 1e-3;  // of the wish
-constexpr double kStep = 0.92;            // from stiffness to stiffness
+constexpr double kStep = 0.92;          // from stiffness to stiffness
 // A larger share is felt in the flicker of the encoders: it must be worth so much stiffness per unit.
 constexpr double kShareIsWorth = 1.03;
 

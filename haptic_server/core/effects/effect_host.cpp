@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "haptic_server/core/effects/burr_speed.h"
-#include "haptic_server/core/spo/spo_model.h"
+#include "haptic_server/core/equilibrium/spo_model.h"
 
 namespace bonemill {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "haptic_server/core/effects/haptic_effect.h"
-#include "haptic_server/core/spo/solve_energy.h"
+#include "haptic_server/core/equilibrium/solve_energy.h"
 
 namespace bonemill {
 

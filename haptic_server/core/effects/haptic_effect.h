@@ -13,9 +13,9 @@
 #include "haptic_server/core/contact/contact_weights.h"
 #include "haptic_server/core/contact/surface_contact.h"
 #include "haptic_server/core/coupling/energy_coupling.h"
+#include "haptic_server/core/equilibrium/spo_tool.h"
 #include "haptic_server/core/milling/burr_limit.h"
 #include "haptic_server/core/milling/milling_result.h"
-#include "haptic_server/core/spo/spo_tool.h"
 #include "haptic_server/core/telemetry/effect_record.h"
 
 namespace bonemill {

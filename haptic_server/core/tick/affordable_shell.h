@@ -6,7 +6,7 @@
 #include <climits>
 
 #include "haptic_server/core/contact/point_shell.h"
-#include "haptic_server/core/spo/spo_model.h"
+#include "haptic_server/core/equilibrium/spo_model.h"
 
 namespace bonemill {
 

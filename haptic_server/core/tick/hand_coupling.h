@@ -9,7 +9,7 @@
 // Without word of a device it is as the scene says, whatever happens. It is RT-safe, for the tick thread.
 #pragma once
 
-#include "haptic_server/core/spo/spo_model.h"
+#include "haptic_server/core/equilibrium/spo_model.h"
 #include "haptic_server/core/tick/device_fit.h"
 #include "haptic_server/core/tick/energy_tank.h"
 

@@ -17,7 +17,7 @@ constexpr double kSpeedGain = 0.3, kPushGain = 0.01, kPushGainOfDamping = 0.02;
 // all: a hand that weighs as much as the device and its own late forces would else keep it swinging.
 constexpr double kGoodModel = 0.05, kBadModel = 0.15, kLately = 0.03;  // s
 constexpr double kHandMass = 0.1, kHandDamping = 8;                    // kg, N·s/m
-constexpr double kFarthestSteps = 100, kMinFarthest = 1e-3;          // m
+constexpr double kFarthestSteps = 100, kMinFarthest = 1e-3;            // m
 
 }  // namespace
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "haptic_server/core/equilibrium/gradient_config.h"
 #include "haptic_server/core/milling/timed_milling.h"
-#include "haptic_server/core/spo/gradient_config.h"
 
 namespace bonemill {
 

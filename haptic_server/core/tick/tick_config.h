@@ -6,8 +6,8 @@
 #include "haptic_server/core/contact/contact_configs.h"
 #include "haptic_server/core/coupling/virtual_coupling.h"
 #include "haptic_server/core/effects/effect_configs.h"
+#include "haptic_server/core/equilibrium/spo_models.h"
 #include "haptic_server/core/milling/timed_milling.h"
-#include "haptic_server/core/spo/spo_models.h"
 #include "haptic_server/core/tick/hand_limits.h"
 
 namespace bonemill {

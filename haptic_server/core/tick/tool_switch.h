@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/base/assert.h"
-#include "haptic_server/core/spo/spo_model.h"
+#include "haptic_server/core/equilibrium/spo_model.h"
 
 namespace bonemill {
 

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "haptic_server/core/contact/gradient_contact.h"
-#include "haptic_server/core/spo/spo_model.h"
+#include "haptic_server/core/equilibrium/spo_model.h"
 #include "haptic_server/lab/accuracy_report/probe_limits.h"
 #include "haptic_server/lab/accuracy_report/timed_run.h"
 #include "haptic_server/lab/simulate/run_path.h"

@@ -31,8 +31,7 @@ struct Approach {
         if (normal.isZero(0)) return false;
         const Pose X_WT = pose_at(*way);
         const auto back = probe.freeWay(X_WT, normal, 2 * ProbingPlace::kMaxRoom);
-        const double room =
-            std::min(ProbingPlace::kMaxRoom, 0.5 * back.value_or(2 * ProbingPlace::kMaxRoom));
+        const double room = std::min(ProbingPlace::kMaxRoom, 0.5 * back.value_or(2 * ProbingPlace::kMaxRoom));
         if (room < kPush) return false;
         places.push_back({name, X_WT, normal, room});
         return true;

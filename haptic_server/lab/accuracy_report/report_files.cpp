@@ -11,8 +11,8 @@
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/text/csv_text.h"
-#include "haptic_server/lab/accuracy_report/pareto.h"
 #include "haptic_server/core/telemetry/fault_names.h"
+#include "haptic_server/lab/accuracy_report/pareto.h"
 
 namespace bonemill {
 namespace {

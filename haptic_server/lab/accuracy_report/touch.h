@@ -7,7 +7,7 @@
 
 #include "haptic_server/core/bone/bone_model.h"
 #include "haptic_server/core/contact/gradient_contact.h"
-#include "haptic_server/core/spo/spo_model.h"
+#include "haptic_server/core/equilibrium/spo_model.h"
 
 namespace bonemill {
 

@@ -9,8 +9,7 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMaxDensityBytes = size_t(4)
-                                     << 20;  // of a message, but for a leaf that is larger by itself
+constexpr size_t kMaxDensityBytes = size_t(4) << 20;  // of a message, but for a leaf that is larger by itself
 
 std::vector<Density> scannedDensities(const ScannedBone& scanned, LeafId leaf) {
     const IndexBox cells = scanned.lattice.cellsOf(leaf), voxels = voxelsOf(cells);

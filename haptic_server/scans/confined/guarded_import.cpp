@@ -67,8 +67,8 @@ bool isPlace(const Head& head) {
     constexpr double kMinStep = 1e-10, kLongestStep = 10, kFarthest = 1e5, kUnit = 1e-9;
     double square = 0;
     for (const double q : head.rotation) square += q * q;
-    return isWithin(head.spacing, kMinStep, kLongestStep) &&
-           isWithin(head.position, -kFarthest, kFarthest) && std::abs(square - 1) <= kUnit;
+    return isWithin(head.spacing, kMinStep, kLongestStep) && isWithin(head.position, -kFarthest, kFarthest) &&
+           std::abs(square - 1) <= kUnit;
 }
 
 // The child may have been damaged by what it read, and what it says is checked before memory is asked for.

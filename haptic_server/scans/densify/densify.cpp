@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "common/base/user_error.h"
-#include "haptic_server/scans/analysis/propose_iso.h"
 #include "haptic_server/scans/densify/far_air.h"
+#include "haptic_server/scans/find_bone/propose_iso.h"
 
 namespace bonemill {
 namespace {

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "haptic_server/core/volume/voxel_volume.h"
-#include "haptic_server/scans/analysis/propose_iso.h"
+#include "haptic_server/scans/find_bone/propose_iso.h"
 
 namespace bonemill {
 

@@ -18,7 +18,7 @@ constexpr double kSamePlaceMm = 1e-3;
 constexpr double kSpacingTolerance = 0.02;  // of the median distance: nothing to speak of
 constexpr double kMaxTiltDegrees = 0.1;
 constexpr double kMaxGantryTiltDegrees = 45;  // gantries tilt by 30 at most
-constexpr double kSaidRounding = 1e-3;         // 0.06 degrees
+constexpr double kSaidRounding = 1e-3;        // 0.06 degrees
 // Scanners write positions in steps of 0.1 mm at most; so far a slice is from its place then, or this share
 // of a distance.
 constexpr double kRoundingMm = 0.055;

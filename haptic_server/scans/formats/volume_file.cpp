@@ -9,9 +9,9 @@
 #include "haptic_server/scans/formats/meta_image_header.h"
 #include "haptic_server/scans/formats/nifti_header.h"
 #include "haptic_server/scans/formats/stored_bytes.h"
+#include "haptic_server/scans/frame/physical_frame.h"
 #include "haptic_server/scans/nrrd/nrrd_header.h"
 #include "haptic_server/scans/pixels/itk_image_file.h"
-#include "haptic_server/scans/frame/physical_frame.h"
 
 namespace bonemill {
 namespace {

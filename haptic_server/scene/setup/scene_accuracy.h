@@ -5,7 +5,7 @@
 
 #include "haptic_server/core/accuracy/accuracy_settings.h"
 #include "haptic_server/core/contact/point_shell.h"
-#include "haptic_server/core/spo/gradient_config.h"
+#include "haptic_server/core/equilibrium/gradient_config.h"
 #include "proto/scene.pb.h"
 
 namespace bonemill {

@@ -7,7 +7,7 @@
 
 #include "common/config/scene_file.h"
 #include "haptic_server/core/volume/voxel_volume.h"
-#include "haptic_server/scans/analysis/metal.h"
+#include "haptic_server/scans/find_bone/metal.h"
 
 namespace bonemill {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/config/scene_file.h"
-#include "haptic_server/scans/analysis/bone_pieces.h"
+#include "haptic_server/scans/find_bone/bone_pieces.h"
 
 namespace bonemill {
 

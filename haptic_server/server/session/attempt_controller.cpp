@@ -29,8 +29,8 @@ JudgedAttempt judgedAttempt(const Technique& technique, const TaskMonitor::Resul
 }  // namespace
 
 AttemptController::AttemptController(LessonState& book, Recorder& recorder, BoneHistory& history,
-                             JournalRecorder& journal, double voxel_volume, const scene::Scene& scene,
-                             std::function<void(bool begins)> tell_device, TaskMonitor* task)
+                                     JournalRecorder& journal, double voxel_volume, const scene::Scene& scene,
+                                     std::function<void(bool begins)> tell_device, TaskMonitor* task)
     : book_(book),
       recorder_(recorder),
       history_(history),

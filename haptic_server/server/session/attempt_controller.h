@@ -26,8 +26,8 @@ class AttemptController {
     // one under way ends without another. `task` (null: none) has each attempt judged, and may limit their
     // number and time.
     AttemptController(LessonState& book, Recorder& recorder, BoneHistory& history, JournalRecorder& journal,
-                  double voxel_volume, const scene::Scene& scene,
-                  std::function<void(bool begins)> tell_device = {}, TaskMonitor* task = nullptr);
+                      double voxel_volume, const scene::Scene& scene,
+                      std::function<void(bool begins)> tell_device = {}, TaskMonitor* task = nullptr);
 
     // The bone goes back to the scan, and milling goes on. Where
     // an attempt that is recorded ends with the order, the answer comes with LessonState::takeAnswers().

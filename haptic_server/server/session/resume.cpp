@@ -156,8 +156,7 @@ struct ResumeReading::Raw {
         const bool is_whole = !bone.goes_on() && bone.kind() != journal::Bone::OTHER;
         if (is_whole) bone_order = bone.bone_order();
         bytes += bone.SpaceUsedLong();
-        if (bytes > kMaxBytes)
-            throw UserError("its bones take more memory than there may be; it is damaged");
+        if (bytes > kMaxBytes) throw UserError("its bones take more memory than there may be; it is damaged");
         runs.back().bytes += bone.SpaceUsedLong();
         runs.back().bones.push_back(std::move(bone));
         if (is_whole) dropRunsBeforeTheLast();

@@ -65,8 +65,8 @@ double warningDistanceOf(const scene::Effects& effects) {
            kMillimetre;
 }
 
-void addLines(std::span<const EffectFigure> figures, const EffectRecord& newest, const RecordedEffects& recorded,
-              topics::EffectState& state) {
+void addLines(std::span<const EffectFigure> figures, const EffectRecord& newest,
+              const RecordedEffects& recorded, topics::EffectState& state) {
     for (const EffectFigure& figure : figures) {
         if (!figure.shown.line || !figure.isToldBy(recorded)) continue;
         const double value = figure.shown.factor * figure.numberIn(newest);

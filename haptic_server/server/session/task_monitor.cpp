@@ -61,7 +61,8 @@ void TaskMonitor::beginAttempt() {
     if (task_ && task_->feedback == TaskFeedback::kAfterwards) shows_zones_ = false;
 }
 
-std::shared_future<TaskMonitor::Result> TaskMonitor::endAttempt(std::optional<double> breach, Figures technique) {
+std::shared_future<TaskMonitor::Result> TaskMonitor::endAttempt(std::optional<double> breach,
+                                                                Figures technique) {
     if (!task_) return {};
     judging_ = std::async(std::launch::async, [this, breach, technique = std::move(technique),
                                                snapshot = history_.snapshot(bone_),

@@ -31,7 +31,7 @@ class TickPace {
     bool isTooFast(int64_t now_ns) const noexcept { return now_ns < due_ns_; }
 
   private:
-    static constexpr int64_t kMaxCaughtUp = 2;  // periods that silence leaves to be made up for
+    static constexpr int64_t kMaxCaughtUp = 2;   // periods that silence leaves to be made up for
     static constexpr int64_t kFasterClock = 64;  // 1/64, far more than crystals differ by
     static constexpr int64_t kWorkPerRest = 4;   // the loop takes no more than 80 % of its processor
 

@@ -42,8 +42,7 @@ DensityPublisher::DensityPublisher(const dds::Participant& participant, uint32_t
 void DensityPublisher::takeWishes(int64_t now_ns) {
     std::map<uint64_t, size_t> taken;  // by writer
     reader_.take(kMaxWishes, [&](const dds::DensityWishSample& sample, const dds::SampleInfo& info) {
-        if (!info.has_data || sample.session != session_ || ++taken[info.writer] > kMaxWishesOfWriter)
-            return;
+        if (!info.has_data || sample.session != session_ || ++taken[info.writer] > kMaxWishesOfWriter) return;
         stream_.receive(sample.sender, reader_.participantOf(info.writer), dds::payloadOf(sample), now_ns);
     });
 }

@@ -11,8 +11,8 @@ namespace bonemill {
 namespace {
 
 constexpr size_t kLongestWish = 64u << 10;  // bytes
-constexpr size_t kMaxWanted = 16384;       // bricks: five planes of a scan of 900² voxels
-constexpr int kMaxLacking = 1024;          // of them, in one message
+constexpr size_t kMaxWanted = 16384;        // bricks: five planes of a scan of 900² voxels
+constexpr int kMaxLacking = 1024;           // of them, in one message
 
 bool readLacking(const topics::DensityWish& wish, uint32_t count, std::vector<WishedBrick>& bricks) {
     if (wish.lacking_size() > kMaxLacking) return false;

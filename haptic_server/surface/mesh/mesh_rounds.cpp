@@ -9,7 +9,7 @@ namespace bonemill {
 namespace {
 
 constexpr uint32_t kOthersPerRound = 128;  // while the whole bone is meshed, no cut waits for more than these
-constexpr int64_t kMaxNeighbours = 512;   // leaves; a cut's box has some 27
+constexpr int64_t kMaxNeighbours = 512;    // leaves; a cut's box has some 27
 constexpr int64_t kPassPeriodNs = 8 * kNsPerMillisecond;
 
 }  // namespace

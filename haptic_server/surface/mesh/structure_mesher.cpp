@@ -12,14 +12,13 @@
 namespace bonemill {
 namespace {
 
-constexpr int64_t kMaxSamples = int64_t(1)
-                                 << 25;   // of a structure's box; a larger one is looked at coarsely
-constexpr float kMaxMoved = 0.5f;        // voxels of the labels per axis, by smoothing
-constexpr float kAround = 1.5f;           // voxels of the labels, that count for how full it is
-constexpr float kMaxOfFullness = 1.25f;  // the same, where the structure is thin
+constexpr int64_t kMaxSamples = int64_t(1) << 25;  // of a structure's box; a larger one is looked at coarsely
+constexpr float kMaxMoved = 0.5f;                  // voxels of the labels per axis, by smoothing
+constexpr float kAround = 1.5f;                    // voxels of the labels, that count for how full it is
+constexpr float kMaxOfFullness = 1.25f;            // the same, where the structure is thin
 constexpr float kNearestToSample = 0.1f;
-constexpr int kMaxStride = 16;         // voxels
-constexpr float kMaxFiner = 3;         // labels in steps: what spreads farther takes too long
+constexpr int kMaxStride = 16;          // voxels
+constexpr float kMaxFiner = 3;          // labels in steps: what spreads farther takes too long
 constexpr double kSamplesPerLabel = 2;  // per axis, of labels on coarser voxels: structures of one voxel stay
 constexpr float kSimplified = 0.06f;    // voxels that the surface may move by fewer triangles
 // A pass shrinks by the first factor and grows by the second: what bends slower than 1/kShrink + 1/kGrow

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
+#include "common/attempts_csv/attempts_csv.h"
 #include "common/files/line_file.h"
-#include "common/lesson_csv/attempts_csv.h"
 #include "haptic_server/recording/statistics/bone_files.h"
 
 namespace bonemill {

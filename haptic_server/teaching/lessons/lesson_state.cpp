@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "common/lesson_csv/attempts_csv.h"
+#include "common/attempts_csv/attempts_csv.h"
 #include "common/text/repeated_text.h"
 
 namespace bonemill {
@@ -147,7 +147,7 @@ void LessonState::dropAttempt() {
 }
 
 void LessonState::endAttempt(topics::Attempt attempt, const std::optional<topics::Command>& order,
-                            std::optional<AttemptJudgement> judgement, Told told) {
+                             std::optional<AttemptJudgement> judgement, Told told) {
     const std::lock_guard lock(mutex_);
     lesson_.set_is_running(false);
     attempt.set_number(attempts_begun_);

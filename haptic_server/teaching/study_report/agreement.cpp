@@ -55,8 +55,7 @@ Ratings readRatings(const std::filesystem::path& path) {
     size_t number = 0;
     for (std::string line; std::getline(file, line);) {
         const std::string place = path.string() + ", line " + std::to_string(++number);
-        if (line.size() > kMaxBytes || number > kMaxRows)
-            throw UserError(place + ": the table is too large");
+        if (line.size() > kMaxBytes || number > kMaxRows) throw UserError(place + ": the table is too large");
         if (line.empty() || line == "\r") continue;
         const std::vector<std::string> fields = fieldsOf(line);
         if (!ratings.raters.empty()) {

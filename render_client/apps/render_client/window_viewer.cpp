@@ -7,10 +7,10 @@
 #include <fstream>
 #include <map>
 
+#include "common/attempts_csv/attempts_csv.h"
 #include "common/base/user_error.h"
 #include "common/commands/command_text.h"
 #include "common/files/whole_file.h"
-#include "common/lesson_csv/attempts_csv.h"
 #include "render_client/apps/render_client/hand_feed.h"
 #include "render_client/apps/render_client/remark_feed.h"
 #include "render_client/apps/render_client/scene_feed.h"

@@ -13,8 +13,8 @@
 namespace bonemill {
 namespace {
 
-constexpr double kStep = 0.1;          // mm: finer no mouse is
-constexpr double kHandAway = 60;       // mm from the region's middle: where from_mm is put
+constexpr double kStep = 0.1;        // mm: finer no mouse is
+constexpr double kHandAway = 60;     // mm from the region's middle: where from_mm is put
 constexpr double kMinArrow = 15e-3;  // m
 
 std::vector<double> inSteps(const Eigen::Vector3d& p_W) {

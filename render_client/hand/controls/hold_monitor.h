@@ -13,7 +13,7 @@ class HoldMonitor {
     static constexpr double kPatience = 2;    // s that the tool is caught, or mills in the air
     static constexpr double kFar = 6e-3;      // m from where it is wanted: more is caught
     static constexpr double kFarBurrs = 4;    // the same in burr radii, if that is more
-    static constexpr int kMaxRescues = 2;    // in a row; then only the user can help
+    static constexpr int kMaxRescues = 2;     // in a row; then only the user can help
     static constexpr double kLongestGap = 1;  // s between two looks; what was in a longer one is not known
 
     enum class Advice {

@@ -25,8 +25,7 @@ void StrokePen::move(const PixelPoint& to) {
 }
 
 void StrokePen::add(const Eigen::Vector3d& p_W) {
-    const bool is_apart =
-        is_lifted_ || strokes_.empty() || (strokes_.back().back() - p_W).norm() > kMaxApart;
+    const bool is_apart = is_lifted_ || strokes_.empty() || (strokes_.back().back() - p_W).norm() > kMaxApart;
     if (is_apart && strokes_.size() == kMaxStrokes) return;
     is_lifted_ = false;
     if (is_apart)

@@ -15,8 +15,8 @@ namespace bonemill {
 
 class StrokePen {
   public:
-    static constexpr double kPixelsApart = 3;     // of the places that the owner is asked for
-    static constexpr double kApart = 0.5e-3;      // m: what is nearer to the last point is left out
+    static constexpr double kPixelsApart = 3;    // of the places that the owner is asked for
+    static constexpr double kApart = 0.5e-3;     // m: what is nearer to the last point is left out
     static constexpr double kMaxApart = 6e-3;    // m: farther away, another stroke begins
     static constexpr size_t kMaxStrokes = 8;     // of one drag
     static constexpr size_t kMaxPixels = 20000;  // of one drag

@@ -10,9 +10,9 @@ namespace bonemill {
 namespace {
 
 constexpr double kMinDepth = 1e-3;       // m in front of the eye
-constexpr double kBeginInFront = 3;        // burr radii from the surface to the burr's centre
+constexpr double kBeginInFront = 3;      // burr radii from the surface to the burr's centre
 constexpr double kMinTowardsEye = 0.15;  // of the shaft's direction
-constexpr double kHandAboveSight = 0.7;    // rad: a hand comes from above the line of sight
+constexpr double kHandAboveSight = 0.7;  // rad: a hand comes from above the line of sight
 
 }  // namespace
 

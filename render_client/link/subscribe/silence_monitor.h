@@ -16,7 +16,8 @@ class SilenceMonitor {
     static constexpr std::chrono::seconds kLongestSilence{30};
 
     // After so much silence, then twice as much and so on up to kLongestSilence.
-    explicit SilenceMonitor(std::chrono::milliseconds first = kFirstSilence, Clock::time_point now = Clock::now())
+    explicit SilenceMonitor(std::chrono::milliseconds first = kFirstSilence,
+                            Clock::time_point now = Clock::now())
         : first_(first), patience_(first), since_(now) {}
 
     // Is to be told often that time passes. Returns how long the caller has slept in between, if it has:

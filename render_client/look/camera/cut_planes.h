@@ -15,7 +15,7 @@ namespace bonemill {
 struct CutPlanes {
     static constexpr int kMax = 3;
     std::array<Eigen::Vector4f, kMax> planes = {Eigen::Vector4f::UnitW(), Eigen::Vector4f::UnitW(),
-                                                 Eigen::Vector4f::UnitW()};
+                                                Eigen::Vector4f::UnitW()};
     std::array<bool, kMax> is_on{};
 
     bool any() const { return is_on[0] || is_on[1] || is_on[2]; }

@@ -8,10 +8,10 @@ namespace bonemill {
 namespace {
 
 constexpr double kFieldOfView = 75 * kDegree;
-constexpr double kBehind = 2.8;         // burr radii from the burr's centre to the eye, along the shaft
-constexpr double kBeside = 0.9;         // and across it: still inside the corridor that the burr has milled
-constexpr double kTilt = 8 * kDegree;   // towards the burr
-constexpr double kMinBurr = 1e-4;  // m
+constexpr double kBehind = 2.8;        // burr radii from the burr's centre to the eye, along the shaft
+constexpr double kBeside = 0.9;        // and across it: still inside the corridor that the burr has milled
+constexpr double kTilt = 8 * kDegree;  // towards the burr
+constexpr double kMinBurr = 1e-4;      // m
 
 }  // namespace
 

@@ -15,12 +15,12 @@ constexpr double kShownBeyondView = 2.0;
 constexpr float kShadowReach = 4;    // in burr radii, so are the two below
 constexpr float kShadowedShaft = 5;  // length
 constexpr float kShadowedThickness = 0.5f;
-constexpr double kFieldRadius = 0.48;    // of the shorter side of the picture
-constexpr double kBlur = 0.06;           // of the picture's height, one picture height away from the focus
-constexpr double kReach = 1.7;           // of the distance to the focus
-constexpr double kCastersGrow = 1.5;     // bone may be added
-constexpr double kMinScene = 1e-3;  // m, radius
-constexpr double kSmallestBone = 1e-4;   // m, radius
+constexpr double kFieldRadius = 0.48;   // of the shorter side of the picture
+constexpr double kBlur = 0.06;          // of the picture's height, one picture height away from the focus
+constexpr double kReach = 1.7;          // of the distance to the focus
+constexpr double kCastersGrow = 1.5;    // bone may be added
+constexpr double kMinScene = 1e-3;      // m, radius
+constexpr double kSmallestBone = 1e-4;  // m, radius
 
 struct Sphere {
     Eigen::Vector3d center = Eigen::Vector3d::Zero();

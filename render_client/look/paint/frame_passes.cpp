@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kOcclusionRadius = 0.10;   // of the bone's radius
 constexpr float kOcclusionPicture = 0.06f;  // the radius is at most this part of the picture's height
-constexpr float kMaxBlur = 0.015f;         // of the picture's height
+constexpr float kMaxBlur = 0.015f;          // of the picture's height
 constexpr int kFilterReach = 8;             // pixels that the composite's filter looks beyond
 
 static_assert(kMaxBlur < kOcclusionPicture, "or the blur would reach further than reach() says");

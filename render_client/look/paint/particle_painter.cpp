@@ -8,7 +8,7 @@
 namespace bonemill {
 namespace {
 
-constexpr float kSmallest = 0.75f;    // pixels, radius; what is smaller is drawn so large, and fainter
+constexpr float kSmallest = 0.75f;  // pixels, radius; what is smaller is drawn so large, and fainter
 constexpr float kMinDepth = 1e-4f;  // m before the eye
 
 // Returns how many metres a pixel of the picture spans at this depth.

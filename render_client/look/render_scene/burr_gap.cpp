@@ -8,8 +8,8 @@ namespace {
 
 constexpr int kLooks = 8;            // pixels around the burr that are looked at
 constexpr double kBesideBurr = 1.7;  // burr radii from its middle, where it hides nothing
-constexpr double kMinGap = 0.2;    // burr radii: less is hardly in front
-constexpr double kMaxGap = 40;      // burr radii: more is another part of the bone
+constexpr double kMinGap = 0.2;      // burr radii: less is hardly in front
+constexpr double kMaxGap = 40;       // burr radii: more is another part of the bone
 
 }  // namespace
 

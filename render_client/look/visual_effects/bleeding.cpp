@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kBrim = 0.55f;                              // of a full film: from here on blood runs
 constexpr float kShortestRun = 1e-3f, kLongestRun = 7e-3f;  // m
-constexpr double kMaxCells = 300e3;                        // of the film, that a step looks at
+constexpr double kMaxCells = 300e3;                         // of the film, that a step looks at
 constexpr float kTightness = 0.7f;  // of a cell: nearer to a wound there is no second one
 const Eigen::Vector3f kDarkRed(0.105f, 0.0040f, 0.0045f);
 

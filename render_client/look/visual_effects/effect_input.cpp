@@ -10,12 +10,12 @@
 namespace bonemill {
 namespace {
 
-constexpr double kFastestSpin = 25000;                       // rad/s: a turbine of 240,000 rpm
-constexpr double kMaxForce = 1000;                          // N
-constexpr double kMaxPower = 1e4;                           // W
-constexpr double kMaxRemoved = 1e-7;                        // m³
+constexpr double kFastestSpin = 25000;              // rad/s: a turbine of 240,000 rpm
+constexpr double kMaxForce = 1000;                  // N
+constexpr double kMaxPower = 1e4;                   // W
+constexpr double kMaxRemoved = 1e-7;                // m³
 constexpr double kMinBurr = 1e-4, kMaxBurr = 5e-2;  // m
-constexpr double kTouch = 0.05;                              // N
+constexpr double kTouch = 0.05;                     // N
 
 double bounded(double value, double low, double high) {
     return std::isfinite(value) ? std::clamp(value, low, high) : std::clamp(0.0, low, high);

@@ -9,7 +9,7 @@ constexpr double kShownStep = 0.15;     // s: a quick picture draws all that is 
 constexpr double kFilmStep = 1.0 / 15;  // s: blood and drying are slow
 constexpr double kCellsPerRadius = 4;   // of the burr
 constexpr double kMinCell = 1e-4, kMaxCell = 6e-4;  // m
-constexpr double kTrailTime = 0.6;                           // s that a mesh may come after its cut
+constexpr double kTrailTime = 0.6;                  // s that a mesh may come after its cut
 constexpr size_t kMaxTrail = 64;
 constexpr float kCutMargin = 3e-4f;  // m beside the burr where a new vertex is a cut
 

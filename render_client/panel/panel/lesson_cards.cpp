@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "common/lesson_csv/attempts_csv.h"
+#include "common/attempts_csv/attempts_csv.h"
 #include "render_client/look/hud/effect_lines.h"
 #include "render_client/look/hud/figure_text.h"
 #include "render_client/look/hud/hud_colours.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/lesson_csv/attempts_csv.h"
+#include "common/attempts_csv/attempts_csv.h"
 #include "render_client/look/hud/figure_text.h"
 #include "render_client/look/hud/session_text.h"
 #include "render_client/panel/panel/panel_content.h"

@@ -39,9 +39,8 @@ bool isSane(const topics::HandPointer& hand) {
 }
 
 bool isSane(const topics::DensityWish& wish) {
-    return wish.lacking_size() <= kMaxWished && wish.held_size() % 2 == 0 &&
-           wish.held_size() <= kMaxWished && wish.revisions_size() % 2 == 0 &&
-           wish.revisions_size() <= 2 * kMaxWished;
+    return wish.lacking_size() <= kMaxWished && wish.held_size() % 2 == 0 && wish.held_size() <= kMaxWished &&
+           wish.revisions_size() % 2 == 0 && wish.revisions_size() <= 2 * kMaxWished;
 }
 
 bool isSane(const Hello& hello) {

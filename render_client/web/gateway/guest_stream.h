@@ -20,7 +20,7 @@ namespace bonemill::gateway {
 class GuestStream {
   public:
     using Clock = SendWindow::Clock;
-    static constexpr size_t kMaxTogether = 128 << 10;    // bytes of nodes that changed, shown in one frame
+    static constexpr size_t kMaxTogether = 128 << 10;     // bytes of nodes that changed, shown in one frame
     static constexpr std::chrono::seconds kHeartbeat{3};  // something is said so often
     static constexpr size_t kMostBricks = 256;  // that wait; the guest wishes again for what is dropped
 

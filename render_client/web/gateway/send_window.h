@@ -15,7 +15,7 @@ class SendWindow {
   public:
     using Clock = std::chrono::steady_clock;
     static constexpr size_t kFirst = 64 << 10, kMin = 16 << 10;  // bytes ahead
-    static constexpr std::chrono::seconds kLongestSilence{30};     // with bytes under way
+    static constexpr std::chrono::seconds kLongestSilence{30};   // with bytes under way
     static constexpr size_t kMinFrame = 8 << 10,
                             kMaxFrame = 64 << 10;  // bytes that a frame is filled up to
 

@@ -36,8 +36,8 @@ constexpr double kVoxel = 0.125e-3;         // m
 constexpr double kBurr = 1e-3;              // m, its radius
 constexpr double kContactStiffness = 1e12;  // N/m³, of a scene that says nothing
 constexpr size_t kEnoughWindows = 8;        // of the rest
-constexpr int kMaxSessions = 5;            // until a busy machine leaves enough of them
-constexpr double kMaxLate = 0.1;           // of the ticks
+constexpr int kMaxSessions = 5;             // until a busy machine leaves enough of them
+constexpr double kMaxLate = 0.1;            // of the ticks
 constexpr uint32_t kUnstable =
     kFaultBadDevicePose | kFaultSolve | kFaultForceClamped | kFaultStalled | kFaultImplausibleDevice;
 

@@ -10,8 +10,8 @@
 #include <sstream>
 #include <utility>
 
+#include "common/attempts_csv/attempts_csv.h"
 #include "common/device_messages/device_state.h"
-#include "common/lesson_csv/attempts_csv.h"
 #include "haptic_server/server/session/attempt_controller.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/process.h"

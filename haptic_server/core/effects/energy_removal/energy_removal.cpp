@@ -173,9 +173,8 @@ void EnergyRemoval::mill(EffectTick& tick, BoneModel& bone, MillingResult& resul
     const double of_turns = energy * double(turns_);
     const double repaid = to_repay_ * (1 - pinned::exp(-tick.dt * double(turns_) / kRepayTime));
     const double share = std::clamp((of_turns + repaid) / of_turns, 0.0, kMaxShare);
-    removed_energy_ =
-        factor * shift_.apply(bone, specific_energy_, share / factor,
-                              std::min(turns_ * size_t(tick.periods), kMaxTurnsAtOnce), result);
+    removed_energy_ = factor * shift_.apply(bone, specific_energy_, share / factor,
+                                            std::min(turns_ * size_t(tick.periods), kMaxTurnsAtOnce), result);
     account_ += energy - removed_energy_;
     // What the surface could not take, as it was too quick or there was no time, is lost.
     account_ = std::min(account_, energy * kRepayTime / tick.dt);

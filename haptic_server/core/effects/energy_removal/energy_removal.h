@@ -45,8 +45,8 @@ struct EffectRoom;
 class EnergyRemoval final : public HapticEffect {
   public:
     static constexpr double kRepayTime = 5e-3;       // s
-    static constexpr double kMaxShare = 2;          // of a tick's energy, that it may spend
-    static constexpr size_t kMaxTurnsAtOnce = 3;    // or periods, that a surface may make good in a tick
+    static constexpr double kMaxShare = 2;           // of a tick's energy, that it may spend
+    static constexpr size_t kMaxTurnsAtOnce = 3;     // or periods, that a surface may make good in a tick
     static constexpr size_t kCellsPerContact = 250;  // one takes as long as so many milled cells
 
     // The bone's properties and materials are taken from `all`.

@@ -16,7 +16,7 @@ using Records = std::vector<TickRecord>;
 
 constexpr double kTranslationStiffness = 3000;  // N/m, of both laws' coupling
 constexpr double kSaturationForce = 50;         // N
-constexpr double kMaxMotion = 0.5e-3;          // m per tick: 0.5 m/s
+constexpr double kMaxMotion = 0.5e-3;           // m per tick: 0.5 m/s
 
 Eigen::Vector3d forceOf(const TickRecord& r) {
     return Eigen::Vector3d(r.f_hand_W);

@@ -1,4 +1,4 @@
-#include "haptic_server/scans/analysis/bone_pieces.h"
+#include "haptic_server/scans/find_bone/bone_pieces.h"
 
 #include <gtest/gtest.h>
 

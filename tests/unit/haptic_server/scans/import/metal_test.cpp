@@ -1,6 +1,6 @@
 // Phantoms whose metal is known: a ball of it in a ball of soft tissue, with streaks as bands from its
 // middle.
-#include "haptic_server/scans/analysis/metal.h"
+#include "haptic_server/scans/find_bone/metal.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The histograms are made here, in the shapes that real scans have.
-#include "haptic_server/scans/analysis/propose_iso.h"
+#include "haptic_server/scans/find_bone/propose_iso.h"
 
 #include <gtest/gtest.h>
 

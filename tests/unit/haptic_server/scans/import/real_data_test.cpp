@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <ostream>
 
-#include "haptic_server/scans/analysis/propose_iso.h"
 #include "haptic_server/scans/densify/densify.h"
+#include "haptic_server/scans/find_bone/propose_iso.h"
 #include "haptic_server/scans/import/import_volume.h"
 
 namespace bonemill {

@@ -1,5 +1,5 @@
 // Walls as a scanner sees them: the mean over each voxel of what is in it.
-#include "haptic_server/scans/analysis/thin_walls.h"
+#include "haptic_server/scans/find_bone/thin_walls.h"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 
+#include "common/attempts_csv/attempts_csv.h"
 #include "common/base/user_error.h"
-#include "common/lesson_csv/attempts_csv.h"
 #include "tests/support/process.h"
 
 namespace bonemill {

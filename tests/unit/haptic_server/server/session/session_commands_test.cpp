@@ -79,7 +79,7 @@ class SessionCommandsTest : public testing::Test {
     SessionExport bone_export_;
     std::atomic<uint32_t> reset_orders_{0};
     LessonState lesson_{listed(), ClassTable("")};
-    std::string told_;                                  // to the device
+    std::string told_;                                    // to the device
     JournalRecorder journal_{ball_.history, ball_.bone};  // that goes nowhere
     AttemptController attempts_;
     OrderLimits limits_;

@@ -148,8 +148,8 @@ class LimitedAttempts : public TaskWatching {
 TEST_F(LimitedAttempts, EachTraineeHasSoMany) {
     task_->most_attempts = 2;
     TaskMonitor watch(task_, ball_.bone, ball_.history);
-    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(), {},
-                           {}, &watch);
+    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(),
+                               {}, {}, &watch);
     for (int n = 0; n < 2; ++n) {
         EXPECT_NE(start(attempts, "Ann").find("refused"), 0u);
         ball_.restoreAll();
@@ -165,8 +165,8 @@ TEST_F(LimitedAttempts, EachTraineeHasSoMany) {
 TEST_F(LimitedAttempts, AnAttemptEndsWithItsTime) {
     task_->time_limit_s = 1e-3;
     TaskMonitor watch(task_, ball_.bone, ball_.history);
-    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(), {},
-                           {}, &watch);
+    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(),
+                               {}, {}, &watch);
     start(attempts, "Ann");
     ball_.restoreAll();
     ball_.groove(10e-3);
@@ -184,7 +184,8 @@ TEST_F(LimitedAttempts, TheJournalSaysThatOneWasDropped) {
     const ScannedBone scanned{ball_.history.scanned(), ball_.bone.lattice};
     Journal journal(config, scanned);
     journal_.begin(&journal, Checkpoints(ball_.history, ball_.bone));
-    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(), {});
+    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(),
+                               {});
     start(attempts, "Ann");
     attempts.stop();
     start(attempts, "Bob");
@@ -208,7 +209,7 @@ TEST_F(LimitedAttempts, OfAnExaminationOnlyTheTimeIsTold) {
     scene.mutable_assessment()->set_exam(true);
     scene.mutable_effects()->mutable_thermal();
     AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(),
-                           scene, {}, &watch);
+                               scene, {}, &watch);
     start(attempts, "Ann");
     ball_.restoreAll();
     ball_.groove(10e-3);

@@ -10,8 +10,9 @@ using namespace std::chrono_literals;
 constexpr SilenceMonitor::Clock::time_point kBegin{1000s};
 
 // Looks every 10 ms until then; returns when it was due.
-std::vector<SilenceMonitor::Clock::duration> dueTimes(SilenceMonitor& watch, SilenceMonitor::Clock::duration from,
-                                                 SilenceMonitor::Clock::duration until) {
+std::vector<SilenceMonitor::Clock::duration> dueTimes(SilenceMonitor& watch,
+                                                      SilenceMonitor::Clock::duration from,
+                                                      SilenceMonitor::Clock::duration until) {
     std::vector<SilenceMonitor::Clock::duration> due;
     for (auto time = from; time < until; time += 10ms) {
         watch.pass(kBegin + time);

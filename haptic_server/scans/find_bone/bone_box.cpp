@@ -1,4 +1,4 @@
-#include "haptic_server/scans/analysis/bone_box.h"
+#include "haptic_server/scans/find_bone/bone_box.h"
 
 namespace bonemill {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/geometry/pose_step.h"
-#include "haptic_server/core/spo/gradient_model.h"
+#include "haptic_server/core/equilibrium/gradient_model.h"
 
 namespace bonemill {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 constexpr double kRotationLength = 0.03;  // m
 constexpr double kSmallestReach = 1e-9;   // m: a shorter step is no step
 constexpr double kShortestLesson = 1e-7;  // m: over a shorter one the forces change mostly by rounding
-constexpr int kMaxCuts = 4;              // of a step that goes uphill
+constexpr int kMaxCuts = 4;               // of a step that goes uphill
 // One cut leaves so much of a step's length: one that goes deep into a hard wall must become short.
 constexpr double kLongestCut = 0.5, kShortestCut = 0.05;
 constexpr double kFirstLambda = 1e-2, kMaxLambda = 1e6;

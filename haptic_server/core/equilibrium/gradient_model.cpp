@@ -1,4 +1,4 @@
-#include "haptic_server/core/spo/gradient_model.h"
+#include "haptic_server/core/equilibrium/gradient_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@ namespace bonemill {
 namespace {
 
 constexpr double kMinMargin = 20e-6;  // m: what a hand moves in a millisecond when it works
-constexpr double kMotionGrowth = 2;     // of the reach from tick to tick
+constexpr double kMotionGrowth = 2;   // of the reach from tick to tick
 // A new tool grows by this much per time, m/s, which the hand feels as less than its coupling times that,
 // and only while it is not deeper in the bone than this share of its thinnest radius: squeezed more than that
 // by a hole that is too narrow, it could not be drawn out.

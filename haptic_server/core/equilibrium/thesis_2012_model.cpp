@@ -1,4 +1,4 @@
-#include "haptic_server/core/spo/thesis_2012_model.h"
+#include "haptic_server/core/equilibrium/thesis_2012_model.h"
 
 namespace bonemill {
 

@@ -1,4 +1,4 @@
-#include "haptic_server/scans/analysis/propose_iso.h"
+#include "haptic_server/scans/find_bone/propose_iso.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "common/base/user_error.h"
-#include "haptic_server/scans/analysis/value_histogram.h"
+#include "haptic_server/scans/find_bone/value_histogram.h"
 
 namespace bonemill {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "haptic_server/core/spo/gradient_model.h"
+#include "haptic_server/core/equilibrium/gradient_model.h"
 #include "tests/support/contact_scene.h"
 
 namespace bonemill {

@@ -1,4 +1,4 @@
-#include "haptic_server/core/spo/curvature_secant.h"
+#include "haptic_server/core/equilibrium/curvature_secant.h"
 
 #include <gtest/gtest.h>
 

@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "haptic_server/core/contact/gradient_contact.h"
-#include "haptic_server/core/spo/curvature_secant.h"
-#include "haptic_server/core/spo/gradient_config.h"
-#include "haptic_server/core/spo/spo_model.h"
+#include "haptic_server/core/equilibrium/curvature_secant.h"
+#include "haptic_server/core/equilibrium/gradient_config.h"
+#include "haptic_server/core/equilibrium/spo_model.h"
 #include "haptic_server/core/tool/growing_field.h"
 
 namespace bonemill {

@@ -1,6 +1,6 @@
-#include "haptic_server/core/spo/gradient_model.h"
-#include "haptic_server/core/spo/spo_models.h"
-#include "haptic_server/core/spo/thesis_2012_model.h"
+#include "haptic_server/core/equilibrium/gradient_model.h"
+#include "haptic_server/core/equilibrium/spo_models.h"
+#include "haptic_server/core/equilibrium/thesis_2012_model.h"
 
 namespace bonemill {
 namespace {

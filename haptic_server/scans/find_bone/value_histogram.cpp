@@ -1,4 +1,4 @@
-#include "haptic_server/scans/analysis/value_histogram.h"
+#include "haptic_server/scans/find_bone/value_histogram.h"
 
 #include <algorithm>
 #include <array>
@@ -97,7 +97,7 @@ std::vector<double> smoothed(const std::vector<double>& count, double sigma_bins
 namespace {
 
 constexpr double kValleyRatio = 0.6;  // a valley must fall below this share of the lower of its two peaks
-constexpr double kMinMass = 0.005;  // and a material must hold this share of the voxels
+constexpr double kMinMass = 0.005;    // and a material must hold this share of the voxels
 
 }  // namespace
 

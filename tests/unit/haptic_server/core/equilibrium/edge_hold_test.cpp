@@ -1,7 +1,7 @@
 // Tools with edges in holes of their own shape, under quick hands, and on spikes thinner than a voxel.
 #include <gtest/gtest.h>
 
-#include "haptic_server/core/spo/gradient_model.h"
+#include "haptic_server/core/equilibrium/gradient_model.h"
 #include "tests/support/contact_scene.h"
 
 namespace bonemill {

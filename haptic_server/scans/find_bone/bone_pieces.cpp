@@ -1,11 +1,11 @@
-#include "haptic_server/scans/analysis/bone_pieces.h"
+#include "haptic_server/scans/find_bone/bone_pieces.h"
 
 #include <algorithm>
 #include <numeric>
 
 #include "common/base/units.h"
 #include "common/text/printed_text.h"
-#include "haptic_server/scans/analysis/volume_text.h"
+#include "haptic_server/scans/find_bone/volume_text.h"
 
 namespace bonemill {
 namespace {

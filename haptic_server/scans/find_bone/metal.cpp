@@ -1,4 +1,4 @@
-#include "haptic_server/scans/analysis/metal.h"
+#include "haptic_server/scans/find_bone/metal.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 #include "common/base/units.h"
 #include "common/text/printed_text.h"
-#include "haptic_server/scans/analysis/propose_iso.h"
-#include "haptic_server/scans/analysis/volume_text.h"
+#include "haptic_server/scans/find_bone/propose_iso.h"
+#include "haptic_server/scans/find_bone/volume_text.h"
 
 namespace bonemill {
 namespace {
@@ -15,9 +15,9 @@ namespace {
 constexpr double kMaxShare = 0.05;  // of all voxels: what has more is no scan in Hounsfield units
 constexpr double kMinNeighbours =
     3;  // of six that are metal, too, on average: half of them, as noise at the limit
-constexpr uint64_t kMinStanding = 2;  // voxels
+constexpr uint64_t kMinStanding = 2;   // voxels
 constexpr double kMaxAroundHu = 2200;  // mean of what a small piece touches: enamel is denser
-constexpr double kMinClipped = 0.05;  // of the metal's voxels have the highest value
+constexpr double kMinClipped = 0.05;   // of the metal's voxels have the highest value
 constexpr size_t kMostNamed = 3;
 
 bool areTooMany(size_t metal, size_t all) {

@@ -15,8 +15,8 @@
 #include "haptic_server/core/contact/surface_contact.h"
 #include "haptic_server/core/coupling/energy_coupling.h"
 #include "haptic_server/core/coupling/virtual_coupling.h"
-#include "haptic_server/core/spo/solve_energy.h"
-#include "haptic_server/core/spo/spo_tool.h"
+#include "haptic_server/core/equilibrium/solve_energy.h"
+#include "haptic_server/core/equilibrium/spo_tool.h"
 
 namespace bonemill {
 

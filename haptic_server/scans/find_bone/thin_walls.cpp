@@ -1,4 +1,4 @@
-#include "haptic_server/scans/analysis/thin_walls.h"
+#include "haptic_server/scans/find_bone/thin_walls.h"
 
 #include <algorithm>
 #include <array>

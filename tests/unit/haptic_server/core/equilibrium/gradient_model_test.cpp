@@ -1,4 +1,4 @@
-#include "haptic_server/core/spo/gradient_model.h"
+#include "haptic_server/core/equilibrium/gradient_model.h"
 
 #include <gtest/gtest.h>
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "common/base/assert.h"
-#include "haptic_server/core/spo/gradient_config.h"
-#include "haptic_server/core/spo/spo_model.h"
+#include "haptic_server/core/equilibrium/gradient_config.h"
+#include "haptic_server/core/equilibrium/spo_model.h"
 
 namespace bonemill {
 

@@ -1,4 +1,4 @@
-#include "haptic_server/scans/analysis/volume_text.h"
+#include "haptic_server/scans/find_bone/volume_text.h"
 
 #include "common/base/units.h"
 #include "common/text/printed_text.h"

@@ -12,7 +12,7 @@
 
 #include "haptic_server/core/volume/index_box.h"
 #include "haptic_server/core/volume/raw_volume.h"
-#include "haptic_server/scans/analysis/streaks.h"
+#include "haptic_server/scans/find_bone/streaks.h"
 
 namespace bonemill {
 

@@ -1,4 +1,4 @@
-#include "common/lesson_csv/attempts_csv.h"
+#include "common/attempts_csv/attempts_csv.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "haptic_server/scans/analysis/streaks.h"
+#include "haptic_server/scans/find_bone/streaks.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@ constexpr double kStep = 3e-3, kGrid = 1e-3;       // m: between the two of a pa
 constexpr double kRing = 5e-3, kFarthest = 60e-3;  // m
 constexpr int kRings = int(kFarthest / kRing);
 constexpr int kMaxSlices = 16, kMaxBeside = 4;
-constexpr size_t kMaxBoxes = 64;                   // more take minutes
+constexpr size_t kMaxBoxes = 64;                  // more take minutes
 constexpr int kMinApart = 2;                      // slices: what is nearer may show some of the metal
 constexpr double kMinPairs = 100;                 // in a ring
 constexpr double kWorse = 1.5, kMinIndexHu = 30;  // than slices without metal: anatomy differs by less
@@ -110,8 +110,7 @@ struct Group {
             }
         }
         for (const IndexBox& box : metal)
-            if (boxes.size() < kMaxBoxes && box.min.z() >= first && box.max.z() <= last)
-                boxes.push_back(box);
+            if (boxes.size() < kMaxBoxes && box.min.z() >= first && box.max.z() <= last) boxes.push_back(box);
     }
 };
 

@@ -1,7 +1,7 @@
 // Tools with edges slide over a flat face without friction, whatever the voxels and the lean.
 #include <gtest/gtest.h>
 
-#include "haptic_server/core/spo/gradient_model.h"
+#include "haptic_server/core/equilibrium/gradient_model.h"
 #include "tests/support/contact_scene.h"
 
 namespace bonemill {
