@@ -162,7 +162,11 @@ ArmReading HaplyArm::read(bool has_answered) const noexcept {
 // The service lets go of an arm that is not commanded.
 void HaplyArm::release() noexcept {
     if (!socket_) return;
-    if (has_driven_) send(forceMessage(state_, dialect_, Eigen::Vector3d::Zero()));
+    if (has_driven_) {
+        const std::string zero = forceMessage(state_, dialect_, Eigen::Vector3d::Zero());
+        // send() only drains what still waits from before.
+        if (!socket_->hasUnsent() || send(zero)) send(zero);
+    }
     socket_.reset();
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/base/units.h"
+
 namespace bonemill::bridge {
 namespace {
 

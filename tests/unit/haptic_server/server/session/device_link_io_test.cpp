@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "common/rt/clock.h"
+#include "haptic_server/core/telemetry/tick_record.h"
 
 namespace bonemill {
 namespace {
