@@ -1,9 +1,11 @@
 // An effect is declared by its config, NAME/NAME_config.h: a struct in SI with
-//   kName         as in the scene's `effects`;
-//   parameters()  which field of the scene's message sets what; defaults and ranges stand in
-//   proto/scene.proto alone; kRecords      the shared parts of the tick's record that it writes; left out:
-//   none; kFigures      what it tells of its own, an array of EffectFigure; left out: nothing; make() the
-//   effect itself, at the start.
+//
+// - kName, as in the scene's `effects`;
+// - parameters(): which field of the scene's message sets what (defaults and ranges stand in
+//   proto/scene_effects.proto alone);
+// - kRecords: the shared parts of the tick's record that it writes; left out: none;
+// - kFigures: what it tells of its own, an array of EffectFigure; left out: nothing;
+// - make(): the effect itself, at the start.
 #pragma once
 
 #include <array>

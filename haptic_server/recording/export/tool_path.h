@@ -1,5 +1,5 @@
 // The way of the simulated tool in one attempt of a recorded session, for a scene's `assessment.expert_path`
-// and for people: the columns of a trajectory (setup/trajectory_reader.h), whose t_s counts from the
+// and for people: the columns of a trajectory (trajectory/trajectory_reader.h), whose t_s counts from the
 // attempt's begin on and rests in pauses.
 #pragma once
 

@@ -1,4 +1,7 @@
 // The readers of a build without BONEMILL_WITH_SCANS: NRRD.
+#include <cctype>
+#include <string>
+
 #include "common/base/user_error.h"
 #include "haptic_server/scans/import/plain_nrrd.h"
 #include "haptic_server/scans/import/readers.h"
@@ -6,7 +9,9 @@
 namespace bonemill {
 
 RawVolume readVolume(const std::filesystem::path& path, const ImportOptions& options) {
-    if (path.extension() == ".nrrd" && !std::filesystem::is_directory(path))
+    std::string ending = path.extension().string();
+    for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+    if (ending == ".nrrd" && !std::filesystem::is_directory(path))
         return readPlainNrrd(path, options.spacing_mm);
     throw UserError(
         path.string() +

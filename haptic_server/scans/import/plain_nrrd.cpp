@@ -80,6 +80,8 @@ class VoxelBytes {
         if (file_ < 0 || lseek(file_, off_t(header.bytes), SEEK_SET) < 0)
             throw UserError(path.string() + ": cannot be read; check the path and who may read it");
         if (is_packed_) packed_ = gzdopen(file_, "rb");
+        if (is_packed_ && (!packed_ || gzdirect(packed_)))
+            throw UserError(path.string() + ": its voxels are not packed as its header says; it is damaged");
     }
     ~VoxelBytes() {
         if (packed_)
