@@ -15,7 +15,7 @@ test::Finished makeSbom(const std::string& programs, const std::string& out) {
     return test::run({test::sourceDir() + "/deploy/security/make-sbom", "--bin", programs, "--out", out});
 }
 
-const std::string kPagePackages = test::binDir() + "/../render_client/page/made/contained.json";
+const std::string kPagePackages = test::binDir() + "/../render_client/web/page/made/contained.json";
 
 bool isTool(const nlohmann::json& sbom, const std::string& id) {
     return std::ranges::any_of(sbom["relationships"], [&](const nlohmann::json& relation) {
