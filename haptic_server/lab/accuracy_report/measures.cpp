@@ -16,8 +16,8 @@ double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 }  // namespace
 
-std::vector<Answer> answersOf(const RunRecords& records) {
-    std::vector<Answer> answers;
+std::vector<TickAnswer> answersOf(const RunRecords& records) {
+    std::vector<TickAnswer> answers;
     answers.reserve(records.size());
     for (const TickRecord& r : records)
         answers.push_back(
@@ -26,9 +26,9 @@ std::vector<Answer> answersOf(const RunRecords& records) {
     return answers;
 }
 
-void ErrorSum::add(const std::vector<Answer>& answers, const std::vector<Answer>& truth) {
+void ErrorSum::add(const std::vector<TickAnswer>& answers, const std::vector<TickAnswer>& truth) {
     for (size_t n = 0; n < std::min(answers.size(), truth.size()); ++n) {
-        const Answer &a = answers[n], &t = truth[n];
+        const TickAnswer &a = answers[n], &t = truth[n];
         const double force = t.hand_W.force.norm();
         if (force < Errors::kFeltForce) continue;
         ++ticks_;
@@ -55,7 +55,7 @@ Errors ErrorSum::errors() const {
             .ticks = ticks_};
 }
 
-void NoiseSum::add(const std::vector<Answer>& answers) {
+void NoiseSum::add(const std::vector<TickAnswer>& answers) {
     for (size_t n = 1; n + 1 < answers.size(); ++n) {
         const auto force = [&](size_t tick) { return answers[tick].hand_W.force; };
         sum_ += (force(n + 1) - 2 * force(n) + force(n - 1)).squaredNorm();
@@ -67,7 +67,7 @@ double NoiseSum::noise() const {
     return count_ ? std::sqrt(sum_ / double(count_)) : 0;
 }
 
-PathEnergy energyOf(const std::vector<Answer>& answers, std::span<const Pose> device) {
+PathEnergy energyOf(const std::vector<TickAnswer>& answers, std::span<const Pose> device) {
     PathEnergy energy;
     for (size_t n = 1; n < std::min(answers.size(), device.size()); ++n) {
         const Eigen::Vector3d moved = device[n].position - device[n - 1].position;

@@ -10,11 +10,11 @@
 namespace bonemill {
 
 // One tick answers with the tool's pose in W, and with what the hand feels (axes W).
-struct Answer {
+struct TickAnswer {
     Pose X_WT;
     Wrench hand_W;
 };
-std::vector<Answer> answersOf(const RunRecords& records);
+std::vector<TickAnswer> answersOf(const RunRecords& records);
 
 // These are root mean squares of the differences to the truth over the ticks in which the true force is at
 // least kFeltForce. Magnitudes are relative to the root mean square of the true ones, so that light touches
@@ -35,7 +35,7 @@ struct Errors {
 class ErrorSum {
   public:
     // Both are of the same path and have the same length.
-    void add(const std::vector<Answer>& answers, const std::vector<Answer>& truth);
+    void add(const std::vector<TickAnswer>& answers, const std::vector<TickAnswer>& truth);
     Errors errors() const;
 
   private:
@@ -48,7 +48,7 @@ class ErrorSum {
 // tick to tick, if the path is smooth.
 class NoiseSum {
   public:
-    void add(const std::vector<Answer>& answers);
+    void add(const std::vector<TickAnswer>& answers);
     double noise() const;
 
   private:
@@ -63,6 +63,6 @@ struct PathEnergy {
     double lowest = 0;  // anywhere on the path, its start included
     double at_end = 0;
 };
-PathEnergy energyOf(const std::vector<Answer>& answers, std::span<const Pose> device);
+PathEnergy energyOf(const std::vector<TickAnswer>& answers, std::span<const Pose> device);
 
 }  // namespace bonemill

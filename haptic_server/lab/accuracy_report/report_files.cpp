@@ -109,7 +109,7 @@ TruthSummary summaryOf(const std::vector<ProbingStroke>& strokes, const std::vec
             std::min(summary.closed_energy, energyOf(truth[n].answers, strokes[n].device).at_end);
         noise.add(truth[n].answers);
         coarser.add(truth[n].coarser, truth[n].answers);
-        for (const Answer& answer : truth[n].answers) {
+        for (const TickAnswer& answer : truth[n].answers) {
             const double f = answer.hand_W.force.norm(), t = answer.hand_W.torque.norm();
             if (f < Errors::kFeltForce) continue;
             force += f * f, torque += t * t, ++count;

@@ -30,7 +30,7 @@ void probe(const SweepInput& input, const FixedTickConfig& tick, BoneModel& bone
     figures.closed_energy = INFINITY;
     for (size_t n = 0; n < input.strokes.size(); ++n) {
         const RunRecords records = runPathTimed(tick, bone, input.strokes[n].device);
-        const std::vector<Answer> answers = answersOf(records);
+        const std::vector<TickAnswer> answers = answersOf(records);
         errors.add(answers, input.truth[n].answers);
         noise.add(answers);
         const PathEnergy energy = energyOf(answers, input.strokes[n].device);

@@ -8,10 +8,10 @@
 namespace bonemill {
 
 struct Truth {
-    std::vector<Answer> answers;
-    double max_penetration = 0;   // m
-    int refinement = 0;           // of the voxels; wantedRefinement() unless memory forbade it
-    std::vector<Answer> coarser;  // the same with half that refinement: how far the truth can be off
+    std::vector<TickAnswer> answers;
+    double max_penetration = 0;       // m
+    int refinement = 0;               // of the voxels; wantedRefinement() unless memory forbade it
+    std::vector<TickAnswer> coarser;  // the same with half that refinement: how far the truth can be off
 };
 inline constexpr int kMinRefinement = 4, kMaxRefinement = 16;
 

@@ -200,8 +200,9 @@ TEST_P(ClosedPaths, GiveTheHandNoEnergy) {
     params.disableShrinking = true;  // a shrunk path says no more, and takes minutes
     rc::detail::TestMetadata metadata;
     metadata.id = testing::UnitTest::GetInstance()->current_test_info()->name();
-    const auto result =
-        rc::detail::checkTestable([&] { expectPassive(preset, body, least, touching); }, metadata, params);
+    const auto result = rc::detail::checkTestable(
+        [&, preset = preset, body = body] { expectPassive(preset, body, least, touching); }, metadata,
+        params);
     std::printf("%d paths, seed %llu, least energy put in %.2e J\n", paths,
                 static_cast<unsigned long long>(params.seed), least);
     EXPECT_GT(paths, 0);

@@ -9,19 +9,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-Answer answer(const Vector3d& force, const Vector3d& torque = Vector3d::Zero(),
-              const Vector3d& position = Vector3d::Zero(), const Vector3d& turned = Vector3d::Zero()) {
+TickAnswer answer(const Vector3d& force, const Vector3d& torque = Vector3d::Zero(),
+                  const Vector3d& position = Vector3d::Zero(), const Vector3d& turned = Vector3d::Zero()) {
     return {{position, expRotation(turned)}, {force, torque}};
 }
 
-Errors errorsOf(const std::vector<Answer>& answers, const std::vector<Answer>& truth) {
+Errors errorsOf(const std::vector<TickAnswer>& answers, const std::vector<TickAnswer>& truth) {
     ErrorSum sum;
     sum.add(answers, truth);
     return sum.errors();
 }
 
 TEST(Errors, EqualAnswersHaveNone) {
-    const std::vector<Answer> truth(5, answer({0, 3, 4}, {0.1, 0, 0}, {1e-3, 0, 0}, {0, 0.2, 0}));
+    const std::vector<TickAnswer> truth(5, answer({0, 3, 4}, {0.1, 0, 0}, {1e-3, 0, 0}, {0, 0.2, 0}));
     const Errors errors = errorsOf(truth, truth);
     EXPECT_EQ(errors.force, 0);
     EXPECT_EQ(errors.force_vector, 0);
@@ -33,12 +33,12 @@ TEST(Errors, EqualAnswersHaveNone) {
 }
 
 TEST(Errors, MagnitudeDirectionAndPoseAreToldApart) {
-    const std::vector<Answer> truth{answer({0, 0, 2}, {0, 0.01, 0})};
+    const std::vector<TickAnswer> truth{answer({0, 0, 2}, {0, 0.01, 0})};
     // The force is 10 % longer and 30° off, the torque 20 % short; the tool is 3-4-5 µm beside and turned by
     // 2 mrad.
     const double angle = M_PI / 6;
-    const std::vector<Answer> answers{answer(2.2 * Vector3d(std::sin(angle), 0, std::cos(angle)),
-                                             {0.008, 0, 0}, {3e-6, 4e-6, 0}, {0, 0, 2e-3})};
+    const std::vector<TickAnswer> answers{answer(2.2 * Vector3d(std::sin(angle), 0, std::cos(angle)),
+                                                 {0.008, 0, 0}, {3e-6, 4e-6, 0}, {0, 0, 2e-3})};
     const Errors errors = errorsOf(answers, truth);
     EXPECT_NEAR(errors.force, 0.1, 1e-12);
     EXPECT_NEAR(errors.torque, 0.2, 1e-12);
@@ -67,7 +67,7 @@ TEST(Errors, LightTouchesDoNotCount) {
 }
 
 TEST(Noise, StraightAndBentForcesAndAJump) {
-    std::vector<Answer> straight, bent;
+    std::vector<TickAnswer> straight, bent;
     for (int n = 0; n < 50; ++n) {
         straight.push_back(answer({0.1 * n, -0.2 * n, 1}));
         bent.push_back(answer({0, 0, 0.5 * 3e-3 * n * n}));
@@ -90,8 +90,8 @@ TEST(Noise, DoesNotReachFromOnePathToTheNext) {
 }
 
 // It is a spring from the origin, linear and torsional, felt exactly.
-std::vector<Answer> springAnswers(const std::vector<Pose>& device, double k, double k_rotation) {
-    std::vector<Answer> answers;
+std::vector<TickAnswer> springAnswers(const std::vector<Pose>& device, double k, double k_rotation) {
+    std::vector<TickAnswer> answers;
     for (const Pose& pose : device)
         answers.push_back({{}, {-k * pose.position, -k_rotation * logRotation(pose.rotation)}});
     return answers;
@@ -116,7 +116,7 @@ TEST(PathEnergy, ForceThatLagsTakesAndForceThatLeadsGives) {
     for (int n = 0; n <= 1000; ++n)
         device.push_back({{1e-3 * std::sin(2 * M_PI * n / 1000), 0, 0}, Eigen::Quaterniond::Identity()});
     const double rate = 2 * M_PI * 1e-3 / 1000;  // m per tick
-    std::vector<Answer> brake, motor;
+    std::vector<TickAnswer> brake, motor;
     for (int n = 0; n <= 1000; ++n) {
         const double velocity = rate * std::cos(2 * M_PI * n / 1000);
         brake.push_back(answer({-1e3 * velocity, 0, 0}));

@@ -36,7 +36,7 @@ TEST(Truth, RestingBurrOnAPlaneHasTheForceAndDepthOfTheClosedForm) {
         ASSERT_EQ(truth[n].answers.size(), strokes[n].device.size());
         const double depth = depthUnderSpring(tick, strokes[n].deepest);
         const double force = forceOnSphere(tick.gradient.contact.stiffness_per_area, test::kBurr, depth);
-        const Answer& rest = truth[n].answers.back();
+        const TickAnswer& rest = truth[n].answers.back();
         EXPECT_NEAR(rest.hand_W.force.z() / force, 1, 1e-3);
         EXPECT_NEAR(4e-3 - rest.X_WT.position.z(), depth, 0.3e-6);
         EXPECT_LT(rest.hand_W.force.head<2>().norm(), 2e-3 * force);
