@@ -6,8 +6,8 @@
 
 #include "common/rt/clock.h"
 #include "common/rt/page_faults.h"
-#include "haptic_server/core/tick/fixed_tick.h"
 #include "haptic_server/core/telemetry/fault_names.h"
+#include "haptic_server/core/tick/fixed_tick.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
 #include "tests/bench/bench_commands.h"
 #include "tests/bench/bench_output.h"

@@ -6,8 +6,8 @@
 
 #include "common/mesh_codec/mesh_codec.h"
 #include "common/rt/clock.h"
-#include "haptic_server/core/tick/fixed_tick.h"
 #include "haptic_server/core/telemetry/fault_names.h"
+#include "haptic_server/core/tick/fixed_tick.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
 #include "haptic_server/surface/mesh/mesh_rounds.h"
 #include "tests/bench/bench_commands.h"

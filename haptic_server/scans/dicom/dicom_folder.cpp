@@ -12,8 +12,8 @@
 #include "haptic_server/scans/dicom/dicom_scan.h"
 #include "haptic_server/scans/dicom/dicom_segments.h"
 #include "haptic_server/scans/dicom/series_table.h"
-#include "haptic_server/scans/pixels/itk_image_file.h"
 #include "haptic_server/scans/frame/physical_frame.h"
+#include "haptic_server/scans/pixels/itk_image_file.h"
 
 namespace bonemill {
 namespace {

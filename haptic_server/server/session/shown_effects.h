@@ -28,8 +28,8 @@ void describeBurr(const scene::Scene& scene, const Burr& burr, topics::SceneInfo
 double warningDistanceOf(const scene::Effects& effects);
 
 // Adds the figures that are recorded, mean something and have a line in viewers.
-void addLines(std::span<const EffectFigure> figures, const EffectRecord& newest, const RecordedEffects& recorded,
-              topics::EffectState& state);
+void addLines(std::span<const EffectFigure> figures, const EffectRecord& newest,
+              const RecordedEffects& recorded, topics::EffectState& state);
 
 // This makes the effects part of the tool states of a session.
 class ShownEffects {
