@@ -195,7 +195,7 @@ TEST_F(DeviceDaemonTest, SaysTheFirstAndTheLastPhaseAndLeavesWhenToldTo) {
         const std::string file = sceneFile(scene);
         test::Process daemon(commandLine(file, options));
         WallServer server(session_);
-        EXPECT_TRUE(test::waitFor([&] {
+        EXPECT_TRUE(test::waitFor([&, phase = phase] {
             const std::string said = daemon.outSoFar() + daemon.errSoFar();
             return said.find("phase " + phase) != std::string::npos && server.answers() > 50;
         })) << phase;
