@@ -1,5 +1,5 @@
 // What is to be known of each command besides what it does: the option (row) of its action in
-// proto/topics.proto, which proto/topics_commands.proto explains. Thread-safe.
+// proto/topics_commands.proto, which proto/topics_command_rows.proto explains. Thread-safe.
 #pragma once
 
 #include <google/protobuf/descriptor.h>
@@ -18,7 +18,7 @@ const google::protobuf::FieldDescriptor* fieldOf(CommandAction action);
 // An action that is not known has an empty row: it is an instructor's, without limit, and not typed.
 const topics::CommandRow& rowOf(CommandAction action);
 
-// In the order of proto/topics.proto.
+// In the order of proto/topics_commands.proto.
 void forEachCommand(const std::function<void(CommandAction, const topics::CommandRow&)>& see);
 
 // Where a form's argument is: in the command itself, or one message deeper.

@@ -1,4 +1,4 @@
-// Turns node meshes into the bytes on the wire and back: the NodeMesh message of proto/topics.proto, whose
+// Turns node meshes into the bytes on the wire and back: the NodeMesh message of proto/topics_scene.proto, whose
 // vertex and index buffers are in meshoptimizer's coding. It is not RT-safe (it allocates), but thread-safe.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace bonemill {
 
-// It goes with a node mesh over the wire (proto/topics.proto, NodeMesh).
+// It goes with a node mesh over the wire (proto/topics_scene.proto, NodeMesh).
 struct NodeTag {
     uint64_t epoch = 0;
     uint64_t batch = 0;

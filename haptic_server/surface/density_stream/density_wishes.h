@@ -1,4 +1,4 @@
-// What viewers want to see of the densities, and what they have of it (DensityWish of proto/topics.proto):
+// What viewers want to see of the densities, and what they have of it (DensityWish of proto/densities.proto):
 // the newest wish of each sender, within bounds, whatever arrives. It is for one thread and not RT-safe.
 #pragma once
 

@@ -50,7 +50,7 @@ function commandRows() {
   const row = registry.getExtension('bonemill.topics.row');
   const actions = registry.getMessage('bonemill.topics.Command').fields.filter((field) => field.oneof);
   const rows = Object.fromEntries(actions.map((field) => [field.localName, toJson(row.message, getOption(field, row))]));
-  return `// Made from proto/topics.proto by build.mjs.\nexport const kCommandRows = ${JSON.stringify(rows, null, 2)};\n`;
+  return `// Made from proto/topics_commands.proto by build.mjs.\nexport const kCommandRows = ${JSON.stringify(rows, null, 2)};\n`;
 }
 
 // A shader is its text, with the files that it includes in their places and without what only readers need.

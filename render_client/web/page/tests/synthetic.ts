@@ -1,7 +1,7 @@
 // A session that nobody milled: a bumpy ball in nodes, a burr, a nerve inside; coded as the server codes them.
 import { create, fromBinary, toBinary } from '@bufbuild/protobuf';
 import { MeshoptEncoder } from 'meshoptimizer/encoder';
-import * as wire from '#proto/topics_pb';
+import * as wire from '../src/link/wire';
 import { Sample_Topic, SampleSchema, type Sample } from '#proto/gateway_pb';
 
 export const kEpoch = 1_790_000_000_000_000_000n;

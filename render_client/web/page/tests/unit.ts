@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { create, fromBinary, getOption, ScalarType, toBinary, type DescMessage } from '@bufbuild/protobuf';
 import { items, shape, Shape } from '#proto/bounds_pb';
-import * as wire from '#proto/topics_pb';
+import * as wire from '../src/link/wire';
 import * as linear from '../src/math/linear';
 import { read } from '../src/link/bounds';
 import { shownText, Malformed } from '../src/link/checks';

@@ -11,7 +11,7 @@ import { NodeList } from './node_list';
 import * as payloads from './payloads';
 import { Placement } from './place_node';
 import { SessionSocket } from './session_socket';
-import { StructureMeshSchema } from '#proto/topics_pb';
+import { StructureMeshSchema } from '#proto/topics_scene_pb';
 
 const kMostStructureTriangles = 1 << 18;
 const kMostKeys = 1024;  // viewers, remarks and pictures each

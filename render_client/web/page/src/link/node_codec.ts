@@ -1,7 +1,7 @@
 // Decodes one node's surface, as common/mesh_codec/mesh_codec.cpp does, with all its checks.
 import { fromBinary } from '@bufbuild/protobuf';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
-import * as wire from '#proto/topics_pb';
+import * as wire from '#proto/topics_scene_pb';
 import type { Vec3 } from '../math/linear';
 import { demand, within } from './checks';
 

@@ -1,6 +1,6 @@
 // From the payloads of the topics to what the page shows. All throw Malformed, or what the decoder throws: each field is
 // checked by read(), and here only what must go together.
-import * as wire from '#proto/topics_pb';
+import * as wire from './wire';
 import type {
   AttemptView, CameraWish, EffectView, LessonView, RemarkView, SceneChoiceView, ScenePictureView, SceneView, SoundWish, StatusView,
   ToolMesh, ToolView, TrainingView, ViewerView,

@@ -1,6 +1,7 @@
 // What the page says, as the gateway's messages.
 import { create, type MessageInitShape } from '@bufbuild/protobuf';
-import { CommandSchema, HandPointerSchema, ViewerSchema, type Command } from '#proto/topics_pb';
+import { CommandSchema, type Command } from '#proto/topics_commands_pb';
+import { HandPointerSchema, ViewerSchema } from '#proto/topics_people_pb';
 import type { CameraWish, CommandOrder, ToLink } from '../shared/messages';
 
 type Action = MessageInitShape<typeof CommandSchema>['action'];

@@ -1,4 +1,4 @@
-// What is to be known of each command, from the rows of proto/topics.proto (as common/commands): build.mjs writes them.
+// What is to be known of each command, from the rows of proto/topics_commands.proto (as common/commands): build.mjs writes them.
 import { kCommandRows } from '#proto/command_rows';
 import { Role, type CommandOrder } from './messages';
 

@@ -1,6 +1,6 @@
 // What the link (a worker: socket, protobuf, decoding) and the page (pictures, buttons) say to each other. All of it
 // was checked by the link: numbers are finite and bounded, texts printable and bounded. 64-bit numbers are texts.
-import type { Command } from '#proto/topics_pb';
+import type { Command } from '#proto/topics_commands_pb';
 import type { Pose, Quat, Vec3 } from '../math/linear';
 
 export enum Role { Viewer = 0, Operator = 1, Instructor = 2, Examiner = 3 }
