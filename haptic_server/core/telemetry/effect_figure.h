@@ -44,13 +44,29 @@ struct ShownAs {
 
 constexpr int kNoSlot = -1;
 
+// Reads a figure from a record, or is not there. A class, since with -fsanitize=undefined GCC's constant
+// expressions may not ask whether a function's address is null.
+class FigureReader {
+  public:
+    constexpr FigureReader() = default;
+    template <class Read>
+        requires std::is_convertible_v<Read, ColumnValue (*)(const EffectRecord&)>
+    constexpr FigureReader(Read read) noexcept : read_(read), is_there_(true) {}
+    constexpr explicit operator bool() const noexcept { return is_there_; }
+    ColumnValue operator()(const EffectRecord& record) const { return read_(record); }
+
+  private:
+    ColumnValue (*read_)(const EffectRecord&) = nullptr;
+    bool is_there_ = false;
+};
+
 struct EffectFigure {
     // The column's name with its unit, the unit and words of exports; null: no column.
     const char* name = nullptr;
     const char* unit = nullptr;
     const char* description = nullptr;
-    // Null: the figure is one of EffectRecord::own, which effects/effect_figures.h gives it.
-    ColumnValue (*value)(const EffectRecord&) = nullptr;
+    // Without: the figure is one of EffectRecord::own, which effects/effect_figures.h gives it.
+    FigureReader value = {};
     RunFigure run = {};
     ShownAs shown = {};
     bool (*has_meaning)(const EffectRecord&) = nullptr;  // null: always
