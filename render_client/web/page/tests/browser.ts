@@ -84,7 +84,7 @@ async function desktop(): Promise<void> {
   await page.keyboard.press('Shift+M');
   await page.keyboard.press('p');
   await ordered('pauseMilling');
-  await has(page, 'notices', 'pause: done');
+  await has(page, 'notices', 'pause milling: done');
   await page.keyboard.press('m');
   await page.keyboard.press('x');
   await has(page, 'panel', 'Mill the ball open');
