@@ -62,7 +62,10 @@ inline Wrench quadrature(const std::vector<SurfaceElement>& surface, const ToolF
 
 inline Eigen::Quaterniond randomRotation(std::mt19937& random) {
     std::normal_distribution<double> normal;
-    return Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized();
+    Eigen::Quaterniond turn;
+    // One after the other: compilers differ in the order of a call's arguments.
+    for (const int n : {2, 1, 0, 3}) turn.coeffs()[n] = normal(random);
+    return turn.normalized();
 }
 
 // Holds the distances of the shapes' union, with eight nodes on the thinnest radius.
