@@ -1,5 +1,3 @@
-#include "haptic_server/core/effects/protected_structures/protected_structures.h"
-
 #include <gtest/gtest.h>
 
 #include "tests/support/typical_effects.h"
