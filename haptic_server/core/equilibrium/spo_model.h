@@ -10,15 +10,30 @@
 #include <span>
 
 #include "haptic_server/core/accuracy/accuracy_settings.h"
-#include "haptic_server/core/contact/contact_weights.h"
+#include "haptic_server/core/contact/candidates.h"
 #include "haptic_server/core/contact/point_shell.h"
-#include "haptic_server/core/contact/surface_contact.h"
 #include "haptic_server/core/coupling/energy_coupling.h"
 #include "haptic_server/core/coupling/virtual_coupling.h"
-#include "haptic_server/core/equilibrium/solve_energy.h"
-#include "haptic_server/core/equilibrium/spo_tool.h"
+#include "haptic_server/core/tool/burr.h"
+#include "haptic_server/core/tool/tool_model.h"
 
 namespace bonemill {
+
+// An SPO model needs to know this of the tool in use.
+struct SpoTool {
+    const ToolModel* model = nullptr;  // must outlive whoever uses the tool
+    Burr burr = {};
+    double saturation_force = 50;  // N: what the gradient law's coupling pulls this tool with at most
+};
+
+// Lets an effect add to the energy that the simulated tool's pose minimises.
+class SolveEnergy {
+  public:
+    virtual ~SolveEnergy() = default;
+    // Returns the energy at this pose of the tool. Within a tick it is one fixed function, bounded from
+    // below, with a positive semi-definite stiffness. It is RT-safe, for the tick thread only.
+    virtual EnergyTerm at(const Pose& X_VT) const noexcept = 0;
+};
 
 // The tool meets this bone. All of it lives at least as long as the model.
 struct SpoWorld {
