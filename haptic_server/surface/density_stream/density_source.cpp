@@ -46,8 +46,7 @@ std::vector<MaterialId> DensitySource::materials(uint32_t brick) const {
     std::vector<MaterialId> materials(kVoxelsPerBrick, kNoMaterial);
     const IndexBox voxels = voxelsOf(brick);
     forEachIndex(voxels, [&](const Eigen::Vector3i& v) {
-        const Eigen::Vector3i at = v - voxels.min;
-        materials[size_t(at.x() + kBrickVoxels * (at.y() + kBrickVoxels * at.z()))] =
+        materials[placeIn(Eigen::Vector3i::Constant(kBrickVoxels), v - voxels.min)] =
             properties_->material(v);
     });
     return materials;
