@@ -96,10 +96,6 @@ class ComparedLaw : public SpoModel {
     bool is_cutting_ = false;
 };
 
-// One linear step towards the pose at which the contacts' wrench and the coupling's are in balance, damped
-// and within the speed limits: what vps and penalty_sdf share with the thesis' law (Wan and McNeely 2003;
-// Barbič and James 2008). It is RT-safe.
-
 // A contact's wrench on the tool about the tool point, and its derivative by the tool's world increment.
 struct ContactWrench {
     Wrench wrench;
@@ -108,6 +104,10 @@ struct ContactWrench {
     double max_depth = 0;  // m
 };
 
+// One linear step towards the pose at which the contacts' wrench and the coupling's are in balance, damped
+// and within the speed limits: what vps and penalty_sdf share with the thesis' law (Wan and McNeely 2003;
+// Barbič and James 2008). It is RT-safe.
+//
 // Returns the pose after the step, and fills all of `out` but what the hand feels.
 inline Pose quasiStaticStep(const ContactWrench& contact, const EnergyTerm& coupling,
                             const CouplingConfig& limits, const Pose& X_VT, double dt,

@@ -1,5 +1,5 @@
-// These are the contact points near the tool that one solve works on, as structure of arrays. They are
-// RT-safe but for construction.
+// These are the contact points near the tool that one solve works on, as structure of arrays, and what
+// effects see and change of them. They are RT-safe but for construction.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,5 @@
-// This is the way that a burr's centre goes in a tick, a straight line in V. It is RT-safe.
+// This is the way that a burr's centre goes in a tick, a straight line in V, and which voxels the burr can
+// reach on it. It is RT-safe, and pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,8 +34,6 @@ class BurrWay {
     Eigen::Vector3d direction_ = Eigen::Vector3d::UnitX();
     double length_ = 0;
 };
-
-// Says which voxels a burr that goes a way can reach. It is RT-safe, and pure.
 
 // A way is one if the balls at its ends leave a ridge between them that is higher than this, in voxels; else
 // the burr only is where it ends, which is quicker to compute.

@@ -16,8 +16,6 @@
 
 namespace bonemill {
 
-// What viewers want to see of the densities, and what they have of it (DensityWish of proto/densities.proto):
-// the newest wish of each sender, within bounds, whatever arrives. It is for one thread and not RT-safe.
 inline constexpr uint32_t kLackingBrick = std::numeric_limits<uint32_t>::max();  // as a revision
 
 struct WishedBrick {
@@ -31,6 +29,8 @@ struct WishedBrick {
 std::optional<std::vector<WishedBrick>> parseDensityWish(std::span<const uint8_t> payload, uint64_t sender,
                                                          uint64_t epoch, uint32_t brick_count);
 
+// What viewers want to see of the densities, and what they have of it (DensityWish of proto/densities.proto):
+// the newest wish of each sender, within bounds, whatever arrives. It is for one thread and not RT-safe.
 class DensityWishes {
   public:
     static constexpr size_t kMaxSenders = 128;  // of more, the least recent of who has most is forgotten
