@@ -4,8 +4,6 @@
 #include <cstring>
 #include <thread>
 
-#include "haptic_server/core/bone/bone_snapshot.h"
-
 namespace bonemill {
 namespace {
 

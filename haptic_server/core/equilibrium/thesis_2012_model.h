@@ -16,20 +16,13 @@ class Thesis2012Model final : public SpoModel {
 
     SpoTraits traits() const noexcept override { return {.mills_voxel_centres = true}; }
     SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept override {
-        const ContactResult contact =
+        const ContactWrench contact =
             penaltyContact(contact_, world_.volume, world_.lattice, world_.shell, tool_->grid(), X_VT);
-        const Wrench net = contact.wrench + couplingWrench(coupling_, X_VT, X_VT_device);
-        const Matrix6d derivative = contact.derivative + couplingDerivative(coupling_, X_VT, X_VT_device);
-        const EquilibriumStep solved = solveEquilibrium(coupling_, net, derivative, dt_);
-        const Vector6d moved = (1 - coupling_.static_damping) * solved.step;
+        const EnergyTerm pull{.wrench = couplingWrench(coupling_, X_VT, X_VT_device),
+                              .stiffness = -couplingDerivative(coupling_, X_VT, X_VT_device)};
         SpoStep step;
-        step.X_VT = X_VT.incremented(moved.head<3>(), moved.tail<3>());
+        step.X_VT = quasiStaticStep(contact, pull, coupling_, X_VT, dt_, step);
         step.wrench_hand_V = -couplingWrench(coupling_, step.X_VT, X_VT_device);
-        step.contacts = contact.contacts;
-        step.iterations = 1;
-        step.max_penetration = contact.max_penetration;
-        step.is_solved = solved.is_found;
-        step.is_motion_clamped = solved.is_clamped;
         return step;
     }
     void restart() noexcept override {}

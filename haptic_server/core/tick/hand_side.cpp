@@ -1,7 +1,6 @@
 #include "haptic_server/core/tick/hand_side.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "common/base/units.h"
 

@@ -5,7 +5,6 @@
 
 #include "common/base/assert.h"
 #include "common/rt/rt_guard.h"
-#include "haptic_server/core/effects/effect_host.h"
 
 namespace bonemill {
 namespace {

@@ -5,7 +5,6 @@
 // bone. It counts once, until the scan is put back; to go back to a checkpoint undoes no damage.
 #include <algorithm>
 #include <bitset>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>

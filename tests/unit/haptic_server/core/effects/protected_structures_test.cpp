@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "haptic_server/core/effects/burr_probes.h"
 #include "tests/support/typical_effects.h"
 #include "tests/unit/haptic_server/core/effects/tissue_bench.h"
 
