@@ -54,7 +54,7 @@ struct SceneNotice {
 };
 
 // This is what moves with the handle, and how late the device is. The server fits the coupling to it
-// (haptic_server/core/tick/device_fit.h). Without a mass the rest of translation is not known, without an
+// (haptic_server/core/tick/hand_side.h). Without a mass the rest of translation is not known, without an
 // inertia that of rotation.
 struct HandleDynamics {
     double mass;             // kg

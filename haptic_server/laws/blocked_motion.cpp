@@ -1,7 +1,6 @@
 #include "haptic_server/laws/blocked_motion.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "common/geometry/pose_step.h"
 

@@ -67,7 +67,6 @@ class ComparedLaw : public SpoModel {
 
     const LawConfig& config() const noexcept { return config_; }
     const SpoWorld& world() const noexcept { return world_; }
-    const SpoTool& tool() const noexcept { return tool_; }
     const ToolField& field() const noexcept { return *field_; }
     const EnergyCoupling& coupling() const noexcept { return coupling_; }
     const ContinuousRotation& way() const noexcept { return way_; }

@@ -7,7 +7,6 @@
 // It is RT-safe but for construction: at most kMaxPivots passes over the rows. For one thread at a time.
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "common/geometry/pose.h"

@@ -5,7 +5,6 @@
 
 #include "common/geometry/bounded_vector.h"
 #include "haptic_server/core/contact/into_tool.h"
-#include "haptic_server/core/contact/tool_box.h"
 
 namespace bonemill {
 

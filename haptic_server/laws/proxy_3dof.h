@@ -17,12 +17,30 @@ class Proxy3Dof final : public ComparedLaw {
     Proxy3Dof(const LawConfig& config, const SpoWorld& world, const SpoTool& tool, double dt)
         : ComparedLaw(config, world, tool, dt), ball_({ballOf(tool)}) {}
 
-    SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept override;
+    SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept override {
+        SpoStep step;
+        Pose proxy{X_VT.position, X_VT_device.rotation};
+        const BlockedMotion::Wish wish{.X_VT = X_VT_device,
+                                       .K = Matrix6d::Identity(),
+                                       .may_turn = false,
+                                       .rounds = iterations(),
+                                       .recovery = BlockedMotion::kRecovery * dt(),
+                                       .bite = bite(),
+                                       .most_move = config().steps.max_speed * dt(),
+                                       .most_turn = 0};
+        motion_.go(world(), level(), ball_, wish, proxy, step);
+        feel(step, proxy, X_VT_device);
+        step.wrench_hand_V.torque.setZero();
+        return step;
+    }
     void restart() noexcept override {
         ComparedLaw::restart();
         motion_.restart();
     }
-    void setTool(const SpoTool& tool) noexcept override;
+    void setTool(const SpoTool& tool) noexcept override {
+        ComparedLaw::setTool(tool);
+        ball_.become(ballOf(tool));
+    }
 
   private:
     static SphereShape ballOf(const SpoTool& tool) noexcept {

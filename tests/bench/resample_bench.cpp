@@ -92,7 +92,7 @@ std::vector<double> surfaceErrors(const VoxelVolume& volume, const AnalyticBody&
     std::uniform_real_distribution<double> uniform(0, 1);
     std::vector<double> errors;
     for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
-        const NodeMesh mesh = meshLeaf(volume, lattice, leaf);
+        const NodeMesh mesh = LeafMesher(volume, lattice).mesh(leaf).value();
         const auto at = [&](uint32_t index) {
             const PackedVertex& v = mesh.vertices[index];
             return Vector3d(

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "haptic_server/core/effects/burr_speed.h"
+#include "haptic_server/core/effects/effect_host.h"
 #include "tests/support/random_direction.h"
 
 namespace bonemill::test {
@@ -38,6 +39,14 @@ struct ContactSet {
     std::vector<uint8_t> on_burr;
     std::vector<float> areas;
 };
+
+// An effect that asks for nothing but its config, as a scene makes it.
+template <class Config>
+std::unique_ptr<HapticEffect> effectOf(const Config& config) {
+    static const BoneModel no_bone(VoxelVolume({Eigen::Vector3i::Ones(), Eigen::Vector3d::Ones(), {}}, 1),
+                                   Eigen::Vector3i::Ones(), {.spare_points = 0});
+    return config.make({{}, no_bone, {}});
+}
 
 // This is a tick of a spinning ball burr of 1 mm radius, with friction 0.5 at 40,000 rpm.
 struct BurrTick {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "haptic_server/core/telemetry/recorded_effects.h"
+#include "haptic_server/core/telemetry/effect_record.h"
 
 namespace bonemill {
 

@@ -1,9 +1,8 @@
 #include "haptic_server/core/accuracy/accuracy_settings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
-
-#include "common/base/units.h"
 
 namespace bonemill {
 namespace {
@@ -11,6 +10,9 @@ namespace {
 constexpr std::string_view kNames[] = {"thesis_2012", "fast", "balanced",    "exact",
                                        "proxy_3dof",  "vps",  "penalty_sdf", "constraint"};
 static_assert(std::size(kNames) == kPresetCount);
+constexpr std::string_view kLawNames[] = {"thesis_2012", "gradient",    "proxy_3dof",
+                                          "vps",         "penalty_sdf", "constraint"};
+static_assert(std::size(kLawNames) == size_t(ContactLaw::kConstraint) + 1);
 
 // One point per cell with exact distances; what else the law knows is `iterations`.
 AccuracySettings comparedLaw(ContactLaw law, int iterations) noexcept {
@@ -24,21 +26,7 @@ AccuracySettings comparedLaw(ContactLaw law, int iterations) noexcept {
 }  // namespace
 
 std::string_view lawName(ContactLaw law) noexcept {
-    switch (law) {
-        case ContactLaw::kGradient:
-            return "gradient";
-        case ContactLaw::kThesis2012:
-            return presetName(Preset::kThesis2012);
-        case ContactLaw::kProxy3Dof:
-            return presetName(Preset::kProxy3Dof);
-        case ContactLaw::kVps:
-            return presetName(Preset::kVps);
-        case ContactLaw::kPenaltySdf:
-            return presetName(Preset::kPenaltySdf);
-        case ContactLaw::kConstraint:
-            return presetName(Preset::kConstraint);
-    }
-    return "";
+    return kLawNames[size_t(law)];
 }
 
 AccuracySettings presetSettings(Preset preset) noexcept {
@@ -88,11 +76,9 @@ std::vector<Preset> allPresets() {
 }
 
 std::optional<Preset> presetOfName(std::string_view name) noexcept {
-    for (const Preset preset : kPresets)
-        if (presetName(preset) == name) return preset;
-    for (const Preset preset : kComparedLaws)
-        if (presetName(preset) == name) return preset;
-    return std::nullopt;
+    const auto found = std::ranges::find(kNames, name);
+    if (found == std::end(kNames)) return std::nullopt;
+    return Preset(found - std::begin(kNames));
 }
 
 std::string presetNames() {

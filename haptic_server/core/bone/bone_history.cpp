@@ -4,8 +4,6 @@
 #include <cstring>
 #include <thread>
 
-#include "haptic_server/core/bone/leaf_rows.h"
-
 namespace bonemill {
 namespace {
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "haptic_server/core/volume/index_box.h"
 #include "haptic_server/core/volume/leaf_lattice.h"
 
 namespace bonemill {
@@ -30,5 +31,21 @@ struct BoneSnapshot {
         return found == leaves.end() || (*found)->leaf != leaf ? nullptr : (*found)->densities.data();
     }
 };
+
+// Where the voxels of a leaf are in its copy (LeafCopy). RT-safe, for any thread.
+inline IndexBox voxelsOf(const IndexBox& cells) noexcept {
+    return {cells.min, cells.max.array() + 1};
+}
+
+// A voxel has this place in the copy of the leaf with these cells.
+inline size_t placeOf(const IndexBox& cells, const Eigen::Vector3i& voxel) noexcept {
+    return placeIn(cells.max - cells.min + Eigen::Vector3i::Constant(2), voxel - cells.min);
+}
+
+// Calls visit(first voxel) for each row along x of the box.
+template <class Visit>
+void forEachRow(const IndexBox& voxels, Visit&& visit) noexcept {
+    forEachIndex({voxels.min, {voxels.min.x(), voxels.max.y(), voxels.max.z()}}, visit);
+}
 
 }  // namespace bonemill

@@ -27,8 +27,7 @@ class Checkpoints {
 
     // Saves the bone as it is now, and returns the id; the oldest one goes if there are too many.
     uint32_t save(double session_s) {
-        kept_.push_back({++last_id_, session_s, history_.snapshot(bone_)});
-        if (kept_.size() > kMax) kept_.pop_front();
+        keep({last_id_ + 1, session_s, history_.snapshot(bone_)});
         return last_id_;
     }
     // One that was saved before, in another run: it is the newest now.
@@ -42,16 +41,10 @@ class Checkpoints {
     }
     // False means that there is none with this id (any more).
     bool restore(uint32_t id) {
-        if (id == kScannedBone) {
-            history_.restore();
-            return true;
-        }
-        for (const Checkpoint& checkpoint : kept_) {
-            if (checkpoint.id != id) continue;
-            history_.restore(checkpoint.snapshot);
-            return true;
-        }
-        return false;
+        const auto found = std::ranges::find(kept_, id, &Checkpoint::id);
+        if (id != kScannedBone && found == kept_.end()) return false;
+        history_.restore(id == kScannedBone ? nullptr : found->snapshot);
+        return true;
     }
     const std::deque<Checkpoint>& kept() const noexcept { return kept_; }  // oldest first
 

@@ -1,12 +1,15 @@
-// These are the contact points near the tool that one solve works on, as structure of arrays. They are
-// RT-safe but for construction.
+// These are the contact points near the tool that one solve works on, as structure of arrays, and what
+// effects see and change of them. They are RT-safe but for construction.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "haptic_server/core/contact/shell_pool.h"
 #include "haptic_server/core/kernels/kernels.h"
+#include "haptic_server/core/tool/tool_field.h"
 
 namespace bonemill {
 
@@ -58,6 +61,27 @@ struct Candidates {
     }
     Eigen::Vector3f position(size_t n) const noexcept { return {x[n], y[n], z[n]}; }
     Eigen::Vector3f normal(size_t n) const noexcept { return {nx[n], ny[n], nz[n]}; }
+};
+
+// Lets an effect scale the energy of single contact points: softer where a burr cuts, harder in enamel.
+class ContactWeights {
+  public:
+    virtual ~ContactWeights() = default;
+    // Multiplies weights of the candidates just gathered, before the far-side guard and the stiffness cap see
+    // them. `origin` is that of the candidates' positions, X_VT the tool's pose at the gathering. Returns the
+    // largest factor. It is called once or more often in a tick, for each gathering anew. It is RT-safe, for
+    // the tick thread only.
+    virtual double scale(Candidates& candidates, const Eigen::Vector3d& origin_V, const ToolField& tool,
+                         const Pose& X_VT) noexcept = 0;
+};
+
+// It is one contact point as effects see it after the solve.
+struct SurfaceContact {
+    Eigen::Vector3f r_V;     // from the tool point to the contact, V axes, m
+    Eigen::Vector3f push_V;  // unit: where the bone pushes the tool
+    float depth;             // m, > 0
+    float force;             // N along push_V
+    uint32_t candidate;      // its place among the candidates of the last gathering
 };
 
 }  // namespace bonemill

@@ -1,10 +1,6 @@
 #include "haptic_server/core/contact/gradient_contact.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "haptic_server/core/contact/into_tool.h"
-#include "haptic_server/core/contact/tool_box.h"
 
 namespace bonemill {
 namespace {
@@ -38,6 +34,71 @@ GradientContactResult resultOf(const ContactSums& sums, uint32_t contacts) noexc
     result.max_depth = sums.max_depth;
     return result;
 }
+
+constexpr size_t kSampleTests = 4;  // an exact sample by itself takes as long as N distances in a batch
+
+double smoothstep(double t) noexcept {
+    t = std::clamp(t, 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+}
+
+// Few of the candidates touch: those are collected first, then summed.
+template <class Scalar>
+class TouchingPoints {
+  public:
+    TouchingPoints(const Candidates& candidates, const ToolField& tool, const Pose& X_VT,
+                   const Vector3d& origin) noexcept
+        : c_(candidates),
+          tool_(tool),
+          into_tool_(X_VT, origin),
+          frame_(contactFrame(X_VT, origin, GradientContact::kDepthCap * tool.thinnestRadius())) {}
+
+    void find(size_t first, int count) noexcept {
+        into_tool_.fill(batch_, &c_.x[first], &c_.y[first], &c_.z[first], count);
+        tool_.distances(batch_, distance_);
+        for (int i = 0; i < count; ++i) {
+            touching_[touching_count_] = uint32_t(first) + uint32_t(i);
+            touching_count_ += distance_[i] < 0;
+        }
+        if (touching_count_ >= kBatch) sum(kBatch);
+    }
+    GradientContactResult result() noexcept {
+        sum(touching_count_);
+        return resultOf(sums_, contacts_);
+    }
+
+  private:
+    static constexpr int kBatch = PointBatch<Scalar>::kCapacity;
+    static_assert(kBatch == kContactBatch);
+
+    // Returns the first `count` of the points found.
+    void sum(int count) noexcept {
+        for (int i = 0; i < count; ++i) {
+            const size_t n = touching_[i];
+            x_[i] = c_.x[n], y_[i] = c_.y[n], z_[i] = c_.z[n], weight_[i] = c_.weight[n];
+        }
+        into_tool_.fill(batch_, x_, y_, z_, count);
+        tool_.sample(batch_, at_);
+        kernels().points<Scalar>().add_contacts(frame_, x_, y_, z_, weight_, at_.distance, at_.gx, at_.gy,
+                                                at_.gz, count, sums_);
+        contacts_ += uint32_t(count);
+        std::copy(touching_ + count, touching_ + touching_count_, touching_);
+        touching_count_ -= count;
+    }
+
+    const Candidates& c_;
+    const ToolField& tool_;
+    IntoTool<Scalar> into_tool_;
+    ContactFrame frame_;
+    PointBatch<Scalar> batch_;
+    SampleBatch<Scalar> at_;
+    alignas(64) Scalar distance_[kBatch];
+    alignas(64) float x_[kBatch], y_[kBatch], z_[kBatch], weight_[kBatch];
+    uint32_t touching_[2 * kBatch];
+    int touching_count_ = 0;
+    ContactSums sums_;
+    uint32_t contacts_ = 0;
+};
 
 }  // namespace
 
@@ -155,67 +216,41 @@ bool GradientContact::addCandidates(const ShellBlock& block, LeafId leaf, int co
     return has_room;
 }
 
-namespace {
-
-// Few of the candidates touch: those are collected first, then summed.
-template <class Scalar>
-class TouchingPoints {
-  public:
-    TouchingPoints(const Candidates& candidates, const ToolField& tool, const Pose& X_VT,
-                   const Vector3d& origin) noexcept
-        : c_(candidates),
-          tool_(tool),
-          into_tool_(X_VT, origin),
-          frame_(contactFrame(X_VT, origin, GradientContact::kDepthCap * tool.thinnestRadius())) {}
-
-    void find(size_t first, int count) noexcept {
-        into_tool_.fill(batch_, &c_.x[first], &c_.y[first], &c_.z[first], count);
-        tool_.distances(batch_, distance_);
-        for (int i = 0; i < count; ++i) {
-            touching_[touching_count_] = uint32_t(first) + uint32_t(i);
-            touching_count_ += distance_[i] < 0;
-        }
-        if (touching_count_ >= kBatch) sum(kBatch);
+// Far-side guard and stiffness cap scale the candidates' energy for the length of one solve.
+void GradientContact::guardFarSide(const VoxelVolume& volume, const ToolField& tool,
+                                   const Pose& X_VT) noexcept {
+    const double from = kGuardFrom * tool.thinnestRadius(), full = kGuardFull * tool.thinnestRadius();
+    const double guard = volume.isBoneAt(X_VT.position) ? 1 : smoothstep((deepest_ - from) / (full - from));
+    if (guard == 0) return;
+    point_tests_ += kSampleTests * candidates_.count;
+    const Pose X_TV = X_VT.inverse();
+    for (size_t i = 0; i < candidates_.count; ++i) {
+        const Vector3d n = candidates_.normal(i).cast<double>();
+        if (n.isZero(0)) continue;
+        const Vector3d g = X_VT.rotation * tool.sample(X_TV * positionOf(i)).gradient;
+        candidates_.weight[i] *= float(1 - guard * (1 - smoothstep(-n.dot(g) / kGuardWidth)));
     }
-    GradientContactResult result() noexcept {
-        sum(touching_count_);
-        return resultOf(sums_, contacts_);
+}
+
+void GradientContact::capStiffness(const ToolField& tool, const Pose& X_VT) noexcept {
+    if (most_stiffness_ <= config_.stiffness_cap) return;
+    point_tests_ += kSampleTests * candidates_.count;
+    const Pose X_TV = X_VT.inverse();
+    Matrix3d stiffness = Matrix3d::Zero();  // T axes
+    for (size_t i = 0; i < candidates_.count; ++i) {
+        const ToolSample sample = tool.sample(X_TV * positionOf(i));
+        const double weight = shareInContact(sample.distance) * double(candidates_.weight[i]);
+        if (weight > 0) stiffness += weight * sample.gradient * sample.gradient.transpose();
     }
-
-  private:
-    static constexpr int kBatch = PointBatch<Scalar>::kCapacity;
-    static_assert(kBatch == kContactBatch);
-
-    // Returns the first `count` of the points found.
-    void sum(int count) noexcept {
-        for (int i = 0; i < count; ++i) {
-            const size_t n = touching_[i];
-            x_[i] = c_.x[n], y_[i] = c_.y[n], z_[i] = c_.z[n], weight_[i] = c_.weight[n];
-        }
-        into_tool_.fill(batch_, x_, y_, z_, count);
-        tool_.sample(batch_, at_);
-        kernels().points<Scalar>().add_contacts(frame_, x_, y_, z_, weight_, at_.distance, at_.gx, at_.gy,
-                                                at_.gz, count, sums_);
-        contacts_ += uint32_t(count);
-        std::copy(touching_ + count, touching_ + touching_count_, touching_);
-        touching_count_ -= count;
+    if (stiffness.trace() <= config_.stiffness_cap) return;
+    point_tests_ += kSampleTests * candidates_.count;
+    for (size_t i = 0; i < candidates_.count; ++i) {
+        const Vector3d g = tool.sample(X_TV * positionOf(i)).gradient;
+        const double in_direction = g.dot(stiffness * g);
+        if (in_direction > config_.stiffness_cap)
+            candidates_.weight[i] *= float(config_.stiffness_cap / in_direction);
     }
-
-    const Candidates& c_;
-    const ToolField& tool_;
-    IntoTool<Scalar> into_tool_;
-    ContactFrame frame_;
-    PointBatch<Scalar> batch_;
-    SampleBatch<Scalar> at_;
-    alignas(64) Scalar distance_[kBatch];
-    alignas(64) float x_[kBatch], y_[kBatch], z_[kBatch], weight_[kBatch];
-    uint32_t touching_[2 * kBatch];
-    int touching_count_ = 0;
-    ContactSums sums_;
-    uint32_t contacts_ = 0;
-};
-
-}  // namespace
+}
 
 template <class Scalar>
 GradientContactResult GradientContact::evaluate(const ToolField& tool, const Pose& X_VT) const noexcept {
@@ -229,5 +264,35 @@ GradientContactResult GradientContact::evaluate(const ToolField& tool, const Pos
 template GradientContactResult GradientContact::evaluate<float>(const ToolField&, const Pose&) const noexcept;
 template GradientContactResult GradientContact::evaluate<double>(const ToolField&,
                                                                  const Pose&) const noexcept;
+
+// Lists the contacts of a pose one by one, for those who ask what the solve ended with.
+size_t GradientContact::list(const ToolField& tool, const Pose& X_VT,
+                             std::span<SurfaceContact> out) const noexcept {
+    constexpr int kBatch = PointBatch<float>::kCapacity;
+    const double depth_cap = kDepthCap * tool.thinnestRadius();
+    const IntoTool<float> into_tool(X_VT, origin_);
+    const Eigen::Vector3d to_origin = origin_ - X_VT.position;
+    PointBatch<float> batch;
+    SampleBatch<float> at;
+    size_t count = 0;
+    for (size_t first = 0; first < candidates_.count; first += kBatch) {
+        const int points = int(std::min(size_t(kBatch), candidates_.count - first));
+        into_tool.fill(batch, &candidates_.x[first], &candidates_.y[first], &candidates_.z[first], points);
+        tool.sample(batch, at);
+        for (int i = 0; i < points; ++i) {
+            if (!(at.distance[i] < 0)) continue;
+            if (count == out.size()) return count;
+            const size_t n = first + size_t(i);
+            const Eigen::Vector3d gradient_T(at.gx[i], at.gy[i], at.gz[i]);
+            const double depth = -double(at.distance[i]), slope = gradient_T.norm();
+            const double force = double(candidates_.weight[n]) * std::min(depth, depth_cap) * slope;
+            if (!(force > 0)) continue;
+            out[count++] = {(candidates_.position(n).cast<double>() + to_origin).cast<float>(),
+                            (X_VT.rotation * gradient_T / -slope).cast<float>(), float(depth), float(force),
+                            uint32_t(n)};
+        }
+    }
+    return count;
+}
 
 }  // namespace bonemill

@@ -29,10 +29,8 @@
 
 #include "haptic_server/core/contact/candidates.h"
 #include "haptic_server/core/contact/contact_configs.h"
-#include "haptic_server/core/contact/contact_weights.h"
 #include "haptic_server/core/contact/patch_memory.h"
 #include "haptic_server/core/contact/point_shell.h"
-#include "haptic_server/core/contact/surface_contact.h"
 #include "haptic_server/core/contact/surface_pieces.h"
 #include "haptic_server/core/coupling/energy_coupling.h"
 #include "haptic_server/core/tool/tool_field.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "haptic_server/core/contact/tool_box.h"
+#include "haptic_server/core/contact/into_tool.h"
 
 namespace bonemill {
 namespace {
@@ -50,10 +50,10 @@ bool mayTouch(const IndexBox& cells, const Eigen::Vector3d& spacing, const Eigen
     return box_T.squaredExteriorDistance(X_TV * around.center) <= around.radius * around.radius;
 }
 
-ContactResult scaled(const PenaltyContactConfig& config, const UnitSums& sums) noexcept {
+ContactWrench scaled(const PenaltyContactConfig& config, const UnitSums& sums) noexcept {
     const double limit = double(config.full_stiffness_contacts);
     const double k = config.point_stiffness * std::min(1.0, limit / std::max(1u, sums.contacts));
-    ContactResult result;
+    ContactWrench result;
     result.wrench = {k * sums.depth_direction.head<3>(), k * sums.depth_direction.tail<3>()};
     result.derivative = -k * sums.outer;
     result.derivative.topRightCorner<3, 3>() += k * skew(sums.depth_direction.head<3>());
@@ -61,13 +61,13 @@ ContactResult scaled(const PenaltyContactConfig& config, const UnitSums& sums) n
     result.derivative.bottomRightCorner<3, 3>() +=
         k * (sums.depth_n_r - sums.depth_n_r.trace() * Eigen::Matrix3d::Identity());
     result.contacts = sums.contacts;
-    result.max_penetration = sums.max_depth;
+    result.max_depth = sums.max_depth;
     return result;
 }
 
 }  // namespace
 
-ContactResult penaltyContact(const PenaltyContactConfig& config, const VoxelVolume& volume,
+ContactWrench penaltyContact(const PenaltyContactConfig& config, const VoxelVolume& volume,
                              const LeafLattice& lattice, const PointShell& shell, const SdfGrid& tool_sdf,
                              const Pose& X_VT) noexcept {
     const Pose X_TV = X_VT.inverse();

@@ -9,19 +9,20 @@
 
 namespace bonemill {
 
-// It is the contact wrench on the tool about the tool point (origin of T), axes V.
-struct ContactResult {
+// A contact's wrench on the tool about the tool point (origin of T), and its derivative by the tool's world
+// increment; axes V.
+struct ContactWrench {
     Wrench wrench;
-    // This is ∂(force, torque)/∂(x, ω) as printed in eq 6-9, and kept wrong where the thesis is
-    // (docs/research/simulate.md): eq 7 carries + k d n~ although the bone's normals do not turn with the
-    // tool, and eq 8 lacks + F~.
-    Matrix6d derivative = Matrix6d::Zero();
+    Matrix6d derivative = Matrix6d::Zero();  // ∂(force, torque)/∂(x, ω)
     uint32_t contacts = 0;
-    double max_penetration = 0;  // m
+    double max_depth = 0;  // m
 };
 
+// The derivative is as printed in eq 6-9, and kept wrong where the thesis is (docs/research/simulate.md): eq
+// 7 carries + k d n~ although the bone's normals do not turn with the tool, and eq 8 lacks + F~.
+//
 // Tests every shell point of the leaves that the tool's box meets. RT-safe; X_VT is the tool's pose in V.
-ContactResult penaltyContact(const PenaltyContactConfig& config, const VoxelVolume& volume,
+ContactWrench penaltyContact(const PenaltyContactConfig& config, const VoxelVolume& volume,
                              const LeafLattice& lattice, const PointShell& shell, const SdfGrid& tool_sdf,
                              const Pose& X_VT) noexcept;
 

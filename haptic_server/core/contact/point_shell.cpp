@@ -201,9 +201,7 @@ void PointShell::sumBlocks(const IndexBox& blocks, int factor) noexcept {
         if (!(cells_.area(n) > 0)) continue;
         const Eigen::Vector3i cell = cells_.cell(n);
         const Eigen::Vector3i block = cell / factor;
-        const Eigen::Vector3i at = block - blocks.min;
-        BlockSum& sum =
-            sums_[size_t(at.x()) + size_t(size.x()) * (size_t(at.y()) + size_t(size.y()) * size_t(at.z()))];
+        BlockSum& sum = sums_[placeIn(size, block - blocks.min)];
         const Eigen::Vector3f from_first = (cell - block * factor).cast<float>() + cells_.centroid(n);
         sum.area += cells_.area(n);
         sum.moment += cells_.area(n) * from_first;

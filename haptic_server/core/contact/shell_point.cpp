@@ -1,6 +1,5 @@
 #include "haptic_server/core/contact/shell_point.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace bonemill {

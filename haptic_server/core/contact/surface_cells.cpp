@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "haptic_server/core/contact/cell_corners.h"
-#include "haptic_server/core/contact/shell_point.h"
 #include "haptic_server/core/volume/marching_cubes_table.h"
 
 namespace bonemill {

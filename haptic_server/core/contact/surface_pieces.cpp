@@ -1,6 +1,5 @@
 #include "haptic_server/core/contact/surface_pieces.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace bonemill {

@@ -6,9 +6,23 @@
 // RT-safe.
 #pragma once
 
-#include "haptic_server/core/coupling/sampled_loop.h"
-
 namespace bonemill {
+
+// One degree of freedom of the device that the hand holds. Translation and rotation are the same with other
+// units: kg, N·s/m, N/m or kg·m², N·m·s/rad, N·m/rad.
+struct HandleAxis {
+    double inertia = 0;      // of what moves with the handle
+    double damping = 0;      // viscous
+    double amplifier_s = 0;  // time constant of the amplifiers
+    double delay_s = 0;      // from the reading of the encoders until the force that answers it begins
+};
+
+struct LoopSprings {
+    double stiffness = 0;        // k
+    double relaxing_share = 0;   // k_2 / k
+    double relaxing_time = 0;    // τ_2, s
+    double damping_time = 1e-3;  // τ, s: of the tool
+};
 
 class LoopFit {
   public:

@@ -1,7 +1,6 @@
 #include "haptic_server/core/coupling/virtual_coupling.h"
 
 #include <Eigen/LU>
-#include <algorithm>
 
 namespace bonemill {
 namespace {

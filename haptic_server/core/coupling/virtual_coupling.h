@@ -2,8 +2,6 @@
 // functions are RT-safe.
 #pragma once
 
-#include <cstdint>
-
 #include "common/base/units.h"
 #include "common/geometry/pose.h"
 

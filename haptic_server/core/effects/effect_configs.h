@@ -20,7 +20,7 @@
 #include "haptic_server/core/effects/thermal/thermal_config.h"
 #include "haptic_server/core/effects/time_removal/time_removal_config.h"
 #include "haptic_server/core/effects/virtual_fixture/virtual_fixture_config.h"
-#include "haptic_server/core/telemetry/recorded_effects.h"
+#include "haptic_server/core/telemetry/effect_record.h"
 #include "haptic_server/core/volume/bone_properties.h"
 #include "haptic_server/core/volume/distance_field.h"
 #include "haptic_server/core/volume/material_properties.h"

@@ -17,7 +17,7 @@
 namespace bonemill {
 
 class HapticEffect;  // haptic_effect.h
-struct EffectNeeds;  // make_effects.h
+struct EffectNeeds;  // effect_host.h
 
 template <class Config>
 struct EffectParameter {

@@ -1,10 +1,8 @@
 #include "haptic_server/core/effects/effect_host.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "haptic_server/core/effects/burr_speed.h"
-#include "haptic_server/core/equilibrium/spo_model.h"
 
 namespace bonemill {
 
@@ -24,15 +22,8 @@ void EffectHost::restart(Restart why) noexcept {
     tick_.burr_load = {};
 }
 
-void EffectHost::begin(const EffectTick& start) noexcept {
-    tick_.dt = start.dt;
-    tick_.periods = start.periods;
-    tick_.may_mill = start.may_mill;
-    tick_.is_pedal_down = start.is_pedal_down;
-    tick_.is_add_wanted = start.is_add_wanted;
-    tick_.tool = start.tool;
-    tick_.shape = start.shape;
-    tick_.X_VT_start = start.X_VT_start;
+void EffectHost::begin(const EffectStart& start) noexcept {
+    static_cast<EffectStart&>(tick_) = start;
     tick_.spin_speed = start.is_pedal_down ? start.tool->burr.speed : 0;
     tick_.axis_load = 0;
     for (const auto& effect : effects_) effect->begin(tick_);

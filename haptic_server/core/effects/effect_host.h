@@ -5,12 +5,11 @@
 #include <memory>
 #include <vector>
 
+#include "haptic_server/core/effects/effect_configs.h"
 #include "haptic_server/core/effects/haptic_effect.h"
-#include "haptic_server/core/equilibrium/solve_energy.h"
+#include "haptic_server/core/equilibrium/spo_model.h"
 
 namespace bonemill {
-
-class SpoModel;
 
 using EffectList = std::vector<std::unique_ptr<HapticEffect>>;
 
@@ -27,7 +26,7 @@ class EffectHost final : private ContactWeights, private SolveEnergy {
 
     // The phases of a tick come in this order. Each is RT-safe, for the tick thread only.
     void restart(Restart why) noexcept;
-    void begin(const EffectTick& start) noexcept;  // takes from it what is known at the start
+    void begin(const EffectStart& start) noexcept;
     void addToHand(Wrench& wrench_V) noexcept;
     // Tells, after the force went out, where the solve ended and what its contacts are.
     void afterSolve(const Pose& X_VT, SpoModel& model) noexcept;
@@ -51,5 +50,31 @@ class EffectHost final : private ContactWeights, private SolveEnergy {
     std::vector<uint8_t> is_on_burr_;
     std::vector<float> place_area_;
 };
+
+// This makes the effects of what a scene lists. It is for start-up only, since it allocates.
+struct EffectRoom {
+    double dt;                   // s
+    double largest_burr_radius;  // m, of all tools
+    double largest_burr_reach;   // m, of all tools: Burr::reach()
+    size_t most_contacts;
+    size_t most_cells;   // as MillingConfig
+    double longest_way;  // m, of a burr in a tick
+};
+
+// An effect may need this beside its own config.
+struct EffectNeeds {
+    const EffectConfigs& all;
+    const BoneModel& bone;
+    const EffectRoom& room;
+};
+
+// The effects stand in the order in which they act.
+inline EffectList makeEffects(const EffectConfigs& configs, const BoneModel& bone, const EffectRoom& room) {
+    EffectList effects;
+    forEachEffect(configs, [&](const auto& config) {
+        if (config) effects.push_back(config->make({configs, bone, room}));
+    });
+    return effects;
+}
 
 }  // namespace bonemill

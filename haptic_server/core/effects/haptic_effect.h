@@ -10,10 +10,9 @@
 #include <span>
 
 #include "haptic_server/core/bone/bone_model.h"
-#include "haptic_server/core/contact/contact_weights.h"
-#include "haptic_server/core/contact/surface_contact.h"
+#include "haptic_server/core/contact/candidates.h"
 #include "haptic_server/core/coupling/energy_coupling.h"
-#include "haptic_server/core/equilibrium/spo_tool.h"
+#include "haptic_server/core/equilibrium/spo_model.h"
 #include "haptic_server/core/milling/burr_limit.h"
 #include "haptic_server/core/milling/milling_result.h"
 #include "haptic_server/core/telemetry/effect_record.h"
@@ -27,9 +26,8 @@ struct BurrLoad {
     size_t contacts = 0;
 };
 
-// This is what effects see of the tick and tell each other, in SI and axes V unless the name says otherwise.
-struct EffectTick {
-    // These are known from the start of the tick on.
+// This is known from the start of a tick on, in SI and axes V.
+struct EffectStart {
     double dt = 1e-3;            // s: of all periods that the tick lives through
     int periods = 1;             // of the loop
     bool may_mill = false;       // milling is neither paused nor stale
@@ -38,6 +36,10 @@ struct EffectTick {
     const SpoTool* tool = nullptr;
     MillingShape shape = MillingShape::kSubVoxel;  // that the contact law calls for
     Pose X_VT_start;
+};
+
+// This is what effects see of the tick and tell each other, in SI and axes V unless the name says otherwise.
+struct EffectTick : EffectStart {
     double spin_speed =
         0;  // rad/s about T's +y; without a spindle the full speed as soon as the pedal is down
     double axis_load = 0;  // N·m about T's +y: what the bone takes of the torque of a spindle

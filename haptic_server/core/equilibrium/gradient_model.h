@@ -6,9 +6,9 @@
 
 #include <limits>
 
+#include "haptic_server/core/contact/contact_configs.h"
 #include "haptic_server/core/contact/gradient_contact.h"
 #include "haptic_server/core/equilibrium/curvature_secant.h"
-#include "haptic_server/core/equilibrium/gradient_config.h"
 #include "haptic_server/core/equilibrium/spo_model.h"
 #include "haptic_server/core/tool/growing_field.h"
 

@@ -10,15 +10,31 @@
 #include <span>
 
 #include "haptic_server/core/accuracy/accuracy_settings.h"
-#include "haptic_server/core/contact/contact_weights.h"
+#include "haptic_server/core/contact/candidates.h"
+#include "haptic_server/core/contact/penalty_contact.h"
 #include "haptic_server/core/contact/point_shell.h"
-#include "haptic_server/core/contact/surface_contact.h"
 #include "haptic_server/core/coupling/energy_coupling.h"
 #include "haptic_server/core/coupling/virtual_coupling.h"
-#include "haptic_server/core/equilibrium/solve_energy.h"
-#include "haptic_server/core/equilibrium/spo_tool.h"
+#include "haptic_server/core/tool/burr.h"
+#include "haptic_server/core/tool/tool_model.h"
 
 namespace bonemill {
+
+// An SPO model needs to know this of the tool in use.
+struct SpoTool {
+    const ToolModel* model = nullptr;  // must outlive whoever uses the tool
+    Burr burr = {};
+    double saturation_force = 50;  // N: what the gradient law's coupling pulls this tool with at most
+};
+
+// Lets an effect add to the energy that the simulated tool's pose minimises.
+class SolveEnergy {
+  public:
+    virtual ~SolveEnergy() = default;
+    // Returns the energy at this pose of the tool. Within a tick it is one fixed function, bounded from
+    // below, with a positive semi-definite stiffness. It is RT-safe, for the tick thread only.
+    virtual EnergyTerm at(const Pose& X_VT) const noexcept = 0;
+};
 
 // The tool meets this bone. All of it lives at least as long as the model.
 struct SpoWorld {
@@ -101,6 +117,25 @@ class SpoModel {
 inline int levelOf(const PointShell& shell, const AccuracySettings& settings) noexcept {
     const int level = shell.levelOf(settings.shell_factor);
     return level < 0 ? 0 : level;
+}
+
+// One linear step towards the pose at which the contacts' wrench and the coupling's are in balance, damped
+// and within the speed limits: what thesis_2012, vps and penalty_sdf share (Wan and McNeely 2003; Barbič and
+// James 2008). It is RT-safe.
+//
+// Returns the pose after the step, and fills all of `out` but what the hand feels.
+inline Pose quasiStaticStep(const ContactWrench& contact, const EnergyTerm& coupling,
+                            const CouplingConfig& limits, const Pose& X_VT, double dt,
+                            SpoStep& out) noexcept {
+    const Matrix6d derivative = contact.derivative - coupling.stiffness;
+    const EquilibriumStep solved = solveEquilibrium(limits, contact.wrench + coupling.wrench, derivative, dt);
+    out.contacts = contact.contacts;
+    out.iterations = 1;
+    out.max_penetration = contact.max_depth;
+    out.is_solved = solved.is_found;
+    out.is_motion_clamped = solved.is_clamped;
+    const Vector6d moved = (1 - limits.static_damping) * solved.step;
+    return X_VT.incremented(moved.head<3>(), moved.tail<3>());
 }
 
 }  // namespace bonemill

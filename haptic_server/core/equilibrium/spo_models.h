@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/base/assert.h"
-#include "haptic_server/core/equilibrium/gradient_config.h"
+#include "haptic_server/core/contact/contact_configs.h"
 #include "haptic_server/core/equilibrium/spo_model.h"
 
 namespace bonemill {

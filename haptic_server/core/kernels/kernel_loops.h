@@ -7,8 +7,79 @@
 
 #include "haptic_server/core/kernels/brick_layout.h"
 #include "haptic_server/core/kernels/kernels.h"
-#include "haptic_server/core/kernels/loop_vectors.h"
-// The others need the vectors.
+
+// The vector types have the width of the registers.
+namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE {
+namespace {
+
+// The lanes are of single precision, in one register: GCC 12 takes wider vectors apart into scalars where it
+// must choose lanes.
+#if defined(__AVX512F__)
+constexpr int kWidth = 16;
+#elif defined(__AVX2__)
+constexpr int kWidth = 8;
+#else
+constexpr int kWidth = 4;
+#endif
+static_assert(kCellLanes % kWidth == 0);
+
+template <class Scalar>
+inline Scalar least(Scalar a, Scalar b) {
+    return b < a ? b : a;
+}
+template <class Scalar>
+inline Scalar largest(Scalar a, Scalar b) {
+    return a < b ? b : a;
+}
+inline float root(float x) {
+    return __builtin_sqrtf(x);
+}
+inline double root(double x) {
+    return __builtin_sqrt(x);
+}
+
+using Floats = float __attribute__((vector_size(4 * kWidth)));
+using Ints = int __attribute__((vector_size(4 * kWidth)));
+
+inline void load(const float* p, Floats& v) {
+    __builtin_memcpy(&v, p, sizeof v);
+}
+inline void load(const int* p, Ints& v) {
+    __builtin_memcpy(&v, p, sizeof v);
+}
+inline void store(const Floats& v, float* p) {
+    __builtin_memcpy(p, &v, sizeof v);
+}
+inline void store(const Ints& v, int* p) {
+    __builtin_memcpy(p, &v, sizeof v);
+}
+inline bool isAny(const Ints& mask) {
+    int any = 0;
+    for (int l = 0; l < kWidth; ++l) any |= mask[l];
+    return any != 0;
+}
+inline void rootOf(const Floats& v, Floats& out) {
+    alignas(64) float in[kWidth], result[kWidth];
+    store(v, in);
+    for (int l = 0; l < kWidth; ++l) result[l] = root(in[l]);
+    load(result, out);
+}
+
+// There are as many densities as there are single precision lanes.
+using Words = uint16_t __attribute__((vector_size(2 * kWidth)));
+// These are for rows that are only looked at.
+constexpr int kWideWords = kWidth == 4 ? 8 : 16;
+using WideWords = uint16_t __attribute__((vector_size(2 * kWideWords)));
+
+template <class W>
+inline void loadWords(const uint16_t* p, W& words) {
+    __builtin_memcpy(&words, p, sizeof words);
+}
+
+}  // namespace
+}  // namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE
+
+// These need the vectors.
 #include "haptic_server/core/kernels/cell_loops.h"
 #include "haptic_server/core/kernels/point_loops.h"
 #include "haptic_server/core/kernels/row_loops.h"

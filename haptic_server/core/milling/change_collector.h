@@ -6,11 +6,57 @@
 
 #include <cstddef>
 #include <utility>
+#include <vector>
 
-#include "haptic_server/core/milling/changed_runs.h"
+#include "haptic_server/core/contact/point_shell.h"
 #include "haptic_server/core/milling/milling_result.h"
 
 namespace bonemill {
+
+// These are the voxels that one tick changes: they are collected leaf by leaf in runs along x, then written
+// with all that hangs on them (leaf versions, density ranges, point-shell). Construction allocates; all else
+// is RT-safe, for the tick thread only.
+class ChangedRuns {
+  public:
+    // There is room for changes in any box of N voxels, cut at the borders of leaves and of bricks.
+    ChangedRuns(const LeafLattice& lattice, const Eigen::Vector3i& most_voxels);
+
+    void clear() noexcept { run_count_ = density_count_ = leaf_count_ = 0; }
+    bool isEmpty() const noexcept { return leaf_count_ == 0; }
+
+    // Adds a row of `count` voxels from `first` on, from the first to the last one that differs (one does).
+    // Widens `changed` by them.
+    void add(const Eigen::Vector3i& first, int count, const Density* old, const Density* fresh,
+             IndexBox& changed) noexcept;
+    // What was added since the last call is all that changes in one leaf, in this box.
+    void closeLeaf(const IndexBox& changed) noexcept;
+
+    // A mark is the way to take back what was added since.
+    struct Mark {
+        size_t runs, densities;
+    };
+    Mark mark() const noexcept { return {run_count_, density_count_}; }
+    void backTo(const Mark& mark) noexcept { run_count_ = mark.runs, density_count_ = mark.densities; }
+
+    // With direction -1 no density rises, with +1 none falls. The bricks must be open
+    // (VoxelVolume::openBricksIn). False means that the shell's pool is full and some leaves kept their
+    // old points.
+    bool write(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell, int direction) noexcept;
+
+  private:
+    struct Run {
+        Eigen::Vector3i first;
+        size_t first_density;
+        int count;
+    };
+    std::vector<Run> runs_;  // the first run_count_
+    size_t run_count_ = 0;
+    std::vector<Density> densities_;  // the first density_count_
+    size_t density_count_ = 0;
+    std::vector<IndexBox> changed_;  // leaf by leaf; the first leaf_count_
+    std::vector<size_t> end_run_;    // of each: its runs go from the last one's to here
+    size_t leaf_count_ = 0;
+};
 
 class ChangeCollector {
   public:
@@ -27,8 +73,42 @@ class ChangeCollector {
     // returns the part for which there was no time, or kAllParts.
     template <class IsWanted, class CollectLeaf>
     void collect(const LeafLattice& lattice, const IndexBox& box, IsWanted&& is_wanted,
-                 CollectLeaf&& collect_leaf, MillingResult& result) noexcept;
+                 CollectLeaf&& collect_leaf, MillingResult& result) noexcept {
+        changes_.clear();
+        cells_ = 0;
+        const LeafId first = std::exchange(next_leaf_, kNoLeaf);
+        const int first_part = next_part_;
+        for (const bool is_second_round : {false, true}) {
+            if (is_second_round && first == kNoLeaf) break;
+            bool is_later = first == kNoLeaf;
+            // A voxel is the first corner of its cell.
+            lattice.forEachLeaf(box, is_wanted, [&](LeafId leaf) {
+                is_later |= leaf == first;
+                if (is_later == is_second_round || next_leaf_ != kNoLeaf) return;
+                MillingResult of_leaf;
+                next_part_ = collect_leaf(lattice.cellsOf(leaf).clamped(box.min, box.max),
+                                          leaf == first ? first_part : 0, of_leaf);
+                if (!of_leaf.changed.isEmpty()) changes_.closeLeaf(of_leaf.changed);
+                result.include(of_leaf);
+                if (next_part_ == kAllParts) return;
+                next_leaf_ = leaf;
+                result.is_cut_short = true;
+            });
+        }
+    }
 
+    // The parts of a leaf are those of its bricks. Calls collect_part(part, offset) for each, from first_part
+    // on; returns the first for which that is false, or kAllParts.
+    template <class CollectPart>
+    static int collectBricks(const VoxelVolume& volume, const IndexBox& voxels, int first_part,
+                             CollectPart&& collect_part) noexcept {
+        int n = 0, left = kAllParts;
+        volume.forEachOwnedPart(voxels, [&](const IndexBox& part, size_t offset) {
+            const int index = n++;
+            if (index >= first_part && left == kAllParts && !collect_part(part, offset)) left = index;
+        });
+        return left;
+    }
     // The rows of one part are collected by beginPart(), ChangedRuns::add() for each row that changes,
     // and takePart().
     ChangedRuns& beginPart() noexcept {
@@ -60,31 +140,5 @@ class ChangeCollector {
     LeafId next_leaf_ = kNoLeaf;  // where the last tick was cut short
     int next_part_ = 0;
 };
-
-template <class IsWanted, class CollectLeaf>
-void ChangeCollector::collect(const LeafLattice& lattice, const IndexBox& box, IsWanted&& is_wanted,
-                              CollectLeaf&& collect_leaf, MillingResult& result) noexcept {
-    changes_.clear();
-    cells_ = 0;
-    const LeafId first = std::exchange(next_leaf_, kNoLeaf);
-    const int first_part = next_part_;
-    for (const bool is_second_round : {false, true}) {
-        if (is_second_round && first == kNoLeaf) break;
-        bool is_later = first == kNoLeaf;
-        // A voxel is the first corner of its cell.
-        lattice.forEachLeaf(box, is_wanted, [&](LeafId leaf) {
-            is_later |= leaf == first;
-            if (is_later == is_second_round || next_leaf_ != kNoLeaf) return;
-            MillingResult of_leaf;
-            next_part_ = collect_leaf(lattice.cellsOf(leaf).clamped(box.min, box.max),
-                                      leaf == first ? first_part : 0, of_leaf);
-            if (!of_leaf.changed.isEmpty()) changes_.closeLeaf(of_leaf.changed);
-            result.include(of_leaf);
-            if (next_part_ == kAllParts) return;
-            next_leaf_ = leaf;
-            result.is_cut_short = true;
-        });
-    }
-}
 
 }  // namespace bonemill

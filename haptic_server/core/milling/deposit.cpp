@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "haptic_server/core/kernels/kernels.h"
-#include "haptic_server/core/milling/burr_box.h"
+#include "haptic_server/core/milling/burr_way.h"
 
 namespace bonemill {
 namespace {
@@ -44,8 +44,7 @@ Deposit::Deposit(const BoneModel& bone, const DepositConfig& config)
 
 size_t Deposit::slotOf(const Eigen::Vector3i& brick) const noexcept {
     const Eigen::Vector3i& n = slots_per_axis_;
-    const Eigen::Vector3i at(brick.x() % n.x(), brick.y() % n.y(), brick.z() % n.z());
-    return size_t(at.x() + n.x() * (at.y() + n.y() * at.z()));
+    return placeIn(n, {brick.x() % n.x(), brick.y() % n.y(), brick.z() % n.z()});
 }
 
 size_t Deposit::placeOf(size_t slot, const Eigen::Vector3i& voxel) noexcept {
@@ -105,7 +104,7 @@ void Deposit::owe(const VoxelVolume& volume, const BurrWay& way, double burr_rad
     const BurrLimit limit(volume, onTheMean(volume, radius), MillingShape::kSubVoxel, +1);
     const BurrWay seen = seenWay(volume, way, radius);
     if (used_count_ > 0) dropOutside(window(volume, way.to()));
-    volume.forEachOwnedPart(boxAround(volume, seen, limit.reach()),
+    volume.forEachOwnedPart(boxAround(volume, seen, Eigen::Array3d::Constant(limit.reach())),
                             [&](const IndexBox& part, size_t) { raise(volume, part, seen, limit); });
 }
 
@@ -190,21 +189,16 @@ void Deposit::makeWay(BoneModel& bone, const Stroke& stroke, const IndexBox& owe
         result.shell_is_complete = falling_.write(bone.volume, bone.lattice, bone.shell, -1);
 }
 
-// The parts of a leaf are those of its bricks.
 template <class CollectPart>
-int Deposit::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int first_part,
+int Deposit::collectLeaf(const VoxelVolume& volume, const IndexBox& voxels, int first_part,
                          CollectPart&& collect_part) noexcept {
-    int n = 0, left = ChangeCollector::kAllParts;
-    volume.forEachOwnedPart(voxels, [&](const IndexBox& whole, size_t) {
-        const int index = n++;
-        if (index < first_part || left != ChangeCollector::kAllParts) return;
+    return ChangeCollector::collectBricks(volume, voxels, first_part, [&](const IndexBox& whole, size_t) {
         const Eigen::Vector3i brick = brickOf(whole.min);
         Slot& slot = slots_[slotOf(brick)];
-        if (slot.owed.isEmpty() || slot.brick != brick) return;
+        if (slot.owed.isEmpty() || slot.brick != brick) return true;
         const IndexBox part = whole.clamped(slot.owed.min, slot.owed.max);
-        if (!part.isEmpty() && !collect_part(part, slot)) left = index;
+        return part.isEmpty() || collect_part(part, slot);
     });
-    return left;
 }
 
 BurrPlane Deposit::planeOf(const VoxelVolume& volume, const Eigen::Vector3i& first, const Stroke& stroke,

@@ -12,7 +12,6 @@
 // The frame is V, the units are SI. Construction allocates; all else is RT-safe, for the tick thread only.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "haptic_server/core/bone/bone_model.h"
@@ -84,7 +83,7 @@ class Deposit {
     void makeWay(BoneModel& bone, const Stroke& stroke, const IndexBox& owed, MillingResult& result) noexcept;
     // Calls collect_part(part, slot) for the parts of a leaf that are owed.
     template <class CollectPart>
-    int collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int first_part,
+    int collectLeaf(const VoxelVolume& volume, const IndexBox& voxels, int first_part,
                     CollectPart&& collect_part) noexcept;
     bool lowerPart(VoxelVolume& volume, const IndexBox& part, const Stroke& stroke, Slot& slot,
                    MillingResult& of_leaf) noexcept;

@@ -3,9 +3,12 @@
 // allocates; ofCell() is RT-safe, for any thread.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <vector>
 
+#include "common/math/pinned_math.h"
 #include "haptic_server/core/volume/bone_properties.h"
 
 namespace bonemill {
@@ -22,7 +25,16 @@ class SpecificEnergy {
     // Without properties all bone is as the reference. Below `iso` there is no bone: what was laid down there
     // is as the reference, too.
     SpecificEnergy(const SpecificEnergyConfig& config, std::shared_ptr<const BoneProperties> properties,
-                   Density iso);
+                   Density iso)
+        : properties_(std::move(properties)),
+          reference_(config.reference),
+          iso_(iso),
+          materials_(config.materials) {
+        for (int density = 0; density <= kMaxDensity + 1; density += kStep) {
+            const double bone = std::max(density, int(iso));
+            of_density_.push_back(reference_ * pinned::pow(bone / config.reference_density, config.exponent));
+        }
+    }
 
     // The densest of the cell's corners decides; the unit is J/m³.
     double ofCell(const Eigen::Vector3i& cell) const noexcept {
@@ -31,8 +43,23 @@ class SpecificEnergy {
 
   private:
     static constexpr int kStep = 256;  // counts between entries of the table
-    double ofScannedCell(const Eigen::Vector3i& cell) const noexcept;
-    double ofDensity(Density density) const noexcept;
+    double ofScannedCell(const Eigen::Vector3i& cell) const noexcept {
+        Density densest = 0;
+        MaterialId material = kNoMaterial;
+        properties_->forEachCorner(cell, [&](Density density, MaterialId of_corner) {
+            if (density <= densest) return;
+            densest = density;
+            material = of_corner;
+        });
+        if (densest < iso_) return reference_;
+        const double own = material < materials_.size() ? materials_[material].specific_energy : 0;
+        return own > 0 ? own : ofDensity(densest);
+    }
+    double ofDensity(Density density) const noexcept {
+        const size_t below = density / kStep;
+        const double share = double(density % kStep) / kStep;
+        return of_density_[below] + share * (of_density_[below + 1] - of_density_[below]);
+    }
 
     std::shared_ptr<const BoneProperties> properties_;
     double reference_;

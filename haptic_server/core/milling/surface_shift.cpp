@@ -60,6 +60,12 @@ float equalDrop(const CellCorners& corners, float iso, const Vector3f& t, float 
     return std::clamp(drop, 0.0f, float(kMaxDensity));
 }
 
+// Calls visit(voxels from the scratch box on) for the bits of this word of a row of SurfaceShift.
+template <class Visit>
+void forEachBit(int word, uint64_t bits, Visit&& visit) noexcept {
+    for (; bits != 0; bits &= bits - 1) visit(word * int(8 * sizeof bits) + std::countr_zero(bits));
+}
+
 }  // namespace
 
 SurfaceShift::SurfaceShift(const BoneModel& bone, double largest_reach, size_t most_contacts,
@@ -105,12 +111,6 @@ void SurfaceShift::forget() noexcept {
     touched_ = {};
 }
 
-// Calls visit(voxels from the scratch box on) for the bits of this word of a row.
-template <class Visit>
-void SurfaceShift::forEachBit(int word, RowBits bits, Visit&& visit) const noexcept {
-    for (; bits != 0; bits &= bits - 1) visit(word * kRowBits + std::countr_zero(bits));
-}
-
 bool SurfaceShift::isInScratch(const Vector3i& voxel) const noexcept {
     const Vector3i local = voxel - first_;
     return (local.array() >= 0).all() && (local.array() < size_.array()).all();
@@ -142,7 +142,7 @@ void SurfaceShift::findPatches(const BoneModel& bone) noexcept {
     const IndexBox reachable{cells.min.cwiseMax(first_),
                              cells.max.cwiseMin(first_ + size_ - Vector3i::Ones())};
     const auto has_surface = [iso = bone.volume.iso()](const DensityRange& range, const IndexBox&) {
-        return range.min < iso && range.max >= iso;
+        return range.holds(iso);
     };
     bone.lattice.forEachLeaf(cells, has_surface, [&](LeafId leaf) {
         const Vector3i first = bone.lattice.cellsOf(leaf).min;

@@ -69,11 +69,7 @@ class SurfaceShift {
         int low = 1, high = 0;
     };
 
-    size_t index(const Eigen::Vector3i& voxel) const noexcept {
-        const Eigen::Vector3i local = voxel - first_;
-        return size_t(local.x()) +
-               size_t(size_.x()) * (size_t(local.y()) + size_t(size_.y()) * size_t(local.z()));
-    }
+    size_t index(const Eigen::Vector3i& voxel) const noexcept { return placeIn(size_, voxel - first_); }
     // The row begins at this word; it has row_words_ words.
     size_t row(int j, int k) const noexcept {
         return size_t(row_words_) * (size_t(j - first_.y()) + size_t(size_.y()) * size_t(k - first_.z()));
@@ -95,8 +91,6 @@ class SurfaceShift {
     void forgetVoxel(const Eigen::Vector3i& voxel) noexcept;
     bool isAnyTouched(const IndexBox& voxels) const noexcept;
     Span touchedIn(size_t row, int low, int high) const noexcept;
-    template <class Visit>
-    void forEachBit(int word, RowBits bits, Visit&& visit) const noexcept;
     void collect(BoneModel& bone, MillingResult& result) noexcept;
     bool collectLeaf(VoxelVolume& volume, const IndexBox& voxels, MillingResult& of_leaf) noexcept;
     void collectRow(const VoxelVolume& volume, const Eigen::Vector3i& first, int count, ChangedRuns& rows,

@@ -1,9 +1,8 @@
 #include "haptic_server/core/milling/timed_milling.h"
 
-#include <algorithm>
 #include <cmath>
 
-#include "haptic_server/core/milling/burr_box.h"
+#include "haptic_server/core/milling/burr_way.h"
 
 namespace bonemill {
 namespace {
@@ -66,23 +65,14 @@ void TimedMilling::collectChanges(VoxelVolume& volume, const LeafLattice& lattic
         return !isFinished(range, stroke.direction) && !stroke.isOutOfReach(volume, voxels);
     };
     collector_.collect(
-        lattice, boxAround(volume, stroke.way, stroke.limit.reach()), is_wanted,
+        lattice, boxAround(volume, stroke.way, Eigen::Array3d::Constant(stroke.limit.reach())), is_wanted,
         [&](const IndexBox& voxels, int first_part, MillingResult& of_leaf) {
-            return collectLeaf(volume, voxels, first_part, stroke, of_leaf);
+            return ChangeCollector::collectBricks(
+                volume, voxels, first_part, [&](const IndexBox& part, size_t offset) {
+                    return collectPart(volume, part, offset, stroke, of_leaf);
+                });
         },
         result);
-}
-
-// The parts of a leaf are those of its bricks.
-int TimedMilling::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int first_part,
-                              const Stroke& stroke, MillingResult& of_leaf) noexcept {
-    int n = 0, left = ChangeCollector::kAllParts;
-    volume.forEachOwnedPart(voxels, [&](const IndexBox& part, size_t offset) {
-        const int index = n++;
-        if (index < first_part || left != ChangeCollector::kAllParts) return;
-        if (!collectPart(volume, part, offset, stroke, of_leaf)) left = index;
-    });
-    return left;
 }
 
 // Returns what ChangeCollector::takePart() says.

@@ -8,8 +8,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
-#include <vector>
 
 #include "haptic_server/core/milling/burr_limit.h"
 #include "haptic_server/core/milling/change_collector.h"
@@ -71,8 +69,6 @@ class TimedMilling {
     double countsOf(double rate, const BurrLimit& limit, double dt) const noexcept;
     void collectChanges(VoxelVolume& volume, const LeafLattice& lattice, const Stroke& stroke,
                         MillingResult& result) noexcept;
-    int collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int first_part, const Stroke& stroke,
-                    MillingResult& of_leaf) noexcept;
     bool collectPart(VoxelVolume& volume, const IndexBox& part, size_t offset, const Stroke& stroke,
                      MillingResult& of_leaf) noexcept;
     static void collectPlane(const VoxelVolume& volume, const IndexBox& plane, size_t offset,

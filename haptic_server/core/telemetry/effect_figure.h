@@ -3,14 +3,12 @@
 // (effects/effect_figures.h). Plain constants; any thread.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
 #include <variant>
 
 #include "haptic_server/core/telemetry/effect_record.h"
-#include "haptic_server/core/telemetry/recorded_effects.h"
 
 namespace bonemill {
 

@@ -6,7 +6,6 @@
 #include <type_traits>
 
 #include "haptic_server/core/telemetry/cut.h"
-#include "haptic_server/core/telemetry/device_report.h"
 #include "haptic_server/core/telemetry/effect_record.h"
 #include "haptic_server/core/telemetry/tick_input.h"
 

@@ -9,10 +9,13 @@
 // the tool's: the wrench before it is scaled to the handle. It is RT-safe, for the tick thread.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "common/device_messages/device_messages.h"
 #include "common/geometry/hand_space.h"
+#include "haptic_server/core/coupling/loop_fit.h"
 #include "haptic_server/core/tick/hand_limits.h"
 
 namespace bonemill {
@@ -38,7 +41,16 @@ class EnergyTank {
         bool force = true, torque = true;
     };
     void setDevice(const HandleDynamics& handle, const HandSpring& spring, const HandSpace& space,
-                   const Felt& felt) noexcept;
+                   const Felt& felt) noexcept {
+        felt_ = felt;
+        damping_ = space.forcePerWayAtTool(
+            counted(handle.damping, handle.mass, space.forcePerWayAtHand(spring.stiffness)));
+        angular_damping_ =
+            space.torqueAtTool(counted(handle.angular_damping, handle.inertia, spring.rotation_stiffness));
+        const double delay = handle.mass > 0 || handle.inertia > 0 ? handle.delay / dt_ : 1;
+        delay_ticks_ = size_t(std::clamp(std::lround(delay), 0L, long(kRings - 2)));
+        fill();
+    }
     // Begins anew with a full tank: what is stored has changed at one stroke, or nobody kept the account.
     void fill() noexcept {
         content_ = kRoom;
@@ -46,7 +58,19 @@ class EnergyTank {
         translation_work_ = rotation_work_ = 0;
     }
 
-    void add(const PortStep& step) noexcept;
+    void add(const PortStep& step) noexcept {
+        if (has_last_) {
+            const double made = step.stored - stored_last_ + workOnHand(step) - step.effects_work;
+            content_ = std::min(content_ - made + kRoom * dt_ / kFillTime, kRoom);
+        } else {
+            sent_.fill(step.wrench_hand_V);  // as if it had been this all the time
+        }
+        X_VT_last_ = step.X_VT_device;
+        stored_last_ = step.stored;
+        newest_ = (newest_ + 1) % kRings;
+        sent_[newest_] = step.wrench_hand_V;
+        has_last_ = true;
+    }
 
     double content() const noexcept { return content_; }
     bool isEmpty() const noexcept { return content_ <= 0; }
@@ -55,7 +79,27 @@ class EnergyTank {
 
   private:
     static constexpr size_t kRings = 8;
-    double workOnHand(const PortStep& step) noexcept;
+    static constexpr double kFillTime = 10;   // s: a tank that is not used fills by itself
+    static constexpr double kWorkTime = 0.1;  // s
+
+    static double counted(double damping, double inertia, double stiffness) noexcept {
+        return std::max(0.0, damping - LoopFit::kDampingRatio * std::sqrt(inertia * stiffness));
+    }
+    double workOnHand(const PortStep& step) noexcept {
+        const Wrench& acted = sent_[(newest_ + kRings - delay_ticks_) % kRings];
+        const Wrench& last = sent_[newest_];
+        const Eigen::Vector3d way = step.X_VT_device.position - X_VT_last_.position;
+        const Eigen::Vector3d turn = logRotation(step.X_VT_device.rotation * X_VT_last_.rotation.conjugate());
+        const double translation =
+            felt_.force ? acted.force.dot(way) : (last.force + step.wrench_hand_V.force).dot(way) / 2;
+        const double rotation =
+            felt_.torque ? acted.torque.dot(turn) : (last.torque + step.wrench_hand_V.torque).dot(turn) / 2;
+        const double fading = std::max(0.0, 1 - dt_ / kWorkTime);
+        translation_work_ = fading * translation_work_ + (felt_.force ? std::abs(translation) : 0);
+        rotation_work_ = fading * rotation_work_ + (felt_.torque ? std::abs(rotation) : 0);
+        const double taken = (damping_ * way.squaredNorm() + angular_damping_ * turn.squaredNorm()) / dt_;
+        return translation + rotation - taken;
+    }
 
     double dt_;
     size_t delay_ticks_ = 1;

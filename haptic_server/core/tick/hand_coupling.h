@@ -2,7 +2,7 @@
 //
 // A hand damps what the device alone does not. So the coupling is as stiff as the scene and the device's own
 // word allow until energy has been made at the hand's port (energy_tank.h): then it gives way to what the
-// device carries without a hand (device_fit.h), and by half and half again should that not be enough. It
+// device carries without a hand (hand_side.h), and by half and half again should that not be enough. It
 // comes back when the tool has been in the air for a while, where no spring is stretched. What costs no
 // stiffness of the wall is in force from the start: a larger share of the relaxing spring, a softer rotation.
 //
@@ -10,7 +10,7 @@
 #pragma once
 
 #include "haptic_server/core/equilibrium/spo_model.h"
-#include "haptic_server/core/tick/device_fit.h"
+#include "haptic_server/core/tick/hand_side.h"
 #include "haptic_server/core/tick/energy_tank.h"
 
 namespace bonemill {

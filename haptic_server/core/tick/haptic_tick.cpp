@@ -1,13 +1,10 @@
 #include "haptic_server/core/tick/haptic_tick.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "common/base/assert.h"
 #include "common/rt/rt_guard.h"
-#include "haptic_server/core/effects/make_effects.h"
-#include "haptic_server/core/tick/recorded_input.h"
 
 namespace bonemill {
 namespace {
@@ -31,10 +28,6 @@ Eigen::Vector3d middleOf(const VoxelVolume& volume) noexcept {
     return 0.5 * volume.spacing().cwiseProduct(volume.dims().cast<double>());
 }
 
-SpoWorld worldOf(const BoneModel& bone) noexcept {
-    return {bone.volume, bone.lattice, bone.shell};
-}
-
 }  // namespace
 
 HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const TickChoices& choices)
@@ -44,8 +37,13 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
       tools_(choices.tools),
       accuracy_(choices.accuracy),
       tool_(tools_.chosen()),
-      models_(config.laws, {config.contact, config.coupling, config.gradient, worldOf(bone_), tools_.all(),
-                            tools_[tool_], config.dt}),
+      models_(config.laws, {config.contact,
+                            config.coupling,
+                            config.gradient,
+                            {bone_.volume, bone_.lattice, bone_.shell},
+                            tools_.all(),
+                            tools_[tool_],
+                            config.dt}),
       model_(&models_.of(accuracy_.chosen().law)),
       affordable_(config.dt),
       sample_cap_(config.dt),
@@ -158,7 +156,7 @@ const TickRecord* HapticTick::tick(TickIo& io) noexcept {
     chooseTool();
     beginEffects(input);
     const SpoStep step = moveAndFeel(input, faults);
-    const int64_t force_at_ns = io.write(inWorld(step.wrench_hand_V));
+    const int64_t force_at_ns = io.write(step.wrench_hand_V.rotatedBy(X_WV_.rotation));
     estimate_.sent(input.device.isEngaged() ? step.wrench_hand_V : Wrench{});
 
     effects_.afterSolve(X_VT_, *model_);
@@ -235,17 +233,11 @@ void HapticTick::placeTool() noexcept {
 
 // Looks at the burr's middle and at six places at this distance from it.
 bool HapticTick::isInBone(const Pose& X_VT, double radius) const noexcept {
-    const VoxelVolume& volume = bone_.volume;
     for (int i = -1; i < 6; ++i) {
         const Eigen::Vector3d offset =
             i < 0 ? Eigen::Vector3d::Zero().eval()
                   : ((i % 2 ? -radius : radius) * Eigen::Vector3d::Unit(i / 2)).eval();
-        const Eigen::Array3d place =
-            ((X_VT.position + offset).cwiseQuotient(volume.spacing())).array().round();
-        const bool is_inside = (place >= 0).all() && (place < volume.dims().array().cast<double>()).all();
-        if (!is_inside) continue;
-        const Eigen::Vector3i voxel = place.cast<int>();
-        if (volume.at(voxel.x(), voxel.y(), voxel.z()) >= volume.iso()) return true;
+        if (bone_.volume.isBoneAt(X_VT.position + offset)) return true;
     }
     return false;
 }
@@ -273,7 +265,7 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     const bool remove = input.buttons & kButtonRemove;
     const bool add = input.buttons & kButtonAdd;
     if (!input.is_stale && !remove && !add) waits_for_release_ = false;
-    EffectTick start;
+    EffectStart start;
     start.dt = config_.dt * input.periods;
     start.periods = input.periods;
     start.may_mill = !place_.isLost() && !input.is_stale && input.device.isEngaged() && !waits_for_release_ &&
@@ -349,10 +341,6 @@ MillingResult HapticTick::millWithEffects(uint32_t& faults) noexcept {
     return milled;
 }
 
-Wrench HapticTick::inWorld(const Wrench& wrench_V) const noexcept {
-    return wrench_V.rotatedBy(X_WV_.rotation);
-}
-
 TickRecord HapticTick::makeRecord(const DeviceInput& input, const SpoStep& step) const noexcept {
     TickRecord record{};
     record.tick = tick_;
@@ -360,7 +348,7 @@ TickRecord HapticTick::makeRecord(const DeviceInput& input, const SpoStep& step)
     record.wakeup_latency_ns = input.wakeup_latency_ns;
     record.t_s = input.t_s;
     const Pose X_WT = X_WV_ * X_VT_, X_WT_device = X_WV_ * X_VT_device_;
-    const Wrench wrench_hand_W = inWorld(step.wrench_hand_V);
+    const Wrench wrench_hand_W = step.wrench_hand_V.rotatedBy(X_WV_.rotation);
     copyTo(record.p_WT, X_WT.position);
     copyTo(record.q_WT, wxyz(X_WT.rotation));
     copyTo(record.p_WT_device, X_WT_device.position);

@@ -12,15 +12,13 @@
 #include "haptic_server/core/equilibrium/spo_models.h"
 #include "haptic_server/core/milling/milling_result.h"
 #include "haptic_server/core/telemetry/tick_record.h"
-#include "haptic_server/core/tick/accuracy_switch.h"
-#include "haptic_server/core/tick/affordable_shell.h"
 #include "haptic_server/core/tick/hand_coupling.h"
 #include "haptic_server/core/tick/hand_estimate.h"
 #include "haptic_server/core/tick/hand_place.h"
-#include "haptic_server/core/tick/sample_cap.h"
+#include "haptic_server/core/tick/tick_budget.h"
+#include "haptic_server/core/tick/tick_choices.h"
 #include "haptic_server/core/tick/tick_config.h"
 #include "haptic_server/core/tick/tick_io.h"
-#include "haptic_server/core/tick/tool_switch.h"
 
 namespace bonemill {
 
@@ -74,7 +72,6 @@ class HapticTick {
     void capSamples(const DeviceInput& input, double load, const SpoStep& step) noexcept;
     void keepWaiting(const SpoStep& step) noexcept;
     MillingResult millWithEffects(uint32_t& faults) noexcept;
-    Wrench inWorld(const Wrench& wrench_V) const noexcept;
     TickRecord makeRecord(const DeviceInput& input, const SpoStep& step) const noexcept;
 
     TickConfig config_;

@@ -28,31 +28,20 @@ struct Burr {
                                        : Eigen::Vector2d(std::max(radius, tip_radius), length / 2).norm();
     }
     // The signed distance is in m, negative inside. It is RT-safe.
-    double signedDistance(const Eigen::Vector3d& p_T) const noexcept;
+    double signedDistance(const Eigen::Vector3d& p_T) const noexcept {
+        if (kind == BurrKind::kBall) return p_T.norm() - radius;
+        const double far_radius = kind == BurrKind::kCone ? tip_radius : radius, half = length / 2;
+        // The burr's half-plane through its axis: off it and along it.
+        const Eigen::Vector2d p(std::sqrt(p_T.x() * p_T.x() + p_T.z() * p_T.z()), p_T.y());
+        const Eigen::Vector2d rim(far_radius, -half), way = Eigen::Vector2d(radius, half) - rim;
+        const double share = std::clamp((p - rim).dot(way) / way.squaredNorm(), 0.0, 1.0);
+        const double side = (p - rim - share * way).norm();
+        const double far_end = Eigen::Vector2d(std::max(0.0, p.x() - far_radius), p.y() + half).norm();
+        const double hand_end = Eigen::Vector2d(std::max(0.0, p.x() - radius), p.y() - half).norm();
+        const double nearest = std::min({side, far_end, hand_end});
+        const double width = far_radius + (radius - far_radius) * (p.y() + half) / length;
+        return std::abs(p.y()) < half && p.x() < width ? -nearest : nearest;
+    }
 };
-
-namespace burr_profile {
-
-// The points lie in the half-plane through the axis: off it and along it.
-inline double toSegment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
-                        const Eigen::Vector2d& b) noexcept {
-    const Eigen::Vector2d way = b - a;
-    const double share = std::clamp((p - a).dot(way) / way.squaredNorm(), 0.0, 1.0);
-    return (p - a - share * way).norm();
-}
-
-}  // namespace burr_profile
-
-inline double Burr::signedDistance(const Eigen::Vector3d& p_T) const noexcept {
-    if (kind == BurrKind::kBall) return p_T.norm() - radius;
-    const double far_radius = kind == BurrKind::kCone ? tip_radius : radius, half = length / 2;
-    const Eigen::Vector2d p(std::sqrt(p_T.x() * p_T.x() + p_T.z() * p_T.z()), p_T.y());
-    const double side = burr_profile::toSegment(p, {far_radius, -half}, {radius, half});
-    const double far_end = Eigen::Vector2d(std::max(0.0, p.x() - far_radius), p.y() + half).norm();
-    const double hand_end = Eigen::Vector2d(std::max(0.0, p.x() - radius), p.y() - half).norm();
-    const double nearest = std::min({side, far_end, hand_end});
-    const double width = far_radius + (radius - far_radius) * (p.y() + half) / length;
-    return std::abs(p.y()) < half && p.x() < width ? -nearest : nearest;
-}
 
 }  // namespace bonemill

@@ -103,14 +103,6 @@ void ShapeField::leastDistance(const PointBatch<Scalar>& points_T, Scalar* out) 
     }
 }
 
-void ShapeField::distances(const PointBatch<float>& points_T, float* out) const noexcept {
-    leastDistance(points_T, out);
-}
-
-void ShapeField::distances(const PointBatch<double>& points_T, double* out) const noexcept {
-    leastDistance(points_T, out);
-}
-
 // The solid replaces what `out` holds where it is nearer.
 template <class Scalar>
 void ShapeField::sampleNearer(const Solid& solid, const PointBatch<Scalar>& points_T,
@@ -144,14 +136,6 @@ void ShapeField::nearest(const PieceBatch& pieces, float* out) const noexcept {
             out[i] = std::min(out[i], at.distance[i] - slope * pieces.reach[i]);
         }
     }
-}
-
-void ShapeField::sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept {
-    sampleNearest(points_T, out);
-}
-
-void ShapeField::sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept {
-    sampleNearest(points_T, out);
 }
 
 ToolSample ShapeField::sampleRound(const Solid& s, const Vector3d& p_T) noexcept {

@@ -19,10 +19,18 @@ class ShapeField final : public ToolField {
     // From now on it is this shape alone. It is RT-safe.
     void become(const SphereShape& ball) noexcept;
 
-    void distances(const PointBatch<float>& points_T, float* out) const noexcept override;
-    void distances(const PointBatch<double>& points_T, double* out) const noexcept override;
-    void sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept override;
-    void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept override;
+    void distances(const PointBatch<float>& points_T, float* out) const noexcept override {
+        leastDistance(points_T, out);
+    }
+    void distances(const PointBatch<double>& points_T, double* out) const noexcept override {
+        leastDistance(points_T, out);
+    }
+    void sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept override {
+        sampleNearest(points_T, out);
+    }
+    void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept override {
+        sampleNearest(points_T, out);
+    }
     void nearest(const PieceBatch& pieces_T, float* out) const noexcept override;
     ToolSample sample(const Eigen::Vector3d& p_T) const noexcept override;
     double distanceError() const noexcept override { return kRounding; }

@@ -16,7 +16,27 @@ class BoneProperties {
     // The properties are those of the volume as it is now. material(voxel) is asked for once per voxel, and
     // so is density(voxel), which is iso or more where the volume's is. Allocates; start-up only.
     template <class MaterialOf, class DensityOf>
-    BoneProperties(const VoxelVolume& scanned, MaterialOf&& material, DensityOf&& density);
+    BoneProperties(const VoxelVolume& scanned, MaterialOf&& material, DensityOf&& density)
+        : map_(scanned.dims()) {
+        std::vector<Density> densities(BrickMap::kBrick);
+        std::vector<MaterialId> materials(BrickMap::kBrick);
+        forEachIndex({Eigen::Vector3i::Zero(), map_.bricksPerAxis().array() - 1},
+                     [&](const Eigen::Vector3i& brick) {
+                         bool is_something = false;
+                         std::fill(densities.begin(), densities.end(), Density(0));
+                         std::fill(materials.begin(), materials.end(), kNoMaterial);
+                         forEachIndex(map_.voxelsOf(brick), [&](const Eigen::Vector3i& v) {
+                             const size_t at = BrickMap::inBrick(v);
+                             densities[at] = density(v);
+                             materials[at] = material(v);
+                             is_something |= densities[at] >= scanned.iso() || materials[at] != kNoMaterial;
+                         });
+                         if (!is_something) return;
+                         map_.addBrick(brick);
+                         density_.insert(density_.end(), densities.begin(), densities.end());
+                         material_.insert(material_.end(), materials.begin(), materials.end());
+                     });
+    }
     template <class MaterialOf>
     BoneProperties(const VoxelVolume& scanned, MaterialOf&& material)
         : BoneProperties(scanned, material,
@@ -51,28 +71,5 @@ class BoneProperties {
     std::vector<Density> density_;
     std::vector<MaterialId> material_;
 };
-
-template <class MaterialOf, class DensityOf>
-BoneProperties::BoneProperties(const VoxelVolume& scanned, MaterialOf&& material, DensityOf&& density)
-    : map_(scanned.dims()) {
-    std::vector<Density> densities(BrickMap::kBrick);
-    std::vector<MaterialId> materials(BrickMap::kBrick);
-    forEachIndex({Eigen::Vector3i::Zero(), map_.bricksPerAxis().array() - 1},
-                 [&](const Eigen::Vector3i& brick) {
-                     bool is_something = false;
-                     std::fill(densities.begin(), densities.end(), Density(0));
-                     std::fill(materials.begin(), materials.end(), kNoMaterial);
-                     forEachIndex(map_.voxelsOf(brick), [&](const Eigen::Vector3i& v) {
-                         const size_t at = BrickMap::inBrick(v);
-                         densities[at] = density(v);
-                         materials[at] = material(v);
-                         is_something |= densities[at] >= scanned.iso() || materials[at] != kNoMaterial;
-                     });
-                     if (!is_something) return;
-                     map_.addBrick(brick);
-                     density_.insert(density_.end(), densities.begin(), densities.end());
-                     material_.insert(material_.end(), materials.begin(), materials.end());
-                 });
-}
 
 }  // namespace bonemill

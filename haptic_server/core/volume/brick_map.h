@@ -27,7 +27,7 @@ class BrickMap {
     size_t find(const Eigen::Vector3i& voxel) const noexcept {
         if ((voxel.array() < 0).any() || (voxel.array() >= dims_.array()).any()) return kNowhere;
         const Eigen::Vector3i brick = voxel.unaryExpr([](int v) { return v >> kShift; });
-        const uint32_t slot = slots_[brickIndex(brick)];
+        const uint32_t slot = slots_[placeIn(bricks_, brick)];
         return slot == kNone ? kNowhere : slot * kBrick + inBrick(voxel);
     }
     // Calls visit(place) for those of a cell's eight corners that have one.
@@ -60,15 +60,10 @@ class BrickMap {
         return {low, (low.array() + kEdge - 1).min(dims_.array() - 1)};
     }
     // Gives the brick the next kBrick places of the pool.
-    void addBrick(const Eigen::Vector3i& brick) noexcept { slots_[brickIndex(brick)] = used_++; }
+    void addBrick(const Eigen::Vector3i& brick) noexcept { slots_[placeIn(bricks_, brick)] = used_++; }
 
   private:
     static constexpr uint32_t kNone = ~uint32_t(0);
-
-    size_t brickIndex(const Eigen::Vector3i& brick) const noexcept {
-        return size_t(brick.x()) +
-               size_t(bricks_.x()) * (size_t(brick.y()) + size_t(bricks_.y()) * size_t(brick.z()));
-    }
 
     Eigen::Vector3i dims_, bricks_;
     std::vector<uint32_t> slots_;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "common/base/assert.h"
-
 namespace bonemill {
 namespace {
 
@@ -18,14 +16,6 @@ BrickStore::BrickStore(const Eigen::Vector3i& voxels)
     : bricks_((voxels.array() + kBrickCells - 1) / kBrickCells), slots_(size_t(bricks_.prod()), kAirSlot) {
     setPoolSize(kSharedSlots);
     std::fill_n(pool_.data() + kSolidSlot * kBrickSize, kBrickSize, kMaxDensity);
-}
-
-void BrickStore::makeSpare(size_t count) {
-    if (spareCount() < count) setPoolSize(used_ + count);
-}
-
-void BrickStore::dropSpare() {
-    setPoolSize(used_);
 }
 
 BrickStore BrickStore::withoutSpare() const {

@@ -39,9 +39,34 @@ class DistanceField {
     // It is for start-up only. Fills bricks of samples, layer after layer along z; sample(voxel) gives
     // {distance, nearest} for the box's voxels.
     int layerCount() const noexcept { return map_.bricksPerAxis().z(); }
-    IndexBox layer(int n) const noexcept;
+    IndexBox layer(int n) const noexcept {
+        const Eigen::Vector3i& bricks = map_.bricksPerAxis();
+        IndexBox box = map_.voxelsOf({0, 0, n});
+        box.include(map_.voxelsOf({bricks.x() - 1, bricks.y() - 1, n}));
+        return {box.min + first_, box.max + first_};
+    }
     template <class Sample>
-    void fillLayer(int n, Sample&& sample);
+    void fillLayer(int n, Sample&& sample) {
+        const Eigen::Vector3i& bricks = map_.bricksPerAxis();
+        std::vector<float> distances(BrickMap::kBrick);
+        std::vector<MaterialId> nearest(BrickMap::kBrick);
+        forEachIndex({{0, 0, n}, {bricks.x() - 1, bricks.y() - 1, n}}, [&](const Eigen::Vector3i& brick) {
+            std::fill(distances.begin(), distances.end(), float(reach_));
+            std::fill(nearest.begin(), nearest.end(), kNoMaterial);
+            bool is_something = false;
+            forEachIndex(map_.voxelsOf(brick), [&](const Eigen::Vector3i& v) {
+                const auto [distance, id] = sample(Eigen::Vector3i(v + first_));
+                if (!(distance < reach_)) return;
+                is_something = true;
+                distances[BrickMap::inBrick(v)] = float(std::max(distance, -reach_));
+                nearest[BrickMap::inBrick(v)] = id;
+            });
+            if (!is_something) return;
+            map_.addBrick(brick);
+            distance_.insert(distance_.end(), distances.begin(), distances.end());
+            nearest_.insert(nearest_.end(), nearest.begin(), nearest.end());
+        });
+    }
 
   private:
     void lookUp(const Eigen::Vector3i& voxel, double& distance, MaterialId& nearest) const noexcept {
@@ -114,36 +139,6 @@ inline DistanceSample DistanceField::smoothAt(const Eigen::Vector3d& p_V) const 
             }
     sum.gradient_V = sum.gradient_V.cwiseQuotient(spacing_);
     return sum;
-}
-
-inline IndexBox DistanceField::layer(int n) const noexcept {
-    const Eigen::Vector3i& bricks = map_.bricksPerAxis();
-    IndexBox box = map_.voxelsOf({0, 0, n});
-    box.include(map_.voxelsOf({bricks.x() - 1, bricks.y() - 1, n}));
-    return {box.min + first_, box.max + first_};
-}
-
-template <class Sample>
-void DistanceField::fillLayer(int n, Sample&& sample) {
-    const Eigen::Vector3i& bricks = map_.bricksPerAxis();
-    std::vector<float> distances(BrickMap::kBrick);
-    std::vector<MaterialId> nearest(BrickMap::kBrick);
-    forEachIndex({{0, 0, n}, {bricks.x() - 1, bricks.y() - 1, n}}, [&](const Eigen::Vector3i& brick) {
-        std::fill(distances.begin(), distances.end(), float(reach_));
-        std::fill(nearest.begin(), nearest.end(), kNoMaterial);
-        bool is_something = false;
-        forEachIndex(map_.voxelsOf(brick), [&](const Eigen::Vector3i& v) {
-            const auto [distance, id] = sample(Eigen::Vector3i(v + first_));
-            if (!(distance < reach_)) return;
-            is_something = true;
-            distances[BrickMap::inBrick(v)] = float(std::max(distance, -reach_));
-            nearest[BrickMap::inBrick(v)] = id;
-        });
-        if (!is_something) return;
-        map_.addBrick(brick);
-        distance_.insert(distance_.end(), distances.begin(), distances.end());
-        nearest_.insert(nearest_.end(), nearest.begin(), nearest.end());
-    });
 }
 
 }  // namespace bonemill

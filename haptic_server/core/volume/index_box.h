@@ -33,6 +33,11 @@ struct IndexBox {
     }
 };
 
+// Its place in a box that begins at 0 and has `size` indices per axis, x fastest.
+inline size_t placeIn(const Eigen::Vector3i& size, const Eigen::Vector3i& index) noexcept {
+    return size_t(index.x()) + size_t(size.x()) * (size_t(index.y()) + size_t(size.y()) * size_t(index.z()));
+}
+
 template <class Visit>
 void forEachIndex(const IndexBox& box, Visit&& visit) {
     for (int k = box.min.z(); k <= box.max.z(); ++k)

@@ -1,9 +1,7 @@
 #include "haptic_server/core/volume/leaf_lattice.h"
 
 #include <algorithm>
-#include <cstdint>
 
-#include "common/base/assert.h"
 #include "haptic_server/core/kernels/kernels.h"
 
 namespace bonemill {
@@ -14,10 +12,6 @@ void widen(DensityRange& range, const DensityRange& other) noexcept {
     range.max = std::max(range.max, other.max);
 }
 
-bool isSame(const DensityRange& a, const DensityRange& b) noexcept {
-    return a.min == b.min && a.max == b.max;
-}
-
 // Returns the range of the voxels in `box` joined with `known`. Stops as soon as it is `bounds`, which
 // it cannot exceed.
 DensityRange scan(const VoxelVolume& volume, const IndexBox& box, DensityRange known,
@@ -25,7 +19,7 @@ DensityRange scan(const VoxelVolume& volume, const IndexBox& box, DensityRange k
     volume.forEachPart(box, [&](const IndexBox& part, size_t offset) {
         if (const auto uniform = volume.uniformDensity(part.min)) return widen(known, {*uniform, *uniform});
         const Eigen::Vector3i size = part.max - part.min + Eigen::Vector3i::Ones();
-        for (int k = 0; k < size.z() && !isSame(known, bounds); ++k, offset += VoxelVolume::kStrideZ)
+        for (int k = 0; k < size.z() && known != bounds; ++k, offset += VoxelVolume::kStrideZ)
             kernels().range_of_rows(volume.ownerData() + offset, size.x(), VoxelVolume::kStrideY, size.y(),
                                     known.min, known.max);
     });
@@ -98,12 +92,10 @@ void LeafLattice::refreshParents(const IndexBox& leaves) noexcept {
                 const Eigen::Vector3i child =
                     2 * node + Eigen::Vector3i(octant & 1, octant >> 1 & 1, octant >> 2 & 1);
                 if ((child.array() >= below.nodes.array()).any()) continue;
-                widen(range, below.range[size_t(child.x() + below.nodes.x() *
-                                                                (child.y() + below.nodes.y() * child.z()))]);
+                widen(range, below.range[placeIn(below.nodes, child)]);
             }
-            DensityRange& old =
-                here.range[size_t(node.x() + here.nodes.x() * (node.y() + here.nodes.y() * node.z()))];
-            has_changed |= !isSame(old, range);
+            DensityRange& old = here.range[placeIn(here.nodes, node)];
+            has_changed |= old != range;
             old = range;
         });
     }
@@ -119,16 +111,14 @@ void LeafLattice::refreshRanges(const VoxelVolume& volume, const IndexBox& chang
         const LeafId id = leafId(leaf);
         DensityRange& range = levels_[0].range[id];
         const DensityRange now = rangeAfterChange(volume, voxelsOf(id), changed_voxels, range, direction);
-        has_changed |= !isSame(range, now);
+        has_changed |= range != now;
         range = now;
     });
     if (has_changed) refreshParents(leaves);
 }
 
 void LeafLattice::beginWrite(const IndexBox& changed_voxels) noexcept {
-    const IndexBox leaves = leavesOfWrite(changed_voxels);
-    if (leaves.isEmpty()) return;
-    forEachIndex(leaves, [&](const Eigen::Vector3i& leaf) {
+    forEachIndex(leavesOfWrite(changed_voxels), [&](const Eigen::Vector3i& leaf) {
         auto& version = versions_[leafId(leaf)];
         // Relaxed is enough: the voxels' own release stores keep the odd version before them.
         version.store(version.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
@@ -136,9 +126,7 @@ void LeafLattice::beginWrite(const IndexBox& changed_voxels) noexcept {
 }
 
 void LeafLattice::endWrite(const IndexBox& changed_voxels) noexcept {
-    const IndexBox leaves = leavesOfWrite(changed_voxels);
-    if (leaves.isEmpty()) return;
-    forEachIndex(leaves, [&](const Eigen::Vector3i& leaf) {
+    forEachIndex(leavesOfWrite(changed_voxels), [&](const Eigen::Vector3i& leaf) {
         auto& version = versions_[leafId(leaf)];
         version.store(version.load(std::memory_order_relaxed) + 1, std::memory_order_release);
     });

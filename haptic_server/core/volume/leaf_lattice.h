@@ -7,7 +7,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "common/base/assert.h"
@@ -20,6 +19,10 @@ using LeafId = uint32_t;  // x fastest over the lattice; the node id on the wire
 struct DensityRange {
     Density min = kMaxDensity;
     Density max = 0;
+
+    // Does the surface of this iso-value lie between its ends?
+    bool holds(Density iso) const noexcept { return min < iso && max >= iso; }
+    bool operator==(const DensityRange&) const = default;
 };
 
 class LeafLattice {
@@ -38,7 +41,7 @@ class LeafLattice {
     LeafId leafId(const Eigen::Vector3i& leaf) const noexcept {
         const auto& n = levels_[0].nodes;
         BONEMILL_ASSERT((leaf.array() >= 0).all() && (leaf.array() < n.array()).all());
-        return LeafId(leaf.x() + n.x() * (leaf.y() + n.y() * leaf.z()));
+        return LeafId(placeIn(n, leaf));
     }
     Eigen::Vector3i leafIndex(LeafId id) const noexcept {
         const auto& n = levels_[0].nodes;
@@ -74,21 +77,31 @@ class LeafLattice {
 
     // It is for the tick thread only (the mesher computes its own from the voxels). Does the density range
     // hold the iso-value?
-    bool mayHoldSurface(LeafId id, Density iso) const noexcept {
-        const DensityRange& r = levels_[0].range[id];
-        return r.min < iso && r.max >= iso;
-    }
+    bool mayHoldSurface(LeafId id, Density iso) const noexcept { return levels_[0].range[id].holds(iso); }
 
     // It searches from the top down, RT-safe, for the tick thread only: calls visit(LeafId) for every leaf
     // that owns any of these cells, unless is_wanted(const DensityRange&, const IndexBox& cells) is false for
     // it or a node above it. Leaves come in ascending order of the lattice within each node.
     template <class IsWanted, class Visit>
-    void forEachLeaf(const IndexBox& cells, IsWanted&& is_wanted, Visit&& visit) const noexcept;
+    void forEachLeaf(const IndexBox& cells, IsWanted&& is_wanted, Visit&& visit) const noexcept {
+        const IndexBox leaves = leavesOfCells(cells);
+        if (!cells.isEmpty() && !leaves.isEmpty())
+            descend(levelCount() - 1, Eigen::Vector3i::Zero(), leaves, is_wanted, visit);
+    }
 
     // It does the same for every leaf whose cells meet `box` (V, m) and whose range holds iso.
     template <class Visit>
     void forEachSurfaceLeaf(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& spacing, Density iso,
-                            Visit&& visit) const noexcept;
+                            Visit&& visit) const noexcept {
+        // Clamp before the conversion to int: the box may lie anywhere.
+        const Eigen::Array3d low =
+            (box.min().array() / spacing.array()).max(-1.0).min(dims_.cast<double>().array());
+        const Eigen::Array3d high =
+            (box.max().array() / spacing.array()).max(-2.0).min(dims_.cast<double>().array() - 1);
+        const IndexBox cells{low.floor().cast<int>().matrix(), high.floor().cast<int>().matrix()};
+        forEachLeaf(
+            cells, [iso](const DensityRange& range, const IndexBox&) { return range.holds(iso); }, visit);
+    }
 
     uint32_t nodeCount(int level) const noexcept { return uint32_t(levels_[size_t(level)].range.size()); }
     const DensityRange& range(int level, uint32_t node) const noexcept { return levels_[level].range[node]; }
@@ -113,37 +126,13 @@ class LeafLattice {
     std::vector<std::atomic<uint32_t>> versions_;
 };
 
-template <class Visit>
-void LeafLattice::forEachSurfaceLeaf(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& spacing,
-                                     Density iso, Visit&& visit) const noexcept {
-    // Clamp before the conversion to int: the box may lie anywhere.
-    const Eigen::Array3d low =
-        (box.min().array() / spacing.array()).max(-1.0).min(dims_.cast<double>().array());
-    const Eigen::Array3d high =
-        (box.max().array() / spacing.array()).max(-2.0).min(dims_.cast<double>().array() - 1);
-    const IndexBox cells{low.floor().cast<int>().matrix(), high.floor().cast<int>().matrix()};
-    forEachLeaf(
-        cells,
-        [iso](const DensityRange& range, const IndexBox&) { return range.min < iso && range.max >= iso; },
-        visit);
-}
-
-template <class IsWanted, class Visit>
-void LeafLattice::forEachLeaf(const IndexBox& cells, IsWanted&& is_wanted, Visit&& visit) const noexcept {
-    const IndexBox leaves = leavesOfCells(cells);
-    if (!cells.isEmpty() && !leaves.isEmpty())
-        descend(levelCount() - 1, Eigen::Vector3i::Zero(), leaves, is_wanted, visit);
-}
-
 template <class IsWanted, class Visit>
 void LeafLattice::descend(int level, const Eigen::Vector3i& node, const IndexBox& leaves, IsWanted& is_wanted,
                           Visit& visit) const noexcept {
     const Eigen::Vector3i first = node * (1 << level);
     const Eigen::Vector3i last = first.array() + ((1 << level) - 1);
     if ((first.array() > leaves.max.array()).any() || (last.array() < leaves.min.array()).any()) return;
-    const auto& n = levels_[level].nodes;
-    const DensityRange& range =
-        levels_[level].range[size_t(node.x() + n.x() * (node.y() + n.y() * node.z()))];
+    const DensityRange& range = levels_[level].range[placeIn(levels_[level].nodes, node)];
     const IndexBox cells{first.cwiseProduct(leaf_cells_).array() - 1,
                          (last.array() + 1).matrix().cwiseProduct(leaf_cells_).array() - 2};
     if (!is_wanted(range, cells)) return;

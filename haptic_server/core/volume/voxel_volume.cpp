@@ -2,8 +2,6 @@
 
 #include <cstring>
 
-#include "haptic_server/core/volume/density_gradient.h"
-
 namespace bonemill {
 
 VoxelVolume::VoxelVolume(const VolumeGeometry& geometry, Density iso)
@@ -14,6 +12,14 @@ VoxelVolume::VoxelVolume(const VolumeGeometry& geometry, Density iso, BrickStore
       iso_(iso),
       inverse_spacing_(geometry.spacing.cwiseInverse().cast<float>()),
       bricks_(std::move(bricks)) {}
+
+bool VoxelVolume::isBoneAt(const Eigen::Vector3d& p_V) const noexcept {
+    const Eigen::Array3d place = (p_V.array() / spacing().array()).round();
+    const bool is_inside = (place >= 0).all() && (place < dims().cast<double>().array()).all();
+    if (!is_inside) return false;
+    const Eigen::Vector3i voxel = place.cast<int>();
+    return at(voxel.x(), voxel.y(), voxel.z()) >= iso_;
+}
 
 void VoxelVolume::readRow(const Eigen::Vector3i& first, int count, Density* out) const noexcept {
     forEachRun(first, count, [&](size_t offset, int n) {
@@ -85,12 +91,27 @@ void VoxelVolume::set(int i, int j, int k, Density density) {
     writeRow({i, j, k}, 1, &density);
 }
 
+// Central differences (thesis eq 1-3 over twice the distance), one-sided at the border of air.
 Eigen::Vector3f VoxelVolume::gradient(int i, int j, int k) const noexcept {
     constexpr ptrdiff_t kStrides[3] = {1, kStrideY, kStrideZ};
     const size_t here = offset(i, j, k);
-    return densityGradient({i, j, k}, dims(), inverse_spacing_, [&](int axis, int step) {
+    const auto neighbour = [&](int axis, int step) {
         return at(size_t(ptrdiff_t(here) + step * kStrides[axis]));
-    });
+    };
+    const Eigen::Vector3i voxel(i, j, k);
+    const bool is_inside = (voxel.array() >= 0).all() && (voxel.array() < dims().array()).all();
+    Eigen::Vector3f gradient;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (is_inside) {
+            gradient[axis] =
+                float(int(neighbour(axis, 1)) - int(neighbour(axis, -1))) * (inverse_spacing_[axis] / 2);
+            continue;
+        }
+        const int low = voxel[axis] > -1 ? -1 : 0, high = voxel[axis] < dims()[axis] ? 1 : 0;
+        gradient[axis] = (float(neighbour(axis, high)) - float(neighbour(axis, low))) *
+                         inverse_spacing_[axis] / float(high - low);
+    }
+    return gradient;
 }
 
 }  // namespace bonemill

@@ -49,6 +49,8 @@ class VoxelVolume {
             .load(std::memory_order_acquire);
     }
     Density at(int i, int j, int k) const noexcept { return at(offset(i, j, k)); }
+    // Is the voxel nearest to this place (V, m) bone? There is none outside. For any thread; RT-safe.
+    bool isBoneAt(const Eigen::Vector3d& p_V) const noexcept;
     // Returns plain densities by offset, which the compiler can read many at a time. It is for the owner
     // of the volume only (tick thread): no other thread writes, so its reads race with nothing. Other
     // threads use at().
@@ -62,14 +64,25 @@ class VoxelVolume {
     // Calls visit(offset, n) for runs that make up this row of voxels, each in one brick: n voxels from
     // `offset` on. It is RT-safe, for any thread.
     template <class Visit>
-    void forEachRun(const Eigen::Vector3i& first, int count, Visit&& visit) const noexcept;
+    void forEachRun(const Eigen::Vector3i& first, int count, Visit&& visit) const noexcept {
+        for (int i = first.x(); count > 0;) {
+            const int n = stretch(i, i + count - 1, kMaxInBrick);
+            visit(offset(i, first.y(), first.z()), n);
+            i += n;
+            count -= n;
+        }
+    }
     // Calls visit(part, offset) for parts that make up the box of voxels (in -1 .. dims), each in one brick:
     // its voxels lie at `offset` and the strides from there. It is RT-safe, for any thread.
     template <class Visit>
-    void forEachPart(const IndexBox& voxels, Visit&& visit) const noexcept;
+    void forEachPart(const IndexBox& voxels, Visit&& visit) const noexcept {
+        forEachPiece<kMaxInBrick>(voxels, visit);
+    }
     // This does the same without copies: each part is what the brick itself owns of the box.
     template <class Visit>
-    void forEachOwnedPart(const IndexBox& voxels, Visit&& visit) const noexcept;
+    void forEachOwnedPart(const IndexBox& voxels, Visit&& visit) const noexcept {
+        forEachPiece<kBrickCells>(voxels, visit);
+    }
     // This is the density of all that is stored around this cell, if its brick has no memory of its own. It
     // is RT-safe, for any thread.
     std::optional<Density> uniformDensity(const Eigen::Vector3i& cell) const noexcept;
@@ -88,14 +101,21 @@ class VoxelVolume {
     void set(int i, int j, int k, Density density);
     // Fills all voxels at once with density(i, j, k), which is asked for some voxels more than once.
     template <class DensityAt>
-    void fill(DensityAt&& density);
+    void fill(DensityAt&& density) {
+        fillRows([](const Eigen::Vector3i&) { return false; },
+                 [&](const Eigen::Vector3i& first, std::span<Density> out) {
+                     for (size_t n = 0; n < out.size(); ++n)
+                         out[n] = density(first.x() + int(n), first.y(), first.z());
+                 });
+    }
     // Does the same row by row, in layers of bricks from below: fill_row(first, out) writes out.size() voxels
     // along x. A brick for which is_air(brick) stays air, copies of its neighbours' voxels included.
     template <class IsAir, class FillRow>
     void fillRows(IsAir&& is_air, FillRow&& fill_row);
     void shareUniformBricks() { bricks_.shareUniformBricks(); }
 
-    // Returns densityGradient() at this voxel, counts per m. Any index in -1 .. dims is right. It is RT-safe.
+    // Returns the density's gradient at this voxel, counts per m, V axes. Any index in -1 .. dims is right.
+    // It is RT-safe.
     Eigen::Vector3f gradient(int i, int j, int k) const noexcept;
 
   private:
@@ -105,7 +125,20 @@ class VoxelVolume {
         return std::min(most - ((index + 1) & (kBrickCells - 1)), last - index + 1);
     }
     template <int kMax, class Visit>
-    void forEachPiece(const IndexBox& voxels, Visit&& visit) const noexcept;
+    void forEachPiece(const IndexBox& voxels, Visit&& visit) const noexcept {
+        Eigen::Vector3i low, n;
+        for (low.z() = voxels.min.z(); low.z() <= voxels.max.z(); low.z() += n.z()) {
+            n.z() = stretch(low.z(), voxels.max.z(), kMax);
+            for (low.y() = voxels.min.y(); low.y() <= voxels.max.y(); low.y() += n.y()) {
+                n.y() = stretch(low.y(), voxels.max.y(), kMax);
+                for (low.x() = voxels.min.x(); low.x() <= voxels.max.x(); low.x() += n.x()) {
+                    n.x() = stretch(low.x(), voxels.max.x(), kMax);
+                    visit(IndexBox{low, low + n - Eigen::Vector3i::Ones()},
+                          offset(low.x(), low.y(), low.z()));
+                }
+            }
+        }
+    }
     // Bricks that hold any of these voxels, copies included.
     IndexBox bricksHolding(const IndexBox& voxels) const noexcept;
     // Returns the voxels that a brick holds: indices, border and beyond included.
@@ -120,41 +153,6 @@ class VoxelVolume {
     Eigen::Vector3f inverse_spacing_;
     BrickStore bricks_;
 };
-
-template <class Visit>
-void VoxelVolume::forEachRun(const Eigen::Vector3i& first, int count, Visit&& visit) const noexcept {
-    for (int i = first.x(); count > 0;) {
-        const int n = stretch(i, i + count - 1, kMaxInBrick);
-        visit(offset(i, first.y(), first.z()), n);
-        i += n;
-        count -= n;
-    }
-}
-
-template <class Visit>
-void VoxelVolume::forEachPart(const IndexBox& voxels, Visit&& visit) const noexcept {
-    forEachPiece<kMaxInBrick>(voxels, visit);
-}
-
-template <class Visit>
-void VoxelVolume::forEachOwnedPart(const IndexBox& voxels, Visit&& visit) const noexcept {
-    forEachPiece<kBrickCells>(voxels, visit);
-}
-
-template <int kMax, class Visit>
-void VoxelVolume::forEachPiece(const IndexBox& voxels, Visit&& visit) const noexcept {
-    Eigen::Vector3i low, n;
-    for (low.z() = voxels.min.z(); low.z() <= voxels.max.z(); low.z() += n.z()) {
-        n.z() = stretch(low.z(), voxels.max.z(), kMax);
-        for (low.y() = voxels.min.y(); low.y() <= voxels.max.y(); low.y() += n.y()) {
-            n.y() = stretch(low.y(), voxels.max.y(), kMax);
-            for (low.x() = voxels.min.x(); low.x() <= voxels.max.x(); low.x() += n.x()) {
-                n.x() = stretch(low.x(), voxels.max.x(), kMax);
-                visit(IndexBox{low, low + n - Eigen::Vector3i::Ones()}, offset(low.x(), low.y(), low.z()));
-            }
-        }
-    }
-}
 
 template <class IsAir, class FillRow>
 void VoxelVolume::fillRows(IsAir&& is_air, FillRow&& fill_row) {
@@ -180,15 +178,6 @@ void VoxelVolume::fillRows(IsAir&& is_air, FillRow&& fill_row) {
         bricks_.adoptNextSpare(id);
     });
     bricks_.dropSpare();
-}
-
-template <class DensityAt>
-void VoxelVolume::fill(DensityAt&& density) {
-    fillRows([](const Eigen::Vector3i&) { return false; },
-             [&](const Eigen::Vector3i& first, std::span<Density> out) {
-                 for (size_t n = 0; n < out.size(); ++n)
-                     out[n] = density(first.x() + int(n), first.y(), first.z());
-             });
 }
 
 }  // namespace bonemill

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptic_server/core/contact/tool_box.h"
+#include "haptic_server/core/contact/into_tool.h"
 
 namespace bonemill {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <utility>
 
-#include "haptic_server/core/bone/leaf_rows.h"
+#include "haptic_server/core/bone/bone_snapshot.h"
 
 namespace bonemill {
 namespace {

@@ -12,7 +12,7 @@
 #include "common/base/user_error.h"
 #include "common/rt/clock.h"
 #include "common/text/printable_line.h"
-#include "haptic_server/core/bone/leaf_rows.h"
+#include "haptic_server/core/bone/bone_snapshot.h"
 #include "haptic_server/recording/journal/bone_states.h"
 #include "haptic_server/recording/journal/build_facts.h"
 #include "haptic_server/recording/journal/journal_chain.h"

@@ -9,9 +9,8 @@
 #include "common/files/require_file.h"
 #include "common/files/whole_file.h"
 #include "haptic_server/scans/nrrd/nrrd_writer.h"
+#include "haptic_server/surface/mesh/mesh_files.h"
 #include "haptic_server/surface/mesh/mesher.h"
-#include "haptic_server/surface/mesh/ply.h"
-#include "haptic_server/surface/mesh/stl.h"
 
 namespace bonemill {
 namespace {

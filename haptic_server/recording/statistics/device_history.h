@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "haptic_server/core/telemetry/device_report.h"
+#include "haptic_server/core/telemetry/tick_input.h"
 
 namespace bonemill {
 

@@ -12,7 +12,6 @@
 
 #include "haptic_server/core/effects/effect_figures.h"
 #include "haptic_server/core/telemetry/effect_record.h"
-#include "haptic_server/core/telemetry/recorded_effects.h"
 
 namespace bonemill {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "haptic_server/core/telemetry/recorded_effects.h"
+#include "haptic_server/core/telemetry/effect_record.h"
 #include "haptic_server/core/telemetry/tick_record.h"
 #include "haptic_server/core/volume/voxel_volume.h"
 

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "common/base/units.h"
-#include "haptic_server/core/tick/device_fit.h"
+#include "haptic_server/core/tick/hand_side.h"
 
 namespace bonemill {
 namespace {

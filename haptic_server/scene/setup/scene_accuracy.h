@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "haptic_server/core/accuracy/accuracy_settings.h"
+#include "haptic_server/core/contact/contact_configs.h"
 #include "haptic_server/core/contact/point_shell.h"
-#include "haptic_server/core/equilibrium/gradient_config.h"
 #include "proto/scene.pb.h"
 
 namespace bonemill {

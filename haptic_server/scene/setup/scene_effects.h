@@ -3,7 +3,7 @@
 
 #include "common/config/scene_file.h"
 #include "haptic_server/core/effects/effect_configs.h"
-#include "haptic_server/core/telemetry/recorded_effects.h"
+#include "haptic_server/core/telemetry/effect_record.h"
 #include "haptic_server/core/tool/burr.h"
 #include "haptic_server/scans/densify/densify.h"
 

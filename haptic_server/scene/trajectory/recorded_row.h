@@ -7,7 +7,6 @@
 #include <string>
 #include <string_view>
 
-#include "haptic_server/core/telemetry/device_report.h"
 #include "haptic_server/core/telemetry/tick_input.h"
 
 namespace bonemill {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "common/geometry/pose.h"
-#include "haptic_server/core/telemetry/device_report.h"
 #include "haptic_server/core/telemetry/tick_input.h"
 
 namespace bonemill {

@@ -9,7 +9,7 @@
 #include <iterator>
 
 #include "common/base/user_error.h"
-#include "haptic_server/core/tick/accuracy_switch.h"
+#include "haptic_server/core/tick/tick_choices.h"
 #include "haptic_server/recording/journal/build_facts.h"
 #include "haptic_server/scene/setup/scene_effects.h"
 #include "haptic_server/scene/setup/scene_materials.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "haptic_server/core/telemetry/effect_figure.h"
-#include "haptic_server/core/telemetry/recorded_effects.h"
+#include "haptic_server/core/telemetry/effect_record.h"
 #include "haptic_server/core/tool/burr.h"
 #include "haptic_server/recording/statistics/effect_statistics.h"
 #include "haptic_server/recording/statistics/event_sum.h"

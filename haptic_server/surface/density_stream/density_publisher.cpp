@@ -56,10 +56,7 @@ size_t DensityPublisher::round(int64_t now_ns, int64_t most_bytes) {
         sample.session = session_;
         sample.brick = brick;
         dds::setPayload(sample, payload);
-        if (writer_.write(sample)) {
-            ++written_bricks_;
-            written_bytes_ += payload.size();
-        }
+        written_bricks_ += writer_.write(sample);
         charged += std::max(payload.size(), kMinCharge);
         return int64_t(charged) < most_bytes && monotonicNowNs() - now_ns < kLongestRound_ns;
     });

@@ -29,14 +29,13 @@ class DensityPublisher {
     size_t round(int64_t now_ns, int64_t most_bytes);
 
     uint64_t writtenBricks() const { return written_bricks_; }
-    uint64_t writtenBytes() const { return written_bytes_; }
 
   private:
     void takeWishes(int64_t now_ns);
 
     uint32_t session_;
     DensityStream stream_;
-    uint64_t written_bricks_ = 0, written_bytes_ = 0;
+    uint64_t written_bricks_ = 0;
     dds::Writer<dds::DensityBrickSample> writer_;
     dds::Reader<dds::DensityWishSample> reader_;
 };

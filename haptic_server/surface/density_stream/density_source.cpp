@@ -12,12 +12,9 @@ constexpr size_t kVoxelsPerBrick =
 // Calls visit(first voxel, place in the brick) for each row along x.
 template <class Visit>
 void forEachRowOf(const IndexBox& voxels, Visit&& visit) {
-    constexpr size_t kEdge = DensitySource::kBrickVoxels;
-    forEachIndex({voxels.min, {voxels.min.x(), voxels.max.y(), voxels.max.z()}},
-                 [&](const Eigen::Vector3i& first) {
-                     const Eigen::Vector3i at = first - voxels.min;
-                     visit(first, kEdge * (size_t(at.y()) + kEdge * size_t(at.z())));
-                 });
+    forEachRow(voxels, [&](const Eigen::Vector3i& first) {
+        visit(first, placeIn(Eigen::Vector3i::Constant(DensitySource::kBrickVoxels), first - voxels.min));
+    });
 }
 
 }  // namespace
@@ -46,8 +43,7 @@ std::vector<MaterialId> DensitySource::materials(uint32_t brick) const {
     std::vector<MaterialId> materials(kVoxelsPerBrick, kNoMaterial);
     const IndexBox voxels = voxelsOf(brick);
     forEachIndex(voxels, [&](const Eigen::Vector3i& v) {
-        const Eigen::Vector3i at = v - voxels.min;
-        materials[size_t(at.x() + kBrickVoxels * (at.y() + kBrickVoxels * at.z()))] =
+        materials[placeIn(Eigen::Vector3i::Constant(kBrickVoxels), v - voxels.min)] =
             properties_->material(v);
     });
     return materials;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "haptic_server/core/volume/marching_cubes_table.h"
 #include "haptic_server/surface/mesh/smooth_gradient.h"
 
 namespace bonemill {
@@ -128,6 +127,9 @@ void LeafMesher::addVertex(const Eigen::Vector3i& local, int axis) {
     const Eigen::Vector3i voxel = first_voxel_ + local;
     const Eigen::Vector3i next = voxel + Eigen::Vector3i::Unit(axis);
     const float fraction = float(steps) / float(grid_.stepsPerCell());
+    const auto gradientAt = [&](const Eigen::Vector3i& at, size_t corner) {
+        return smoothGradient(at, volume_.dims(), inverse_spacing_, density_.data() + corner, stride_);
+    };
     const Eigen::Vector3f gradient =
         gradientAt(voxel, low) * (1 - fraction) + gradientAt(next, high) * fraction;
     // A one-voxel plate or grain has no gradient: the way out of the bone along the edge is a normal too.
@@ -163,14 +165,6 @@ MaterialId LeafMesher::materialUnder(const Eigen::Vector3i& inside, size_t corne
     const bool is_denser_below = density_[below_corner] >= volume_.iso() &&
                                  properties_->original(below) > properties_->original(inside);
     return properties_->material(is_denser_below ? below : inside);
-}
-
-Eigen::Vector3f LeafMesher::gradientAt(const Eigen::Vector3i& voxel, size_t corner) const noexcept {
-    return smoothGradient(voxel, volume_.dims(), inverse_spacing_, density_.data() + corner, stride_);
-}
-
-NodeMesh meshLeaf(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf) {
-    return LeafMesher(volume, lattice).mesh(leaf).value();
 }
 
 }  // namespace bonemill

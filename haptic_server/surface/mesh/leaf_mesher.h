@@ -47,7 +47,6 @@ class LeafMesher {
   private:
     void readVoxels(const IndexBox& cells);
     bool hasSurface() const noexcept;
-    Eigen::Vector3f gradientAt(const Eigen::Vector3i& voxel, size_t corner) const noexcept;
     void meshCells();
     void emitCell(int config, const Eigen::Vector3i& cell);
     uint32_t vertexOnEdge(const Eigen::Vector3i& local, int axis);
@@ -79,8 +78,5 @@ class LeafMesher {
     std::vector<uint8_t> materials_;     // per vertex, with properties or zones
     std::vector<uint32_t> edge_vertex_;  // per corner and axis: vertex on the edge that starts there
 };
-
-// The mesh is that of a volume at rest.
-NodeMesh meshLeaf(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf);
 
 }  // namespace bonemill

@@ -4,6 +4,9 @@
 // stepsPerCell() * (i, j, k). Thread-safe after construction; the lattice must outlive it.
 #pragma once
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "common/geometry/node_mesh.h"
 #include "haptic_server/core/volume/leaf_lattice.h"
 
@@ -18,12 +21,20 @@ class MeshGrid {
     // Throws std::invalid_argument when a leaf is so large (over 21845 cells) that 16 bits cannot hold
     // its vertices.
     MeshGrid(const VoxelVolume& volume, const LeafLattice& lattice,
-             int most_steps_per_cell = kMaxStepsPerCell);
+             int most_steps_per_cell = kMaxStepsPerCell)
+        : lattice_(lattice),
+          steps_per_cell_(std::min(most_steps_per_cell, kMaxLocalSteps / lattice.leafCells().maxCoeff())),
+          spacing_(volume.spacing()),
+          step_(spacing_ / steps_per_cell_) {
+        if (steps_per_cell_ < kMinStepsPerCell) throw std::invalid_argument("octree leaf too large to mesh");
+    }
 
     int stepsPerCell() const noexcept { return steps_per_cell_; }
 
     // This is the first cell's low corner, in V and m, and the same in steps.
-    Eigen::Vector3f leafOrigin(LeafId leaf) const noexcept;
+    Eigen::Vector3f leafOrigin(LeafId leaf) const noexcept {
+        return spacing_.cwiseProduct(lattice_.cellsOf(leaf).min.cast<double>()).cast<float>();
+    }
     Eigen::Vector3f step() const noexcept { return step_.cast<float>(); }
     Eigen::Vector3i leafOriginSteps(LeafId leaf) const noexcept {
         return lattice_.cellsOf(leaf).min * steps_per_cell_;
@@ -38,6 +49,10 @@ class MeshGrid {
     }
 
   private:
+    static constexpr int kMaxLocalSteps = 65535;  // PackedVertex coordinates are 16 bit
+    // A vertex keeps one step away from both ends of its edge, and needs one left.
+    static constexpr int kMinStepsPerCell = 3;
+
     const LeafLattice& lattice_;
     int steps_per_cell_;
     Eigen::Vector3d spacing_;  // m

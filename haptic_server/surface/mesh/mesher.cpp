@@ -47,10 +47,8 @@ Mesher::PassResult Mesher::pass(const Sink& sink, uint32_t max_leaves) {
 
 bool Mesher::catchUp(const IndexBox& leaves, const Sink& sink) {
     bool is_done = true;
-    for (int k = leaves.min.z(); k <= leaves.max.z(); ++k)
-        for (int j = leaves.min.y(); j <= leaves.max.y(); ++j)
-            for (int i = leaves.min.x(); i <= leaves.max.x(); ++i)
-                is_done &= catchUp(lattice_.leafId({i, j, k}), sink);
+    forEachIndex(leaves,
+                 [&](const Eigen::Vector3i& leaf) { is_done &= catchUp(lattice_.leafId(leaf), sink); });
     return is_done;
 }
 

@@ -93,9 +93,7 @@ class StructureSurface {
         return stride;
     }
     bool isInside(size_t sample) const { return share_[sample] > 0.5f; }
-    size_t indexOf(const Eigen::Vector3i& at) const {
-        return size_t(at.x()) + size_t(size_.x()) * (size_t(at.y()) + size_t(size_.y()) * size_t(at.z()));
-    }
+    size_t indexOf(const Eigen::Vector3i& at) const { return placeIn(size_, at); }
     size_t cornerOffset(int corner) const { return indexOf({corner & 1, corner >> 1 & 1, corner >> 2 & 1}); }
     uint32_t vertexOn(const Eigen::Vector3i& cell, const CubeEdge& edge) {
         const size_t place = indexOf(cell) + cornerOffset(edge.low_corner);

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "haptic_server/core/effects/make_effects.h"
+#include "haptic_server/core/effects/effect_host.h"
 #include "haptic_server/core/tick/fixed_tick.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/support/every_effect_scene.h"

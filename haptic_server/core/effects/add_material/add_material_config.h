@@ -1,4 +1,4 @@
-// Free forming, as a scene asks for it (add_material.h).
+// Free forming, as a scene asks for it (add_material.cpp).
 #pragma once
 
 #include "haptic_server/core/effects/effect_declaration.h"

@@ -1,4 +1,4 @@
-// Vibration of a burr that cuts, as a scene asks for it (burr_vibration.h).
+// Vibration of a burr that cuts, as a scene asks for it (burr_vibration.cpp).
 #pragma once
 
 #include "haptic_server/core/effects/effect_declaration.h"
@@ -17,6 +17,10 @@ struct BurrVibrationConfig {
         });
     }
     std::unique_ptr<HapticEffect> make(const EffectNeeds& needs) const;
+
+    static constexpr double kLowest = 50, kHighest = 400;            // Hz
+    static constexpr double kSmoothing = 10e-3;                      // s
+    static double frequency(double spin_speed, double dt) noexcept;  // Hz
 
     double amplitude_per_force;  // N per N of cutting force μ_c Σ F
     double max_amplitude;        // N

@@ -1,4 +1,4 @@
-// The force of cutting on the hand, as a scene asks for it (cutting_force.h).
+// The force of cutting on the hand, as a scene asks for it (cutting_force.cpp).
 #pragma once
 
 #include "haptic_server/core/effects/effect_declaration.h"

@@ -1,4 +1,4 @@
-// Removal by energy, as a scene asks for it (energy_removal.h).
+// Removal by energy, as a scene asks for it (energy_removal.cpp).
 #pragma once
 
 #include "haptic_server/core/effects/effect_declaration.h"
@@ -20,6 +20,7 @@ struct EnergyRemovalConfig {
         });
     }
     std::unique_ptr<HapticEffect> make(const EffectNeeds& needs) const;
+    static constexpr size_t kCellsPerContact = 250;  // one takes as long as so many milled cells
 
     double specific_energy;                  // u_ref, J/m³: of bone of the reference density
     double reference_density = kMaxDensity;  // counts

@@ -1,31 +1,44 @@
-#include "haptic_server/core/effects/material_stiffness/material_stiffness.h"
-
+// Contact is as stiff as the material: each contact point's energy is scaled by the factor of the voxel just
+// inside the bone. The factors do not change, so that contact stays the gradient of an energy.
 #include <algorithm>
 
-#include "haptic_server/core/effects/make_effects.h"
+#include "haptic_server/core/effects/effect_configs.h"
+#include "haptic_server/core/effects/effect_host.h"
+#include "haptic_server/core/effects/haptic_effect.h"
 #include "haptic_server/core/effects/voxel_inside.h"
 
 namespace bonemill {
+namespace {
 
-MaterialStiffness::MaterialStiffness(std::shared_ptr<const BoneProperties> properties,
-                                     const MaterialTable& materials, const Eigen::Vector3d& spacing)
-    : HapticEffect(kScales), properties_(std::move(properties)), spacing_(spacing.cast<float>()) {
-    for (const MaterialProperties& material : materials) factor_.push_back(float(material.stiffness_factor));
-}
-
-double MaterialStiffness::scale(const EffectTick&, Candidates& candidates, const Eigen::Vector3d& origin_V,
-                                const ToolField&, const Pose&) noexcept {
-    const Eigen::Vector3f origin = origin_V.cast<float>();
-    float largest = 1;
-    for (size_t n = 0; n < candidates.count; ++n) {
-        const Eigen::Vector3i voxel =
-            voxelInside(origin + candidates.position(n), candidates.normal(n), spacing_);
-        const float factor = factor_[properties_->material(voxel)];
-        candidates.weight[n] *= factor;
-        largest = std::max(largest, factor);
+class MaterialStiffness final : public HapticEffect {
+  public:
+    MaterialStiffness(std::shared_ptr<const BoneProperties> properties, const MaterialTable& materials,
+                      const Eigen::Vector3d& spacing)
+        : HapticEffect(kScales), properties_(std::move(properties)), spacing_(spacing.cast<float>()) {
+        for (const MaterialProperties& material : materials)
+            factor_.push_back(float(material.stiffness_factor));
     }
-    return double(largest);
-}
+    double scale(const EffectTick&, Candidates& candidates, const Eigen::Vector3d& origin_V, const ToolField&,
+                 const Pose&) noexcept override {
+        const Eigen::Vector3f origin = origin_V.cast<float>();
+        float largest = 1;
+        for (size_t n = 0; n < candidates.count; ++n) {
+            const Eigen::Vector3i voxel =
+                voxelInside(origin + candidates.position(n), candidates.normal(n), spacing_);
+            const float factor = factor_[properties_->material(voxel)];
+            candidates.weight[n] *= factor;
+            largest = std::max(largest, factor);
+        }
+        return double(largest);
+    }
+
+  private:
+    std::shared_ptr<const BoneProperties> properties_;
+    std::vector<float> factor_;  // by MaterialId
+    Eigen::Vector3f spacing_;
+};
+
+}  // namespace
 
 std::unique_ptr<HapticEffect> MaterialStiffnessConfig::make(const EffectNeeds& needs) const {
     return std::make_unique<MaterialStiffness>(needs.all.properties, needs.all.materials,

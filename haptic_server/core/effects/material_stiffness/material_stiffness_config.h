@@ -1,4 +1,4 @@
-// Materials are as stiff as their stiffness_factor says (material_stiffness.h). No field of `effects` lists
+// Materials are as stiff as their stiffness_factor says (material_stiffness.cpp). No field of `effects` lists
 // this effect: it is there where a material has a factor. Needs EffectConfigs::properties.
 #pragma once
 

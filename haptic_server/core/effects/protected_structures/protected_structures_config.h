@@ -1,4 +1,4 @@
-// What must not be touched, as a scene asks for it and as ticks tell of it (protected_structures.h). Needs
+// What must not be touched, as a scene asks for it and as ticks tell of it (protected_structures.cpp). Needs
 // materials with is_protected, and EffectConfigs::protected_field.
 #pragma once
 

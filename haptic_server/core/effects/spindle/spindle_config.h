@@ -1,4 +1,4 @@
-// The motor that turns the burr, as a scene asks for it (spindle.h).
+// The motor that turns the burr, as a scene asks for it (spindle.cpp).
 #pragma once
 
 #include "haptic_server/core/effects/effect_declaration.h"
@@ -19,6 +19,9 @@ struct SpindleConfig {
         });
     }
     std::unique_ptr<HapticEffect> make(const EffectNeeds& needs) const;
+    // Returns the speed after dt in rad/s, from the `speed` before, the `wanted` Ω₀ and dry friction of at
+    // most `load` N·m.
+    double speedAfter(double speed, double wanted, double load, double dt) const noexcept;
 
     double inertia;     // J, kg·m²
     double max_torque;  // T, N·m

@@ -2,6 +2,7 @@
 // axes V, torques about the tool point. It is RT-safe, for the tick thread only.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <span>
 
@@ -25,13 +26,44 @@ class ContactGroups {
 
     // Gathers the last tick's contacts: one on the burr with burr_share of its force, any other with all of
     // it. What has no force is left out.
-    void gather(const EffectTick& tick, double burr_share) noexcept;
+    void gather(const EffectTick& tick, double burr_share) noexcept {
+        clear();
+        const auto shareOf = [&](size_t n) { return tick.is_on_burr[n] ? burr_share : 1.0; };
+        const Eigen::Quaterniond R_TV = tick.X_VT_start.rotation.conjugate();
+        Eigen::AlignedBox3d all;
+        for (size_t n = 0; n < tick.contacts.size(); ++n)
+            if (shareOf(n) > 0) all.extend(R_TV * tick.contacts[n].r_V.cast<double>());
+        if (all.isEmpty()) return;
+
+        std::array<ContactGroup, kMax> boxes{};
+        const Eigen::Vector3d per_box = kBoxesPerAxis / all.sizes().array().max(kMinBox);
+        for (size_t n = 0; n < tick.contacts.size(); ++n) {
+            const SurfaceContact& contact = tick.contacts[n];
+            const double force = shareOf(n) * double(contact.force);
+            if (!(force > 0)) continue;
+            const Eigen::Vector3d r = contact.r_V.cast<double>(), normal = contact.push_V.cast<double>();
+            const Eigen::Vector3d place = (R_TV * r - all.min()).cwiseProduct(per_box);
+            const Eigen::Array3i box = place.array().floor().cast<int>().max(0).min(kBoxesPerAxis - 1);
+            ContactGroup& group =
+                boxes[size_t(box.x() + kBoxesPerAxis * (box.y() + kBoxesPerAxis * box.z()))];
+            group.force += force;
+            group.r += force * r;
+            group.tangential += force * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
+        }
+        for (const ContactGroup& box : boxes) {
+            if (!(box.force > 0)) continue;
+            groups_[count_++] = {box.force, box.r / box.force, box.tangential / box.force};
+            force_ += box.force;
+        }
+    }
     void clear() noexcept { count_ = 0, force_ = 0; }
 
     std::span<const ContactGroup> groups() const noexcept { return {groups_.data(), count_}; }
     double force() const noexcept { return force_; }  // N, of all
 
   private:
+    static constexpr double kMinBox = 1e-9;  // m: of contacts at one place
+
     std::array<ContactGroup, kMax> groups_;
     size_t count_ = 0;
     double force_ = 0;

@@ -206,12 +206,10 @@ void HeatGrid::reviewDead() noexcept {
         --stale_dead_;
         --lookups_;
         for (int cell = 0; cell < kCells; ++cell) {
-            uint64_t& bits = dead.bits[cell / 64];
-            const uint64_t bit = uint64_t(1) << (cell % 64);
             const Eigen::Vector3i place(cell & (kEdge - 1), cell >> kShift & (kEdge - 1),
                                         cell >> (2 * kShift));
-            if (!(bits & bit) || isBone(dead.brick * kEdge + place)) continue;
-            bits &= ~bit;
+            if (!dead.is_dead[size_t(cell)] || isBone(dead.brick * kEdge + place)) continue;
+            dead.is_dead[size_t(cell)] = false;
             --dead_count_;
         }
     }
@@ -337,21 +335,19 @@ void HeatGrid::markDead(Brick& brick, int cell) noexcept {
     if (slot == kNone) {
         if (dead_used_ == dead_pool_.size()) return;
         slot = dead_directory_[directoryIndex(brick.index)] = uint32_t(dead_used_++);
-        dead_pool_[slot] = {.bits = {}, .brick = brick.index, .is_stale = false};
+        dead_pool_[slot] = {.is_dead = {}, .brick = brick.index, .is_stale = false};
     }
-    uint64_t& bits = dead_pool_[slot].bits[cell / 64];
-    const uint64_t bit = uint64_t(1) << (cell % 64);
-    dead_count_ += !(bits & bit);
-    bits |= bit;
+    auto is_dead = dead_pool_[slot].is_dead[size_t(cell)];
+    dead_count_ += !is_dead;
+    is_dead = true;
 }
 
 void HeatGrid::removeDead(const Brick& brick, int cell) noexcept {
     const uint32_t slot = deadSlotOf(brick.index);
     if (slot == kNone) return;
-    uint64_t& bits = dead_pool_[slot].bits[cell / 64];
-    const uint64_t bit = uint64_t(1) << (cell % 64);
-    dead_count_ -= (bits & bit) != 0;
-    bits &= ~bit;
+    auto is_dead = dead_pool_[slot].is_dead[size_t(cell)];
+    dead_count_ -= is_dead;
+    is_dead = false;
 }
 
 bool HeatGrid::isSettled(const Brick& brick) const noexcept {

@@ -8,10 +8,11 @@
 // The frame is V. Construction allocates; all else is RT-safe, for the tick thread only.
 #pragma once
 
+#include <bitset>
 #include <cstdint>
 #include <vector>
 
-#include "haptic_server/core/effects/thermal/heat_config.h"
+#include "haptic_server/core/effects/thermal/thermal_config.h"
 #include "haptic_server/core/volume/voxel_volume.h"
 
 namespace bonemill {
@@ -59,10 +60,7 @@ class HeatGrid {
         uint8_t open_faces[kCells];  // of bone, towards air
     };
 
-    size_t directoryIndex(const Eigen::Vector3i& brick) const noexcept {
-        return size_t(brick.x()) +
-               size_t(bricks_.x()) * (size_t(brick.y()) + size_t(bricks_.y()) * size_t(brick.z()));
-    }
+    size_t directoryIndex(const Eigen::Vector3i& brick) const noexcept { return placeIn(bricks_, brick); }
     bool isInside(const Eigen::Vector3i& brick) const noexcept {
         return (brick.array() >= 0).all() && (brick.array() < bricks_.array()).all();
     }
@@ -117,7 +115,7 @@ class HeatGrid {
     // Dead cells outlive their brick's memory with a bit each. A slot in the directory counts only while it
     // is in use by that brick (deadSlotOf()), so that all are forgotten at once.
     struct DeadCells {
-        uint64_t bits[kCells / 64];
+        std::bitset<kCells> is_dead;
         Eigen::Vector3i brick;
         bool is_stale;  // its bone may be gone
     };

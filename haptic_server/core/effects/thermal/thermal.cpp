@@ -1,53 +1,71 @@
-#include "haptic_server/core/effects/thermal/thermal.h"
-
-#include <algorithm>
+// Cutting heats the bone: a share of the friction power μ_c |Ω| Σ F ρ of the burr's contacts goes into the
+// bone where they touch, spreads (heat_grid.h), and leaves it to irrigation while the pedal is down, to the
+// dry surroundings and to the blood. The rest of the power goes with the chips.
 #include <cmath>
 
 #include "haptic_server/core/effects/burr_speed.h"
-#include "haptic_server/core/effects/make_effects.h"
+#include "haptic_server/core/effects/effect_configs.h"
+#include "haptic_server/core/effects/effect_host.h"
+#include "haptic_server/core/effects/haptic_effect.h"
+#include "haptic_server/core/effects/thermal/heat_grid.h"
 
 namespace bonemill {
 namespace {
 
 constexpr size_t kMaxSources = 256;  // in a tick; of more contacts every nth takes the heat of n, in turn
 
+class Thermal final : public HapticEffect {
+  public:
+    // Keeps a reference to the bone. dt is the time of a tick, in s.
+    Thermal(const ThermalConfig& config, const BoneModel& bone, double dt)
+        : HapticEffect(kReadsContacts), config_(config), heat_(config.heat, bone.volume, dt) {}
+    void restart(Restart why) noexcept override {
+        if (why == Restart::kBonePutBack) heat_.noteChangeEverywhere();
+        if (why == Restart::kScanPutBack) heat_.forget();
+    }
+    void mill(EffectTick&, BoneModel&, MillingResult& result) noexcept override {
+        heat_.noteChange(result.changed);
+    }
+    void finish(EffectTick& tick) noexcept override {
+        putIn(tick);
+        heat_.irrigate(tick.X_VT.position, tick.is_pedal_down ? config_.irrigation_radius : 0);
+        heat_.step();
+        EffectRecord& record = tick.record;
+        const double hottest = heat_.hottest();
+        record.temperature = float(hottest);
+        record.necrotic_volume = float(heat_.necroticVolume());
+        if (hottest >= config_.heat.necrosis_temperature) record.events |= kEventTooHot;
+    }
+
+  private:
+    void putIn(const EffectTick& tick) noexcept {
+        const double per_moment = tick.tool->burr.friction * std::abs(tick.spin_speed);  // W per N·m
+        if (per_moment == 0) return;
+        size_t count = 0;
+        double chosen = 0;
+        const size_t every = tick.burr_load.contacts / kMaxSources + 1;
+        const size_t first = turn_++ % every;
+        const auto isChosen = [&](size_t n) { return n % every == first; };
+        forEachBurrContact(tick, [&](const SurfaceContact& contact, const Eigen::Vector3d&, double rho) {
+            if (isChosen(count++)) chosen += double(contact.force) * rho;
+        });
+        if (chosen == 0) return;
+        const double heat_per_moment =
+            config_.heat_share * per_moment * tick.dt * (tick.burr_load.moment / chosen);
+        count = 0;
+        forEachBurrContact(tick, [&](const SurfaceContact& contact, const Eigen::Vector3d& r, double rho) {
+            if (!isChosen(count++)) return;
+            heat_.addHeat(tick.X_VT.position + r, -contact.push_V.cast<double>(),
+                          heat_per_moment * double(contact.force) * rho);
+        });
+    }
+
+    ThermalConfig config_;
+    HeatGrid heat_;
+    size_t turn_ = 0;
+};
+
 }  // namespace
-
-Thermal::Thermal(const ThermalConfig& config, const BoneModel& bone, double dt)
-    : HapticEffect(kReadsContacts), config_(config), heat_(config.heat, bone.volume, dt) {}
-
-void Thermal::putIn(const EffectTick& tick) noexcept {
-    const double per_moment = tick.tool->burr.friction * std::abs(tick.spin_speed);  // W per N·m
-    if (per_moment == 0) return;
-    size_t count = 0;
-    double chosen = 0;
-    const size_t every = tick.burr_load.contacts / kMaxSources + 1;
-    const size_t first = turn_++ % every;
-    const auto isChosen = [&](size_t n) { return n % every == first; };
-    forEachBurrContact(tick, [&](const SurfaceContact& contact, const Eigen::Vector3d&, double rho) {
-        if (isChosen(count++)) chosen += double(contact.force) * rho;
-    });
-    if (chosen == 0) return;
-    const double heat_per_moment =
-        config_.heat_share * per_moment * tick.dt * (tick.burr_load.moment / chosen);
-    count = 0;
-    forEachBurrContact(tick, [&](const SurfaceContact& contact, const Eigen::Vector3d& r, double rho) {
-        if (!isChosen(count++)) return;
-        heat_.addHeat(tick.X_VT.position + r, -contact.push_V.cast<double>(),
-                      heat_per_moment * double(contact.force) * rho);
-    });
-}
-
-void Thermal::finish(EffectTick& tick) noexcept {
-    putIn(tick);
-    heat_.irrigate(tick.X_VT.position, tick.is_pedal_down ? config_.irrigation_radius : 0);
-    heat_.step();
-    EffectRecord& record = tick.record;
-    const double hottest = heat_.hottest();
-    record.temperature = float(hottest);
-    record.necrotic_volume = float(heat_.necroticVolume());
-    if (hottest >= config_.heat.necrosis_temperature) record.events |= kEventTooHot;
-}
 
 std::unique_ptr<HapticEffect> ThermalConfig::make(const EffectNeeds& needs) const {
     return std::make_unique<Thermal>(*this, needs.bone, needs.room.dt);

@@ -1,9 +1,17 @@
-#include "haptic_server/core/effects/time_removal/time_removal.h"
-
+// This is the thesis' removal: what is inside the burr goes at a rate of density per time, however hard it
+// is pressed.
+//
+// In the gradient law the tool is moved through what the tick will cut: the surface that it meets on the burr
+// lies as far back as milling will bring it by the end of the tick (milling/timed_milling.h: removalSpeed()).
+// So the burr feels no bone up to that speed, and bone that is as stiff as ever beyond it, whatever the
+// tick's length. After the force went out, what the burr swept on its way is removed.
 #include <algorithm>
 #include <cmath>
 
-#include "haptic_server/core/effects/make_effects.h"
+#include "haptic_server/core/effects/effect_configs.h"
+#include "haptic_server/core/effects/effect_host.h"
+#include "haptic_server/core/effects/haptic_effect.h"
+#include "haptic_server/core/milling/timed_milling.h"
 
 namespace bonemill {
 namespace {
@@ -18,61 +26,66 @@ void squaredDistances(const Candidates& candidates, size_t first, size_t count, 
     }
 }
 
-}  // namespace
-
-TimeRemoval::TimeRemoval(const TimeRemovalConfig& config, const BoneModel& bone, const EffectRoom& room)
-    : HapticEffect(kScales),
-      longest_way_(room.longest_way),
-      milling_({.removal_rate = config.rate,
-                .addition_rate = 0,
-                .most_cells = room.most_cells,
-                .longest_way = room.longest_way},
-               bone.volume, bone.lattice, room.largest_burr_radius) {}
-
-void TimeRemoval::begin(EffectTick& tick) noexcept {
-    const bool is_stalled = tick.tool->burr.speed != 0 && tick.spin_speed == 0;
-    is_cutting_ = tick.is_pedal_down && !is_stalled;
-    milling_.setShape(tick.shape);
-    milling_.setBurrRadius(tick.tool->burr.radius);
-}
-
-double TimeRemoval::scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,
-                          const ToolField& tool, const Pose& X_VT) noexcept {
-    if (!is_cutting_) return 1;
-    const auto radius = float(tick.tool->burr.radius + burrSlack(tool));
-    const auto recession = float(milling_.removalSpeed() * tick.dt);
-    const float reach_squared = (radius + recession) * (radius + recession);
-    const Eigen::Vector3f p_OB = (X_VT.position - origin_V).cast<float>();
-    const Eigen::Vector3f axis = (X_VT.rotation * Eigen::Vector3d::UnitY()).cast<float>();
-    constexpr size_t kBatch = 64;
-    float squared[kBatch];
-    for (size_t first = 0; first < candidates.count; first += kBatch) {
-        const size_t count = std::min(kBatch, candidates.count - first);
-        squaredDistances(candidates, first, count, p_OB, squared);
-        for (size_t n = first; n < first + count; ++n) {
-            if (!(squared[n - first] < reach_squared && squared[n - first] > 0)) continue;
-            const Eigen::Vector3f r = candidates.position(n) - p_OB;
-            const float distance = std::sqrt(squared[n - first]);
-            // Outside of the burr, on the hand's side, the shaft may be nearer.
-            if (distance > radius && r.dot(axis) > 0) {
-                const Eigen::Vector3d p_V = origin_V + candidates.position(n).cast<double>();
-                if (distance - radius > float(tool.sample(X_VT.inverse() * p_V).distance)) continue;
-            }
-            const float share = recession / distance;
-            candidates.x[n] += share * r.x();
-            candidates.y[n] += share * r.y();
-            candidates.z[n] += share * r.z();
-        }
+class TimeRemoval final : public HapticEffect {
+  public:
+    TimeRemoval(const TimeRemovalConfig& config, const BoneModel& bone, const EffectRoom& room)
+        : HapticEffect(kScales),
+          longest_way_(room.longest_way),
+          milling_({.removal_rate = config.rate,
+                    .addition_rate = 0,
+                    .most_cells = room.most_cells,
+                    .longest_way = room.longest_way},
+                   bone.volume, bone.lattice, room.largest_burr_radius) {}
+    void begin(EffectTick& tick) noexcept override {
+        const bool is_stalled = tick.tool->burr.speed != 0 && tick.spin_speed == 0;
+        is_cutting_ = tick.is_pedal_down && !is_stalled;
+        milling_.setShape(tick.shape);
+        milling_.setBurrRadius(tick.tool->burr.radius);
     }
-    return 1;
-}
+    double scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,
+                 const ToolField& tool, const Pose& X_VT) noexcept override {
+        if (!is_cutting_) return 1;
+        const auto radius = float(tick.tool->burr.radius + burrSlack(tool));
+        const auto recession = float(milling_.removalSpeed() * tick.dt);
+        const float reach_squared = (radius + recession) * (radius + recession);
+        const Eigen::Vector3f p_OB = (X_VT.position - origin_V).cast<float>();
+        const Eigen::Vector3f axis = (X_VT.rotation * Eigen::Vector3d::UnitY()).cast<float>();
+        constexpr size_t kBatch = 64;
+        float squared[kBatch];
+        for (size_t first = 0; first < candidates.count; first += kBatch) {
+            const size_t count = std::min(kBatch, candidates.count - first);
+            squaredDistances(candidates, first, count, p_OB, squared);
+            for (size_t n = first; n < first + count; ++n) {
+                if (!(squared[n - first] < reach_squared && squared[n - first] > 0)) continue;
+                const Eigen::Vector3f r = candidates.position(n) - p_OB;
+                const float distance = std::sqrt(squared[n - first]);
+                // Outside of the burr, on the hand's side, the shaft may be nearer.
+                if (distance > radius && r.dot(axis) > 0) {
+                    const Eigen::Vector3d p_V = origin_V + candidates.position(n).cast<double>();
+                    if (distance - radius > float(tool.sample(X_VT.inverse() * p_V).distance)) continue;
+                }
+                const float share = recession / distance;
+                candidates.x[n] += share * r.x();
+                candidates.y[n] += share * r.y();
+                candidates.z[n] += share * r.z();
+            }
+        }
+        return 1;
+    }
+    void mill(EffectTick& tick, BoneModel& bone, MillingResult& result) noexcept override {
+        if (!is_cutting_) return;
+        const bool is_swept = tick.shape == MillingShape::kSubVoxel;
+        const BurrWay way(tick.X_VT_start.position, tick.X_VT.position, is_swept ? longest_way_ : 0);
+        result.include(milling_.apply(bone.volume, bone.lattice, bone.shell, way, -1, tick.dt));
+    }
 
-void TimeRemoval::mill(EffectTick& tick, BoneModel& bone, MillingResult& result) noexcept {
-    if (!is_cutting_) return;
-    const bool is_swept = tick.shape == MillingShape::kSubVoxel;
-    const BurrWay way(tick.X_VT_start.position, tick.X_VT.position, is_swept ? longest_way_ : 0);
-    result.include(milling_.apply(bone.volume, bone.lattice, bone.shell, way, -1, tick.dt));
-}
+  private:
+    double longest_way_;  // m
+    TimedMilling milling_;
+    bool is_cutting_ = false;
+};
+
+}  // namespace
 
 std::unique_ptr<HapticEffect> TimeRemovalConfig::make(const EffectNeeds& needs) const {
     return std::make_unique<TimeRemoval>(*this, needs.bone, needs.room);

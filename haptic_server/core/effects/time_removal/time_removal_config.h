@@ -1,4 +1,4 @@
-// Removal at a rate of density, by the thesis' law, as a scene asks for it (time_removal.h).
+// Removal at a rate of density, by the thesis' law, as a scene asks for it (time_removal.cpp).
 #pragma once
 
 #include "haptic_server/core/effects/effect_declaration.h"

@@ -1,4 +1,4 @@
-// A region round protected structures that pushes the tool out, as a scene asks for it (virtual_fixture.h).
+// A region round protected structures that pushes the tool out, as a scene asks for it (virtual_fixture.cpp).
 // Needs EffectConfigs::protected_field.
 #pragma once
 

@@ -1,7 +1,7 @@
 // Random and mutated bytes go through the parsers of what is said about densities, as in topics_fuzz.cpp.
 #include <gtest/gtest.h>
 
-#include "haptic_server/surface/density_stream/density_wishes.h"
+#include "haptic_server/surface/density_stream/density_stream.h"
 #include "render_client/link/subscribe/density_payloads.h"
 #include "tests/support/mutated_bytes.h"
 

@@ -21,7 +21,7 @@ class SphereOnPlane : public testing::Test {
                 Eigen::Vector3i::Constant(16), ShellConfig{}),
           tool_(test::sphereTool(kToolRadius, kVoxel / 2)) {}
 
-    ContactResult contactAt(const Pose& X_VT) const {
+    ContactWrench contactAt(const Pose& X_VT) const {
         return penaltyContact(config_, bone_.volume, bone_.lattice, bone_.shell, tool_, X_VT);
     }
     static Pose pressed(double depth) {
@@ -34,7 +34,7 @@ class SphereOnPlane : public testing::Test {
 };
 
 TEST_F(SphereOnPlane, NoContactNoForce) {
-    const ContactResult result = contactAt(pressed(-kVoxel));
+    const ContactWrench result = contactAt(pressed(-kVoxel));
     EXPECT_EQ(result.contacts, 0u);
     EXPECT_EQ(result.wrench.force.norm(), 0);
     EXPECT_EQ(result.derivative.norm(), 0);
@@ -59,20 +59,20 @@ TEST_F(SphereOnPlane, ForceIsTheSumOverThePointsOfTheExactSphere) {
         }
     ASSERT_GT(contacts, config_.full_stiffness_contacts);
     const double k = config_.point_stiffness * config_.full_stiffness_contacts / contacts;
-    const ContactResult result = contactAt(pose);
+    const ContactWrench result = contactAt(pose);
     EXPECT_EQ(result.contacts, contacts);
-    EXPECT_NEAR(result.max_penetration, deepest, 0.02 * deepest);
+    EXPECT_NEAR(result.max_depth, deepest, 0.02 * deepest);
     EXPECT_LT((result.wrench.force - k * sum).norm(), 0.02 * k * sum.norm());
 }
 
 TEST_F(SphereOnPlane, FewContactsKeepFullStiffness) {
     const double depth = 0.03e-3;
-    const ContactResult result = contactAt(pressed(depth));
+    const ContactWrench result = contactAt(pressed(depth));
     ASSERT_GT(result.contacts, 0u);
     ASSERT_LE(result.contacts, config_.full_stiffness_contacts);
     PenaltyContactConfig doubled = config_;
     doubled.point_stiffness *= 2;
-    const ContactResult stiff =
+    const ContactWrench stiff =
         penaltyContact(doubled, bone_.volume, bone_.lattice, bone_.shell, tool_, pressed(depth));
     EXPECT_NEAR(stiff.wrench.force.z() / result.wrench.force.z(), 2, 1e-12);
 }
@@ -89,7 +89,7 @@ Matrix6d printedDerivative(double k, double d, const Eigen::Vector3d& n, const E
 TEST_F(SphereOnPlane, SumsArePointByPointTheThesisFormulas) {
     const Pose pose = pressed(0.45e-3).incremented({0.2e-3, -0.1e-3, 0}, {0.3, 0.2, -0.7});
     const Pose off_center = pose * Pose{{0.1e-3, 0.05e-3, -0.2e-3}, Eigen::Quaterniond::Identity()};
-    const ContactResult result = contactAt(off_center);
+    const ContactWrench result = contactAt(off_center);
     const double k = config_.point_stiffness * config_.full_stiffness_contacts / result.contacts;
     Matrix6d derivative = Matrix6d::Zero();
     Wrench wrench;

@@ -1,5 +1,3 @@
-#include "haptic_server/core/effects/burr_vibration/burr_vibration.h"
-
 #include <gtest/gtest.h>
 
 #include <complex>
@@ -25,8 +23,8 @@ struct VibrationTest : testing::Test {
         bench.tick.spin_speed = 2 * M_PI * turns_per_s;
         for (int n = 0; n < ticks; ++n) {
             Wrench wrench;
-            vibration.begin(bench.tick);
-            vibration.addToHand(bench.tick, wrench);
+            vibration->begin(bench.tick);
+            vibration->addToHand(bench.tick, wrench);
             felt.push_back(wrench);
         }
     }
@@ -42,7 +40,7 @@ struct VibrationTest : testing::Test {
     }
 
     test::BurrTick bench;
-    BurrVibration vibration{test::kBurrVibration};
+    std::unique_ptr<HapticEffect> vibration = test::effectOf(test::kBurrVibration);
     std::vector<Wrench> felt;
 };
 
@@ -94,17 +92,17 @@ TEST_F(VibrationTest, IsExactlyNothingInTheAirAndWithoutSpin) {
 // However speed and load jump, no step is longer than the highest frequency at full amplitude makes it.
 TEST_F(VibrationTest, PhaseAndAmplitudeHaveNoJumps) {
     for (int n = 0; n < 40; ++n) run(37, n % 3 ? 40 : 0, 50 + 33.3 * (n % 11));
-    const double longest = 2 * std::sin(M_PI * BurrVibration::kHighest * bench.tick.dt);
-    const double ramp = bench.tick.dt / BurrVibration::kSmoothing;
+    const double longest = 2 * std::sin(M_PI * BurrVibrationConfig::kHighest * bench.tick.dt);
+    const double ramp = bench.tick.dt / BurrVibrationConfig::kSmoothing;
     for (size_t n = 1; n < felt.size(); ++n)
         ASSERT_LE(std::abs(sample(n) - sample(n - 1)), (longest + ramp) * test::kBurrVibration.max_amplitude);
 }
 
 TEST(Vibration, StaysBelowWhatTheLoopRateCarries) {
-    EXPECT_DOUBLE_EQ(BurrVibration::frequency(1e5, 1e-3), 400);
-    EXPECT_DOUBLE_EQ(BurrVibration::frequency(-1e5, 2e-3), 200);
-    EXPECT_DOUBLE_EQ(BurrVibration::frequency(0, 1e-3), 50);
-    EXPECT_DOUBLE_EQ(BurrVibration::frequency(2 * M_PI * 123, 1e-3), 123);
+    EXPECT_DOUBLE_EQ(BurrVibrationConfig::frequency(1e5, 1e-3), 400);
+    EXPECT_DOUBLE_EQ(BurrVibrationConfig::frequency(-1e5, 2e-3), 200);
+    EXPECT_DOUBLE_EQ(BurrVibrationConfig::frequency(0, 1e-3), 50);
+    EXPECT_DOUBLE_EQ(BurrVibrationConfig::frequency(2 * M_PI * 123, 1e-3), 123);
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "haptic_server/core/effects/cutting_force/cutting_force.h"
-
 #include <gtest/gtest.h>
 
 #include "haptic_server/core/effects/burr_speed.h"
@@ -21,15 +19,15 @@ struct CuttingForceTest : testing::Test {
     }
     EnergyTerm feltAfterBegin() {
         contacts.giveTo(bench.tick);
-        cutting.begin(bench.tick);
-        cutting.finish(bench.tick);
-        return cutting.energy(bench.tick, bench.tick.X_VT);
+        cutting->begin(bench.tick);
+        cutting->finish(bench.tick);
+        return cutting->energy(bench.tick, bench.tick.X_VT);
     }
 
     std::mt19937 random{7};
     test::BurrTick bench;
     test::ContactSet contacts;
-    CuttingForce cutting{kPrompt};
+    std::unique_ptr<HapticEffect> cutting = test::effectOf(kPrompt);
 };
 
 TEST_F(CuttingForceTest, PullsAgainstTheSpinWithFrictionTimesForce) {
@@ -70,7 +68,7 @@ TEST_F(CuttingForceTest, IsMinusTheGradientOfItsEnergyForFiniteStepsToo) {
     bench.tick.velocity_V = {0.02, -0.05, 0.03};
     bench.tick.angular_velocity_V = {1, 2, -3};
     feltAfterBegin();
-    const auto energy = [&](const Pose& pose) { return cutting.energy(bench.tick, pose); };
+    const auto energy = [&](const Pose& pose) { return cutting->energy(bench.tick, pose); };
     for (const double turn : {1e-3, 0.1, 1.0}) {
         const Pose pose =
             bench.tick.X_VT_start.incremented({1e-4, -2e-4, 1e-4}, turn * Vector3d(0.4, 0.8, -0.5));
@@ -82,7 +80,7 @@ TEST_F(CuttingForceTest, IsMinusTheGradientOfItsEnergyForFiniteStepsToo) {
 TEST_F(CuttingForceTest, HoldsBackTheToolsOwnMotion) {
     contacts.addOnBall(random, bench.tool.burr.radius, 30);
     feltAfterBegin();
-    const auto energy = [&](const Pose& pose) { return cutting.energy(bench.tick, pose); };
+    const auto energy = [&](const Pose& pose) { return cutting->energy(bench.tick, pose); };
     const EnergyTerm at_start = energy(bench.tick.X_VT_start);
     const Vector6d modes = test::eigenvaluesOf(at_start.stiffness);
     EXPECT_GE(modes[0], -1e-12 * modes[5]);
@@ -193,17 +191,17 @@ TEST_F(SlowDrillTest, AFlatEndCutsLittleAtItsMiddle) {
 
 TEST_F(CuttingForceTest, FollowsAChangeOfLoadWithItsTimeConstant) {
     constexpr double kTau = 20e-3;
-    CuttingForce smooth({.slow_speed = 0.01, .smoothing_time = kTau});
+    const auto smooth = test::effectOf(CuttingForceConfig{.slow_speed = 0.01, .smoothing_time = kTau});
     const Vector3d out = bench.tick.axis().unitOrthogonal();
     contacts.add(bench.tool.burr.radius * out, -out, 4);
     contacts.giveTo(bench.tick);
-    for (int n = 0; n < 20; ++n) smooth.begin(bench.tick);
-    smooth.finish(bench.tick);
+    for (int n = 0; n < 20; ++n) smooth->begin(bench.tick);
+    smooth->finish(bench.tick);
     // Backward Euler gives 1 − (1 + dt/τ)^(−n).
     const double full = 0.5 * 4 * 1e-3, share = 1 - std::pow(1 + bench.tick.dt / kTau, -20);
     EXPECT_NEAR(bench.tick.record.axis_torque, share * full, 0.01 * full);
-    smooth.restart(Restart::kOtherTool);
-    smooth.finish(bench.tick);
+    smooth->restart(Restart::kOtherTool);
+    smooth->finish(bench.tick);
     EXPECT_EQ(bench.tick.record.axis_torque, 0);
 }
 

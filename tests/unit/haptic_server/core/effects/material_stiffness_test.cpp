@@ -1,5 +1,3 @@
-#include "haptic_server/core/effects/material_stiffness/material_stiffness.h"
-
 #include <gtest/gtest.h>
 
 #include "tests/unit/haptic_server/core/effects/tissue_bench.h"

@@ -1,7 +1,6 @@
-#include "haptic_server/core/effects/protected_structures/protected_structures.h"
-
 #include <gtest/gtest.h>
 
+#include "haptic_server/core/effects/burr_probes.h"
 #include "tests/support/typical_effects.h"
 #include "tests/unit/haptic_server/core/effects/tissue_bench.h"
 

@@ -1,5 +1,3 @@
-#include "haptic_server/core/effects/thermal/thermal.h"
-
 #include <gtest/gtest.h>
 
 #include "tests/support/typical_effects.h"

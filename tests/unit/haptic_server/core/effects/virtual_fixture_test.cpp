@@ -1,5 +1,3 @@
-#include "haptic_server/core/effects/virtual_fixture/virtual_fixture.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
@@ -40,13 +38,13 @@ VirtualFixtureConfig typicalBut(double VirtualFixtureConfig::*field, double valu
 // The fixture with its tool is asked as the tick asks it.
 struct Fixture {
     explicit Fixture(const VirtualFixtureConfig& config, const Burr& burr = burrOf(BurrKind::kBall))
-        : fixture(config, bench().config.effects.protected_field), tool{&bench().tool, burr, 12} {
+        : fixture(config.make({bench().config.effects, bench().bone, {}})), tool{&bench().tool, burr, 12} {
         tick.tool = &tool;
-        fixture.begin(tick);
+        fixture->begin(tick);
     }
-    EnergyTerm at(const Pose& X_VT) const { return fixture.energy(tick, X_VT); }
+    EnergyTerm at(const Pose& X_VT) const { return fixture->energy(tick, X_VT); }
 
-    VirtualFixture fixture;
+    std::unique_ptr<HapticEffect> fixture;
     SpoTool tool;
     EffectTick tick;
 };
@@ -150,9 +148,9 @@ TEST(VirtualFixture, EdgesReachAsFarAsTheBall) {
 double handForce(Fixture& fixture, bool is_near, double force) {
     fixture.tick.X_VT_start.position =
         kNervePlace + Vector3d(0, 0, kNerveRadius + kBurr + (is_near ? 0.2e-3 : 2e-3));
-    fixture.fixture.begin(fixture.tick);
+    fixture.fixture->begin(fixture.tick);
     Wrench wrench{{0, 0, force}, Vector3d::Zero()};
-    fixture.fixture.addToHand(fixture.tick, wrench);
+    fixture.fixture->addToHand(fixture.tick, wrench);
     return wrench.force.z();
 }
 
@@ -180,8 +178,7 @@ TEST(VirtualFixture, ClosedPathsOfTheHandGainNoEnergy) {
         const VirtualFixtureConfig fixture_config{
             .distance = 1e-3, .stiffness = 2500, .max_force = 10, .hand_force_scale = scale};
         EffectList effects;
-        effects.push_back(
-            std::make_unique<VirtualFixture>(fixture_config, scene.config.effects.protected_field));
+        effects.push_back(fixture_config.make({scene.config.effects, scene.bone, {}}));
         EffectHost host(std::move(effects), 1, 1e12);
         GradientConfig config;
         config.coupling.damping_time = 0;

@@ -1,10 +1,9 @@
 // The accuracy changes to another preset every 50 ticks while the burr is in contact.
-#include "haptic_server/core/tick/accuracy_switch.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "haptic_server/core/tick/tick_choices.h"
 #include "tests/support/led_tick.h"
 #include "tests/unit/haptic_server/core/tick/switching_bench.h"
 

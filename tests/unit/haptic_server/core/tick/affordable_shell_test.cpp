@@ -1,7 +1,6 @@
-#include "haptic_server/core/tick/affordable_shell.h"
-
 #include <gtest/gtest.h>
 
+#include "haptic_server/core/tick/tick_budget.h"
 #include "tests/support/test_bodies.h"
 
 namespace bonemill {

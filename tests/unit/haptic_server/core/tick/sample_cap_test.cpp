@@ -1,9 +1,8 @@
 // A tick that fills its period again and again samples the bone less finely, and more finely again later.
-#include "haptic_server/core/tick/sample_cap.h"
-
 #include <gtest/gtest.h>
 
 #include "haptic_server/core/tick/fixed_tick.h"
+#include "haptic_server/core/tick/tick_budget.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
 

@@ -1,8 +1,7 @@
 // Another tool takes over in the tick: what is felt and what is milled are its own.
-#include "haptic_server/core/tick/tool_switch.h"
-
 #include <gtest/gtest.h>
 
+#include "haptic_server/core/tick/tick_choices.h"
 #include "tests/unit/haptic_server/core/tick/tool_bench.h"
 
 namespace bonemill {

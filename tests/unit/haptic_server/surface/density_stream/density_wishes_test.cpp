@@ -1,9 +1,8 @@
-#include "haptic_server/surface/density_stream/density_wishes.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "haptic_server/surface/density_stream/density_stream.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {

@@ -269,7 +269,7 @@ TEST(LeafMesher, NormalWithoutGradientPointsOutOfTheBone) {
     volume.set(2, 2, 2,
                kMaxDensity);  // symmetric: the gradient at the voxel is zero, and the vertices sit on it
     const LeafLattice lattice(volume, {16, 16, 16});
-    const NodeMesh mesh = meshLeaf(volume, lattice, 0);
+    const NodeMesh mesh = LeafMesher(volume, lattice).mesh(0).value();
     ASSERT_EQ(mesh.vertices.size(), 6u);
     const Eigen::Vector3f middle = volume.spacing().cast<float>() * 2;
     for (const PackedVertex& v : mesh.vertices) {
@@ -296,8 +296,8 @@ TEST(LeafMesher, HomogeneousLeafIsEmpty) {
     VoxelVolume volume(boxGeometry({40, 40, 40}), kIso);
     volume.set(2, 2, 2, kMaxDensity);
     const LeafLattice lattice(volume, {16, 16, 16});
-    EXPECT_FALSE(meshLeaf(volume, lattice, 0).isEmpty());
-    EXPECT_TRUE(meshLeaf(volume, lattice, lattice.leafCount() - 1).isEmpty());
+    EXPECT_FALSE(LeafMesher(volume, lattice).mesh(0).value().isEmpty());
+    EXPECT_TRUE(LeafMesher(volume, lattice).mesh(lattice.leafCount() - 1).value().isEmpty());
 }
 
 TEST(MeshGrid, RefusesLeavesThatSixteenBitsCannotHold) {

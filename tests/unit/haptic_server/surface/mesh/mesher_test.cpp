@@ -264,7 +264,7 @@ TEST(Mesher, NeverSendsALeafHalfWritten) {
     std::vector<NodeMesh> pure;
     for (const bool is_large : {false, true}) {
         writeLikeTick(volume, lattice, whole, body(is_large));
-        pure.push_back(meshLeaf(volume, lattice, 0));
+        pure.push_back(LeafMesher(volume, lattice).mesh(0).value());
     }
     ASSERT_FALSE(test::sameMesh(pure[0], pure[1]));
 

@@ -1,11 +1,10 @@
-#include "haptic_server/surface/mesh/ply.h"
-
 #include <gtest/gtest.h>
 
 #include <optional>
 
 #include "common/base/user_error.h"
 #include "haptic_server/surface/mesh/mesh_check.h"
+#include "haptic_server/surface/mesh/mesh_files.h"
 #include "tests/support/ply_reader.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/voxel_fields.h"

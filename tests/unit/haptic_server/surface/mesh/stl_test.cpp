@@ -1,5 +1,3 @@
-#include "haptic_server/surface/mesh/stl.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -11,6 +9,7 @@
 
 #include "common/base/user_error.h"
 #include "haptic_server/surface/mesh/mesh_check.h"
+#include "haptic_server/surface/mesh/mesh_files.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/voxel_fields.h"
 

@@ -1,5 +1,3 @@
-#include "haptic_server/core/effects/energy_removal/energy_removal.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -314,7 +312,7 @@ TEST(EnergyRemoval, SurvivesWhatNoHandDoes) {
 TEST(EnergyRemoval, LeavesTakeTurnsUnderABurrWithTooManyContacts) {
     constexpr size_t kFewContacts = 80;
     RigConfig config = sideways(), in_turn = config;
-    in_turn.most_milled_cells = kFewContacts * EnergyRemoval::kCellsPerContact;
+    in_turn.most_milled_cells = kFewContacts * EnergyRemovalConfig::kCellsPerContact;
     MillingRig at_once(config), turning(in_turn);
     for (MillingRig* rig : {&at_once, &turning}) rig->press(0.2, onTop(*rig), kDown, kPress);
     EXPECT_GT(at_once.records.back().contacts, 2 * kFewContacts);
