@@ -8,7 +8,6 @@
 #include "haptic_server/core/telemetry/fault_names.h"
 #include "haptic_server/core/tick/tick_budget.h"
 #include "haptic_server/scans/densify/densify.h"
-#include "haptic_server/scans/densify/far_air.h"
 #include "tests/bench/bench_output.h"
 #include "tests/support/typical_effects.h"
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "haptic_server/cases/casework/case_plan.h"
 
@@ -11,5 +12,8 @@ namespace bonemill {
 // Makes the folder, and in it what `gnuplot histogram.gp` and `gnuplot pieces.gp` make histogram.png and
 // pieces.png of, when they run there. Start-up only. Throws UserError.
 void writeFigures(const std::filesystem::path& folder, const RawVolume& scan, const CasePlan& plan);
+
+// A whole gnuplot script that writes histogram.png where it runs. Start-up only: it goes through all values.
+std::string histogramScript(const RawVolume& scan, const CasePlan& plan);
 
 }  // namespace bonemill

@@ -1,6 +1,7 @@
 // What a teacher says of the case that is to be made; all but the scan has a default.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
@@ -46,5 +47,13 @@ std::vector<CaseLabel> labelsOf(const std::vector<std::string>& words);
 
 // Gives the structures without a number the labels and the colours of the file's segments. Throws UserError.
 void findSegments(const Segments& segments, const std::string& file, std::vector<CaseLabel>& labels);
+
+// Adds the scan and the options of make-case.
+void addCaseOptions(CLI::App& app, CaseRequest& request);
+
+// The words from which those options read this request.
+std::vector<std::string> wordsOf(const CaseRequest& request);
+// They stand behind `command`, as one line for a shell.
+std::string commandLineOf(const std::string& command, const CaseRequest& request);
 
 }  // namespace bonemill

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/base/units.h"
-#include "haptic_server/cases/phantom/implicit_shapes.h"
+#include "haptic_server/cases/phantom/spline_shapes.h"
 
 namespace bonemill {
 namespace {

@@ -5,7 +5,6 @@
 #include <span>
 
 #include "common/base/units.h"
-#include "haptic_server/cases/phantom/implicit_shapes.h"
 #include "haptic_server/cases/phantom/spline_shapes.h"
 
 namespace bonemill {

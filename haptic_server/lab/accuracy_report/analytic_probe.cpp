@@ -6,8 +6,7 @@
 
 #include "haptic_server/core/contact/gradient_contact.h"
 #include "haptic_server/core/equilibrium/spo_model.h"
-#include "haptic_server/lab/accuracy_report/probe_limits.h"
-#include "haptic_server/lab/accuracy_report/timed_run.h"
+#include "haptic_server/lab/accuracy_report/measures.h"
 #include "haptic_server/lab/simulate/run_path.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
 

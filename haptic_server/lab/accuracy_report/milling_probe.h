@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "haptic_server/core/bone/bone_history.h"
+#include "haptic_server/lab/accuracy_report/measures.h"
 #include "haptic_server/lab/accuracy_report/probing_places.h"
-#include "haptic_server/lab/accuracy_report/timed_run.h"
 
 namespace bonemill {
 

@@ -1,8 +1,8 @@
 // Leads the device at the probing places: smooth closed strokes with the forces of surgery.
 #pragma once
 
+#include "haptic_server/lab/accuracy_report/measures.h"
 #include "haptic_server/lab/accuracy_report/probing_places.h"
-#include "haptic_server/lab/accuracy_report/timed_run.h"
 
 namespace bonemill {
 
@@ -29,5 +29,15 @@ ProbingStroke makeStroke(const ProbingPlace& place, const StrokeConfig& stroke, 
 // At this distance of the device beyond the tool the gradient model's coupling pulls with `force` (less
 // than its saturation).
 double stretchOf(const EnergyCoupling& coupling, double force);
+
+// A knot is a tool pose as an offset from a base pose, both in W.
+struct PathKnot {
+    Eigen::Vector3d position;                            // m, W
+    Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  // rotation vector, W, on top of the base's rotation
+};
+
+// Makes `ticks` poses along the uniform cubic B-spline of the knots (twice continuously differentiable; it
+// passes near the knots, and exactly through the first and the last one, where it rests).
+PosePath smoothPath(const Eigen::Quaterniond& base, const std::vector<PathKnot>& knots, int ticks);
 
 }  // namespace bonemill

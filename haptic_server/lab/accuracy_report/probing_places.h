@@ -1,13 +1,55 @@
 // Finds where on the scene's bone the tool is tried.
 #pragma once
 
+#include <functional>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "haptic_server/lab/accuracy_report/touch.h"
+#include "haptic_server/core/bone/bone_model.h"
+#include "haptic_server/core/contact/gradient_contact.h"
+#include "haptic_server/core/equilibrium/spo_model.h"
 #include "proto/scene.pb.h"
 
 namespace bonemill {
+
+class TouchProbe {
+  public:
+    // Keeps references. Uses the shell's finest level and the tool's most exact distances.
+    TouchProbe(const BoneModel& bone, const ToolModel& tool);
+
+    // Does some contact point lie in the tool, or the tool point in bone?
+    bool touches(const Pose& X_WT);
+
+    // The bone pushes the touching tool along this unit vector in W; it is zero if it does not.
+    Eigen::Vector3d pushOn(const Pose& X_WT);
+
+    // It is the distance in m from the tool point to the line along which that push acts; 0 if there is none.
+    double armOf(const Pose& X_WT);
+
+    // This is the last free place, to 1 µm, before the tool first touches on the way pose_at(0 .. longest),
+    // longest in m; nothing if it is free all the way, or touches at the start.
+    using PoseAt = std::function<Pose(double way)>;
+    std::optional<double> freeWay(const PoseAt& pose_at, double longest);
+
+    // The way goes straight from X_WT along the unit vector `direction`.
+    std::optional<double> freeWay(const Pose& X_WT, const Eigen::Vector3d& direction, double longest);
+
+    // This is the box in V of the bone's surface that lies within `distance` of the tool at any of the poses;
+    // it is empty if none does.
+    Eigen::AlignedBox3d surfaceNear(std::span<const Pose> path, double distance) const;
+
+  private:
+    GradientContactResult contactAt(const Pose& X_WT);
+    bool isInBone(const Eigen::Vector3d& p_W) const;
+
+    const BoneModel& bone_;
+    const ToolField& field_;
+    Pose X_VW_;
+    int level_;
+    GradientContact contact_;
+};
 
 struct ProbingPlace {
     std::string name;          // for people

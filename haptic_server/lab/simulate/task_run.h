@@ -5,9 +5,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 
+#include "common/config/scene_file.h"
 #include "haptic_server/assessment/measures/technique.h"
 #include "haptic_server/assessment/product/product.h"
+#include "haptic_server/recording/statistics/final_files.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 
 namespace bonemill {
@@ -40,5 +43,18 @@ nlohmann::json assessmentJson(const Assessment& assessment);
 
 // Writes a file. Throws UserError when that fails.
 void writeBytes(const std::string& path, const std::string& bytes);
+
+struct AssessmentTarget {
+    std::string folder;
+    std::string pseudonym;
+    double duration_s = 0;
+    uint32_t number = 1;
+    int64_t start_unix_ns = 0;  // 0: now
+    std::string journal = {};   // the recording's file name; empty: none
+};
+
+// Returns the files' name without endings. What could not be written is noted in `files`.
+std::string writeAssessment(const AssessmentTarget& target, const LoadedScene& loaded,
+                            const TaskRun::Result& result, FinalFiles& files);
 
 }  // namespace bonemill

@@ -24,7 +24,6 @@
 #include "common/text/printed_text.h"
 #include "haptic_server/scans/confined/confine_reader.h"
 #include "haptic_server/scans/confined/import_limits.h"
-#include "haptic_server/scans/confined/memory_cap.h"
 #include "haptic_server/scans/confined/reader_pipe.h"
 #include "haptic_server/scans/confined/shared_name.h"
 #include "haptic_server/scans/labels/segment_text.h"

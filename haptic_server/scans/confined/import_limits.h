@@ -1,6 +1,8 @@
 // Refuses sizes that cannot be right before anything is allocated for them.
 #pragma once
 
+#include <sys/resource.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -28,5 +30,28 @@ void checkAllCanBeBone(const std::vector<uint64_t>& dims, const std::string& fil
 
 // Throws UserError when fewer bytes are stored than the header promises.
 void checkStoredBytes(uint64_t promised_bytes, uint64_t stored_bytes, const std::string& file);
+
+// While it lives, the process may map at most `extra_bytes` more than it does now; beyond that, allocation
+// fails with std::bad_alloc. It has no effect under sanitizers, which map terabytes themselves, and none
+// while another one lives: that of several files (memoryForAll) counts for each of them. It is for start-up
+// only; one that has an effect lives longer than all threads that begin after it.
+class MemoryCap {
+  public:
+    explicit MemoryCap(uint64_t extra_bytes);
+    ~MemoryCap();
+    MemoryCap(const MemoryCap&) = delete;
+    MemoryCap& operator=(const MemoryCap&) = delete;
+
+  private:
+    rlimit before_{};
+    bool is_outermost_ = false, is_set_ = false;
+};
+
+// What reading a folder by several threads (work_ahead.h) may take: so much for one file, and for what comes
+// of all.
+uint64_t memoryForAll(uint64_t bytes_of_one, uint64_t bytes_taken);
+
+// Does the same for all that this process will do, and cannot be taken back.
+void capMemoryForGood(uint64_t extra_bytes) noexcept;
 
 }  // namespace bonemill

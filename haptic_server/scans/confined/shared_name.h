@@ -35,4 +35,7 @@ void nameFileOfEndingThread() noexcept;
 // Control characters would end a message's line, or command the terminal that shows it.
 std::string oneLine(std::string text);
 
+// The message names it when the reader dies. It has no effect outside importGuarded.
+void noteFileBeingRead(const std::filesystem::path& file) noexcept;
+
 }  // namespace bonemill

@@ -5,8 +5,11 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <vector>
 
+#include "haptic_server/core/volume/bone_properties.h"
+#include "haptic_server/core/volume/distance_field.h"
 #include "haptic_server/core/volume/index_box.h"
 #include "haptic_server/core/volume/material_properties.h"
 
@@ -58,5 +61,15 @@ class DistanceTransform {
     std::vector<int> hull_;
     std::vector<double> from_;
 };
+
+// The work goes on in slabs of N voxels, with what lies within reach of them.
+inline constexpr int64_t kVoxelsAtOnce = 20 << 20;
+
+// The field is null if no voxel is of a protected material. `reach` is in m and > 0. Throws UserError if it
+// has more voxels than that: neither time nor memory would be bounded by the scan's.
+std::unique_ptr<DistanceField> protectedDistance(const BoneProperties& properties,
+                                                 const MaterialTable& materials,
+                                                 const Eigen::Vector3d& spacing, double reach,
+                                                 int64_t voxels_at_once = kVoxelsAtOnce);
 
 }  // namespace bonemill

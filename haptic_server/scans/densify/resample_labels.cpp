@@ -7,7 +7,7 @@
 
 #include "common/base/user_error.h"
 #include "haptic_server/core/volume/index_box.h"
-#include "haptic_server/scans/densify/index_map.h"
+#include "haptic_server/scans/densify/region.h"
 
 namespace bonemill {
 namespace {

@@ -7,7 +7,6 @@
 #include "common/base/user_error.h"
 #include "common/process/work_ahead.h"
 #include "haptic_server/scans/confined/import_limits.h"
-#include "haptic_server/scans/confined/memory_cap.h"
 #include "haptic_server/scans/dicom/dicom_headers.h"
 #include "haptic_server/scans/dicom/dicom_scan.h"
 #include "haptic_server/scans/dicom/dicom_segments.h"

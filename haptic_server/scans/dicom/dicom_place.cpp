@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/base/user_error.h"
-#include "haptic_server/scans/pixels/decimal_numbers.h"
+#include "haptic_server/scans/pixels/dicom_rescale.h"
 
 namespace bonemill {
 namespace {

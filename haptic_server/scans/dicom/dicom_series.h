@@ -43,4 +43,17 @@ bool isScout(const DicomStack& stack);  // it is no scan: a localizer, or of too
 DicomChoice chooseStack(const std::vector<DicomSlice>& slices, const DicomWish& wish,
                         const std::string& folder, const IsSamePicture& is_same_picture);
 
+// Is it the name of a sharp reconstruction kernel, as makers give for bone? bone_series.cpp has the table.
+bool isBoneKernel(const std::string& kernel);
+
+struct BoneRecommendation {
+    const DicomStack* stack = nullptr;  // nothing: none can be used
+    std::string why;                    // for people
+};
+
+// Scouts and what cannot be used are left out. CT goes before all else, bone kernels before others unless
+// their slices are more than twice as far apart as the thinnest, then the thinnest slices, then the most,
+// then originals.
+BoneRecommendation recommendForBone(const std::vector<DicomStack>& stacks);
+
 }  // namespace bonemill

@@ -9,10 +9,20 @@
 #include <optional>
 #include <string>
 
-#include "haptic_server/scans/dicom/dicom_traits.h"
 #include "haptic_server/scans/pixels/dicom_rescale.h"
 
 namespace bonemill {
+
+// As the headers say, without padding; empty: nothing.
+struct DicomTraits {
+    std::string acquisition_number;  // (0020,0012), of frames (0020,9156)
+    std::string temporal_position;   // (0020,0100), of frames (0020,9128)
+    std::string b_value;             // (0018,9087)
+    std::string kernel;              // (0018,1210)
+    std::string image_type;          // (0008,0008), of frames (0008,9007): ORIGINAL\PRIMARY\AXIAL
+    std::string acquisition_time;    // (0008,0032)
+    std::string content_time;        // (0008,0033)
+};
 
 struct DicomSlice {
     std::filesystem::path path;

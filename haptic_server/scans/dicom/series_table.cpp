@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "common/text/printed_text.h"
-#include "haptic_server/scans/dicom/bone_series.h"
 #include "haptic_server/scans/dicom/dicom_series.h"
 #include "haptic_server/scans/dicom/series_rows.h"
 

@@ -4,6 +4,7 @@
 // only: not RT-safe, allocates 16 bytes per run of such voxels along x, and BonePiece per piece.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -60,5 +61,11 @@ struct PieceCount {
 
 // Drops the pieces with fewer voxels than that.
 PieceCount removeSmallPieces(VoxelVolume& volume, uint32_t smallest_piece_voxels);
+
+// The voxels that bone reaches to; empty without bone.
+IndexBox boneBox(const VoxelVolume& volume);
+
+// Its middle voxels' places in V, m.
+Eigen::AlignedBox3d placesOf(const IndexBox& voxels, const Eigen::Vector3d& spacing);
 
 }  // namespace bonemill

@@ -9,7 +9,6 @@
 #include "common/base/user_error.h"
 #include "common/process/work_ahead.h"
 #include "haptic_server/scans/confined/import_limits.h"
-#include "haptic_server/scans/confined/memory_cap.h"
 #include "haptic_server/scans/frame/physical_frame.h"
 #include "haptic_server/scans/pixels/itk_image_file.h"
 

@@ -8,9 +8,9 @@
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "haptic_server/core/volume/surface_ramp.h"
-#include "haptic_server/scans/confined/file_being_read.h"
 #include "haptic_server/scans/confined/import_limits.h"
-#include "haptic_server/scans/nrrd/header_text.h"
+#include "haptic_server/scans/confined/shared_name.h"
+#include "haptic_server/scans/nrrd/nrrd_header.h"
 #include "haptic_server/scans/solid_mesh/mesh_distance.h"
 #include "haptic_server/scans/solid_mesh/mesh_file.h"
 

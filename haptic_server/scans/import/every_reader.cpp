@@ -11,7 +11,7 @@
 #include "haptic_server/scans/formats/inv3_project.h"
 #include "haptic_server/scans/formats/surface_volume.h"
 #include "haptic_server/scans/formats/volume_file.h"
-#include "haptic_server/scans/import/readers.h"
+#include "haptic_server/scans/import/import_volume.h"
 
 namespace bonemill {
 namespace {

@@ -42,4 +42,24 @@ RawVolume importVolumeHere(const std::filesystem::path& path, const ImportOption
 std::vector<std::string> listSeries(const std::filesystem::path& path);
 std::vector<std::string> listSeriesHere(const std::filesystem::path& path);
 
+// These words stand behind the program's name, and before the path.
+inline constexpr char kReadVolumeWord[] = "read-volume";  // then the options (import_options_text.h)
+inline constexpr char kReadSeriesWord[] = "read-series";
+
+// Runs the reader's own end if the words of the command line call it, and does not return then.
+void runReaderIfCalled(int argc, char** argv);
+
+// From now on importVolume() and listSeries() start this program as a reader: `haptic_server`'s main says it
+// first of all.
+void setReaderProgram(const std::string& program);
+bool hasReaderProgram();
+
+// Do what importVolume() and listSeries() do. Throw UserError.
+RawVolume importByProgram(const std::filesystem::path& path, const ImportOptions& options);
+std::vector<std::string> listByProgram(const std::filesystem::path& path);
+
+// The file or folder is there. Both throw UserError with one message that names it.
+RawVolume readVolume(const std::filesystem::path& path, const ImportOptions& options);
+std::vector<std::string> readSeries(const std::filesystem::path& path);
+
 }  // namespace bonemill

@@ -1,7 +1,10 @@
 // Segments as text, and what people write of them.
 #pragma once
 
+#include <bitset>
+#include <cstdint>
 #include <string>
+#include <unordered_map>
 
 #include "haptic_server/core/volume/segments.h"
 
@@ -20,5 +23,26 @@ Segments segmentsFromText(const std::string& text);
 // names that are there.
 std::vector<uint32_t> labelsOfSegment(const Segments& segments, const std::string& name,
                                       const std::string& file);
+
+using SegmentMembers = std::bitset<kMaxSegments>;  // numbers in Segments::list
+
+class SegmentCodes {
+  public:
+    // `file` is for messages.
+    explicit SegmentCodes(std::string file);
+
+    // 0 is that of no segment; others are counted from 1 as they come. Throws UserError beyond what a few
+    // structures can have.
+    uint16_t codeOf(const SegmentMembers& members);
+    bool anyOverlap() const;
+    // Gives the segments their codes as labels. Throws UserError as above.
+    void listIn(Segments& segments) const;
+
+  private:
+    [[noreturn]] void refuse() const;
+
+    std::string file_;
+    std::unordered_map<SegmentMembers, uint16_t> codes_;
+};
 
 }  // namespace bonemill

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <sstream>
 #include <vector>
 
 #include "common/base/user_error.h"
-#include "haptic_server/scans/nrrd/header_text.h"
 
 namespace bonemill {
 namespace {
@@ -147,6 +147,20 @@ void takeLine(const std::string& line, const std::filesystem::path& path, NrrdHe
 }
 
 }  // namespace
+
+std::string firstBytes(const std::filesystem::path& path, size_t most) {
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes(most, '\0');
+    file.read(bytes.data(), std::streamsize(most));
+    bytes.resize(size_t(file.gcount()));
+    return bytes;
+}
+
+std::string trimmed(const std::string& text) {
+    const auto first = text.find_first_not_of(" \t\r");
+    if (first == std::string::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
 
 NrrdHeader readNrrdHeader(const std::filesystem::path& path) {
     std::istringstream text(firstBytes(path, kMaxHeaderBytes));

@@ -45,4 +45,10 @@ std::optional<VolumeGeometry> geometryFromText(const std::string& text);
 // Are these the same voxels at the same places, within the rounding of decimal text?
 bool isSameGeometry(const VolumeGeometry& a, const VolumeGeometry& b);
 
+// These are the file's first bytes, `most` of them where it has as many; none when it cannot be read.
+std::string firstBytes(const std::filesystem::path& path, size_t most);
+
+// The text without blanks and the carriage return of a line around it.
+std::string trimmed(const std::string& text);
+
 }  // namespace bonemill

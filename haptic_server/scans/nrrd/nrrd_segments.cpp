@@ -9,9 +9,8 @@
 
 #include "common/base/user_error.h"
 #include "haptic_server/scans/labels/material_ids.h"
-#include "haptic_server/scans/labels/segment_codes.h"
 #include "haptic_server/scans/labels/segment_text.h"
-#include "haptic_server/scans/nrrd/header_text.h"
+#include "haptic_server/scans/nrrd/nrrd_header.h"
 
 namespace bonemill {
 namespace {

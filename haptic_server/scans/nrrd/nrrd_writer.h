@@ -8,12 +8,36 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 
+#include "haptic_server/core/volume/raw_volume.h"
 #include "haptic_server/core/volume/voxel_volume.h"
-#include "haptic_server/scans/nrrd/nrrd_stream.h"
 
 namespace bonemill {
+
+enum class NrrdEncoding { kRaw, kGzip };
+
+template <class T>
+class NrrdStream {
+  public:
+    NrrdStream(const std::filesystem::path& path, const VolumeGeometry& geometry, NrrdEncoding encoding,
+               bool lacks_patient_axes = false);
+    ~NrrdStream();
+    NrrdStream(const NrrdStream&) = delete;
+    NrrdStream& operator=(const NrrdStream&) = delete;
+
+    void append(std::span<const T> values);  // x fastest
+    // Throws UserError when the file could not be written or has not geometry.voxelCount() values. A file
+    // that was not closed is damaged.
+    void close();
+
+  private:
+    class File;
+
+    std::unique_ptr<File> file_;
+    uint64_t missing_;  // values still to come
+};
 
 // `values` are x fastest, exactly geometry.voxelCount() of them.
 void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,

@@ -17,8 +17,8 @@
 
 #include "common/base/user_error.h"
 #include "haptic_server/core/volume/forget_memory.h"
-#include "haptic_server/scans/confined/file_being_read.h"
-#include "haptic_server/scans/confined/memory_cap.h"
+#include "haptic_server/scans/confined/import_limits.h"
+#include "haptic_server/scans/confined/shared_name.h"
 
 namespace bonemill {
 namespace {

@@ -1,6 +1,6 @@
-#include "haptic_server/cases/casework/case_options.h"
-
 #include <gtest/gtest.h>
+
+#include "haptic_server/cases/casework/case_request.h"
 
 namespace bonemill {
 namespace {

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "haptic_server/scans/import/import_volume.h"
-#include "haptic_server/scans/nrrd/nrrd_stream.h"
+#include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/support/planted_patient.h"
 #include "tests/support/temporary_folder.h"

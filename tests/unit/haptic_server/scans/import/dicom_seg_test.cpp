@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "haptic_server/core/volume/index_box.h"
-#include "haptic_server/scans/dicom/lab_color.h"
+#include "haptic_server/scans/dicom/dicom_segments.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "haptic_server/scans/labels/segment_text.h"
 #include "tests/support/temporary_folder.h"
