@@ -5,7 +5,6 @@
 #include <iostream>
 #include <limits>
 #include <memory>
-#include <numbers>
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
@@ -26,7 +25,7 @@ namespace {
 
 template <class T>
 void write(const std::string& file, const VolumeGeometry& geometry, std::span<const T> values) {
-    NrrdStream<T> stream(file, geometry, NrrdEncoding::kGzip);
+    NrrdStream<T> stream(file, geometry);
     stream.append(values);
     stream.close();
     std::cout << "wrote " << file << "\n";
@@ -110,7 +109,7 @@ struct BodyArguments {
 // Writes value_at(position in W) for each voxel.
 template <class T, class ValueAt>
 void writeGrid(const std::string& file, const VolumeGeometry& grid, ValueAt&& value_at) {
-    NrrdStream<T> stream(file, grid, NrrdEncoding::kGzip);
+    NrrdStream<T> stream(file, grid);
     std::vector<T> row(size_t(grid.dims.x()));
     for (int k = 0; k < grid.dims.z(); ++k)
         for (int j = 0; j < grid.dims.y(); ++j) {
@@ -209,7 +208,7 @@ void writeBody(const BodyArguments& arguments) {
         centredGrid(Eigen::Vector3i(arguments.dims.data()), arguments.voxel_mm * kMillimetre);
     const AnalyticBody body = bodyOf(arguments);
     constexpr double kFull = std::numeric_limits<T>::max();
-    NrrdStream<T> file(arguments.file, grid, NrrdEncoding::kGzip);
+    NrrdStream<T> file(arguments.file, grid);
     for (int k = 0; k < grid.dims.z(); ++k) {
         const std::vector<float> slice = sampleBodySlice(body, grid, kFull, k);
         file.append(std::vector<T>(slice.begin(), slice.end()));

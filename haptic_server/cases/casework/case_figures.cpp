@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <fstream>
 #include <sstream>
-#include <string_view>
 #include <vector>
 
 #include "common/base/user_error.h"
@@ -35,8 +34,7 @@ Histogram shown(const RawValues& values) {
 }
 
 std::string nameOf(const IsoProposal& proposed) {
-    const char* const doubts[] = {"sure", "not quite sure", "a guess"};
-    return std::string("proposed, ") + doubts[size_t(proposed.doubt)];
+    return std::string("proposed, ") + wordOf(proposed.doubt);
 }
 
 std::vector<Mark> marksOf(const RawVolume& scan, const CasePlan& plan) {
@@ -85,12 +83,6 @@ std::string drawn(const std::vector<Mark>& marks, double low, double high) {
 
 namespace fs = std::filesystem;
 
-void writeFigureFile(const fs::path& file, std::string_view bytes) {
-    std::ofstream out(file, std::ios::binary);
-    if (!out.write(bytes.data(), std::streamsize(bytes.size())).flush())
-        throw UserError(file.string() + ": cannot be written; is the disk full?");
-}
-
 }  // namespace
 
 std::string histogramScript(const RawVolume& scan, const CasePlan& plan) {
@@ -118,16 +110,22 @@ std::string histogramScript(const RawVolume& scan, const CasePlan& plan) {
     return script.str();
 }
 
+void writeWhole(const fs::path& file, std::string_view bytes) {
+    std::ofstream out(file, std::ios::binary);
+    if (!out.write(bytes.data(), std::streamsize(bytes.size())).flush())
+        throw UserError(file.string() + ": cannot be written; is the disk full?");
+}
+
 void writeFigures(const fs::path& folder, const RawVolume& scan, const CasePlan& plan) {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw UserError(folder.string() + ": cannot be made (" + error.message() + ")");
-    writeFigureFile(folder / "histogram.gp", histogramScript(scan, plan));
+    writeWhole(folder / "histogram.gp", histogramScript(scan, plan));
     const PiecesFigure figure = piecesFigure(scan, plan);
-    writeFigureFile(folder / "pieces.gp", figure.script);
+    writeWhole(folder / "pieces.gp", figure.script);
     for (const PiecesFigure::Picture& picture : figure.pictures)
-        writeFigureFile(folder / picture.file,
-                        {reinterpret_cast<const char*>(picture.rgb.data()), picture.rgb.size()});
+        writeWhole(folder / picture.file,
+                   {reinterpret_cast<const char*>(picture.rgb.data()), picture.rgb.size()});
 }
 
 }  // namespace bonemill

@@ -1,5 +1,6 @@
 #include "haptic_server/cases/casework/case_request.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 

@@ -1,7 +1,7 @@
-// What a teacher says of the case that is to be made; all but the scan has a default.
+// What a teacher says of the case that is to be made, also as words of a command line; all but the scan has a
+// default.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
@@ -9,6 +9,10 @@
 #include <vector>
 
 #include "haptic_server/core/volume/segments.h"
+
+namespace CLI {
+class App;
+}
 
 namespace bonemill {
 

@@ -192,16 +192,10 @@ class CaseFolder {
 
 void writeVolume(const fs::path& file, const RawVolume& volume) {
     volume.values.visit([&]<class T>(std::span<const T> samples) {
-        NrrdStream<T> stream(file, volume.geometry, NrrdEncoding::kGzip, volume.lacks_patient_axes);
+        NrrdStream<T> stream(file, volume.geometry, volume.lacks_patient_axes);
         stream.append(samples);
         stream.close();
     });
-}
-
-void writeText(const fs::path& file, const std::string& text) {
-    std::ofstream out(file);
-    if (!(out << text << std::flush))
-        throw UserError(file.string() + ": cannot be written; is the disk full?");
 }
 
 std::vector<scene::Tool> toolsOfFile(const std::string& file) {
@@ -310,8 +304,8 @@ void makeCase(const CaseRequest& request, const std::string& version, std::ostre
         writeVolume(folder / kLabelsOfCase, map);
     }
     const std::string scene_file = folder.name() + ".textproto";
-    writeText(folder / scene_file, textOfScene(sceneOfCase(plan, request, labels, tools, folder.name())));
-    writeText(folder / "provenance.json", provenanceOf(scan, plan, request, folder / kScanOfCase, version));
+    writeWhole(folder / scene_file, textOfScene(sceneOfCase(plan, request, labels, tools, folder.name())));
+    writeWhole(folder / "provenance.json", provenanceOf(scan, plan, request, folder / kScanOfCase, version));
     const Simulation simulation = makeSimulation(loadScene(folder / scene_file));  // as a session would
     for (const std::string& remark : simulation.remarks) out << remark << '\n';
     for (const std::string& warning : simulation.warnings) out << "warning: " << warning << '\n';

@@ -2,15 +2,9 @@
 // --drop-piece takes. The views lie as in a drawing, so that a place can be read off in W.
 #pragma once
 
-#include <Eigen/Geometry>
-#include <cstdint>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "haptic_server/cases/casework/case_plan.h"
-#include "haptic_server/core/volume/raw_volume.h"
-#include "haptic_server/scans/find_bone/bone_pieces.h"
 
 namespace bonemill {
 
@@ -34,7 +28,7 @@ struct ViewSide {
     double towards_viewer;  // 1: the viewer is at the far end of the depth's axis, -1: at its beginning
 };
 
-// Start-up only.
+// An orthographic picture of the pieces from one side, with the nearest one at each pixel. Start-up only.
 class PieceView {
   public:
     // `box` in W, m, holds all that is drawn.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptic_server/core/volume/surface_ramp.h"
+
 namespace bonemill {
 namespace {
 
@@ -83,11 +85,6 @@ double signedDistance(const AnalyticBody& body, const Eigen::Vector3d& p_W) noex
     return 0;
 }
 
-double bodyDensity(const AnalyticBody& body, const VolumeGeometry& geometry, const Eigen::Vector3d& p_W,
-                   double full) noexcept {
-    return full * rampShare(signedDistance(body, p_W), geometry.spacing.maxCoeff());
-}
-
 std::vector<float> sampleBodySlice(const AnalyticBody& body, const VolumeGeometry& geometry, double full,
                                    int k) {
     std::vector<float> values;
@@ -96,18 +93,10 @@ std::vector<float> sampleBodySlice(const AnalyticBody& body, const VolumeGeometr
         for (int i = 0; i < geometry.dims.x(); ++i) {
             const Eigen::Vector3d p_W =
                 geometry.X_WV * geometry.spacing.cwiseProduct(Eigen::Vector3d(i, j, k));
-            values.push_back(float(std::round(bodyDensity(body, geometry, p_W, full))));
+            const double share = rampShare(signedDistance(body, p_W), geometry.spacing.maxCoeff());
+            values.push_back(float(std::round(full * share)));
         }
     return values;
-}
-
-RawVolume sampleBody(const AnalyticBody& body, const VolumeGeometry& geometry, double full) {
-    RawVolume raw;
-    raw.geometry = geometry;
-    raw.description = "analytic body";
-    raw.values.reserve(geometry.voxelCount());
-    for (int k = 0; k < geometry.dims.z(); ++k) raw.values.append(sampleBodySlice(body, geometry, full, k));
-    return raw;
 }
 
 VolumeGeometry centredGrid(const Eigen::Vector3i& dims, double voxel_size) {

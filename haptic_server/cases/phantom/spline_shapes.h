@@ -1,5 +1,5 @@
-// Makes soft structures of the phantoms: tubes and sheets about smooth curves through
-// given points (Catmull-Rom).
+// Makes soft structures of the phantoms: tubes and sheets about smooth curves through given points
+// (Catmull-Rom); and puts shapes together that are functions, negative inside.
 //
 // There is one length unit throughout (the phantoms use mm). Thread-safe; start-up only, allocates.
 #pragma once

@@ -153,24 +153,6 @@ double noise(uint64_t seed, uint64_t index) {
     return sum * std::sqrt(3.0);
 }
 
-}  // namespace
-
-ToothTissue toothTissue(const Eigen::Vector3d& p_W) noexcept {
-    const Eigen::Vector3d p_mm = p_W * kPerMillimetre;
-    const bool is_far = p_mm.head<2>().cwiseAbs().maxCoeff() > kReach || p_mm.z() < 0 || p_mm.z() > kHighest;
-    return is_far ? ToothTissue::kAir : tissueAt(p_mm);
-}
-
-VolumeGeometry toothGrid() {
-    VolumeGeometry geometry;
-    geometry.dims = {256, 256, 161};
-    geometry.spacing.setConstant(0.125e-3);
-    geometry.X_WV.position = {-127.5 * 0.125e-3, -127.5 * 0.125e-3, 0};
-    return geometry;
-}
-
-namespace {
-
 // Holds the tissue at the centres of all voxels and of one layer around them.
 class TissueMap {
   public:
@@ -198,6 +180,20 @@ class TissueMap {
 };
 
 }  // namespace
+
+ToothTissue toothTissue(const Eigen::Vector3d& p_W) noexcept {
+    const Eigen::Vector3d p_mm = p_W * kPerMillimetre;
+    const bool is_far = p_mm.head<2>().cwiseAbs().maxCoeff() > kReach || p_mm.z() < 0 || p_mm.z() > kHighest;
+    return is_far ? ToothTissue::kAir : tissueAt(p_mm);
+}
+
+VolumeGeometry toothGrid() {
+    VolumeGeometry geometry;
+    geometry.dims = {256, 256, 161};
+    geometry.spacing.setConstant(0.125e-3);
+    geometry.X_WV.position = {-127.5 * 0.125e-3, -127.5 * 0.125e-3, 0};
+    return geometry;
+}
 
 RawVolume scanTooth(const VolumeGeometry& geometry, const ToothScan& scan) {
     RawVolume raw;

@@ -1,6 +1,5 @@
 #include "haptic_server/cases/phantom_dicom/dicom_series_writer.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>

@@ -99,11 +99,6 @@ Rest restOf(const RunRecords& records, double radius) {
 
 }  // namespace
 
-struct AnalyticProbe::Plane {
-    BoneModel bone;
-    Eigen::Quaterniond R_WT;
-};
-
 double forceOnSphere(double kappa, double radius, double depth) noexcept {
     return depth <= 0 ? 0 : M_PI * kappa * (radius - depth) * depth * depth;
 }
@@ -138,14 +133,11 @@ AnalyticProbe::AnalyticProbe(const AnalyticProbeConfig& config) : config_(config
         std::min(kWidestOfRadius * radius, kWidths[std::size(kWidths) - 1] * config.spacing);
     for (int n = 0; n < kGrids; ++n) {
         VoxelVolume volume = halfSpace(widest / 2 + kBorderVoxels * config.spacing, config.spacing, random);
-        planes_.push_back(
-            std::make_unique<Plane>(Plane{BoneModel(std::move(volume), Eigen::Vector3i::Constant(kLeafCells),
-                                                    ShellConfig{.levels = levels, .spare_points = 1}),
-                                          randomRotation(random)}));
+        planes_.push_back({BoneModel(std::move(volume), Eigen::Vector3i::Constant(kLeafCells),
+                                     ShellConfig{.levels = levels, .spare_points = 1}),
+                           randomRotation(random)});
     }
 }
-
-AnalyticProbe::~AnalyticProbe() = default;
 
 PlaneErrors AnalyticProbe::measure(const AccuracySettings& settings) {
     FixedTickConfig tick = config_.tick;
@@ -163,9 +155,9 @@ PlaneErrors AnalyticProbe::measure(const AccuracySettings& settings) {
         const double true_depth = depthUnderSpring(tick, true_stretch);
         const double true_force = springForce(tick.toolCoupling(), true_stretch - true_depth);
         double low = INFINITY, high = 0, sum = 0;
-        for (const auto& plane : planes_) {
+        for (Plane& plane : planes_) {
             const Rest rest = restOf(
-                runPath(tick, plane->bone, inputsOf(pressPath(plane->R_WT, radius, true_stretch), tick.dt)),
+                runPath(tick, plane.bone, inputsOf(pressPath(plane.R_WT, radius, true_stretch), tick.dt)),
                 radius);
             errors.force += std::pow(rest.force / true_force - 1, 2);
             errors.depth += std::pow(rest.depth - true_depth, 2);
@@ -191,10 +183,10 @@ PatchErrors AnalyticProbe::patchAt(const AccuracySettings& settings, double widt
     const double true_force = forceOnSphere(kappa, radius, errors.depth);
     GradientContact contact({.stiffness_per_area = kappa, .stiffness_cap = INFINITY});
     const ToolField& field = burr_.field(settings);
-    for (const auto& plane : planes_) {
-        const BoneModel& bone = plane->bone;
+    for (const Plane& plane : planes_) {
+        const BoneModel& bone = plane.bone;
         const Pose X_WV = bone.volume.geometry().X_WV;
-        const Pose X_VT = X_WV.inverse() * Pose{{0, 0, radius - errors.depth}, plane->R_WT};
+        const Pose X_VT = X_WV.inverse() * Pose{{0, 0, radius - errors.depth}, plane.R_WT};
         contact.gather({bone.volume, bone.lattice, bone.shell, levelOf(bone.shell, settings),
                         settings.sample_spacing, settings.most_samples},
                        field, X_VT, 1e-6);

@@ -1,7 +1,7 @@
-// Tells a run and the truth apart along the same device path. It computes in SI and has no shared state.
+// Runs ticks along a path of device poses, and tells a run and the truth apart along the same path. It
+// computes in SI, has no shared state, and is not RT-safe.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -23,6 +23,7 @@ inline constexpr int kPasses = 3;
 // compute_ns of each tick becomes the smaller one of both runs of the same work.
 void keepShorterTimes(RunRecords& records, const RunRecords& again) noexcept;
 
+// What the probes of the report have in common.
 constexpr double kHeaviestShare = 0.6;    // of the coupling's saturation: no probe presses harder
 constexpr int kLeafCells = 16;            // along each edge of a leaf
 constexpr int kUnlimitedSamples = 32768;  // what is near the burr, or touches it, is always fewer

@@ -1,11 +1,9 @@
 #include "haptic_server/lab/accuracy_report/milling_probe.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "common/device_messages/device_messages.h"
 #include "haptic_server/lab/accuracy_report/fine_bone.h"
-#include "haptic_server/lab/accuracy_report/probing_path.h"
 #include "haptic_server/lab/simulate/run_path.h"
 
 namespace bonemill {

@@ -12,6 +12,7 @@ namespace bonemill {
 // This is a whole gnuplot script that writes `png`, a path from where it runs.
 std::string paretoScript(const ReportData& data, const std::filesystem::path& png);
 
+// Labels hide neither each other nor the points.
 struct PlotLabel {
     Eigen::Vector2d point;  // pixels
     std::string text;

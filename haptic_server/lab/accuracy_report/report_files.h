@@ -1,4 +1,5 @@
-// Holds what the report knows, and writes the files that it becomes.
+// Holds what the report knows, finds the settings that are worth having, and writes the files that it
+// becomes.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +11,7 @@
 
 namespace bonemill {
 
+// A setting's error against its time.
 struct ParetoPoint {
     double error = 0;
     double time = 0;
@@ -64,7 +66,7 @@ bool isOtherLaw(const SettingFigures& figures) noexcept;
 std::vector<ParetoPoint> paretoPoints(const std::vector<SettingFigures>& settings);
 size_t indexInForce(const ReportData& data) noexcept;
 
-// Writes Markdown; its source is report_text.cpp.
+// Writes Markdown; its source is accuracy_report_text.cpp.
 std::string reportText(const ReportData& data);
 // These are the few lines that matter: what is in force, what better costs, what fits.
 std::vector<std::string> reportConclusions(const ReportData& data);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 
 #include "haptic_server/scene/setup/scene_accuracy.h"
 #include "haptic_server/scene/setup/scene_setup.h"

@@ -1,4 +1,4 @@
-// Runs every setting along the same paths and measures it.
+// Chooses the accuracy settings that the report compares, runs each along the same paths and measures it.
 #pragma once
 
 #include <functional>

@@ -8,7 +8,6 @@
 
 #include "haptic_server/lab/accuracy_report/analytic_probe.h"
 #include "haptic_server/lab/accuracy_report/fine_bone.h"
-#include "haptic_server/lab/accuracy_report/measures.h"
 #include "haptic_server/lab/simulate/run_path.h"
 
 namespace bonemill {

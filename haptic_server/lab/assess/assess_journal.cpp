@@ -1,6 +1,5 @@
 #include "haptic_server/lab/assess/assess_journal.h"
 
-#include <algorithm>
 #include <optional>
 
 #include "common/base/units.h"

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <ostream>
-#include <set>
 #include <sstream>
 
 #include "common/base/units.h"
@@ -14,6 +12,7 @@
 #include "common/config/scene_handle.h"
 #include "common/config/scene_table.h"
 #include "common/config/viewer_effects.h"
+#include "common/text/printed_text.h"
 #include "haptic_server/assessment/product/zone_tally.h"
 #include "haptic_server/lab/describe/effect_cost.h"
 #include "haptic_server/lab/simulate/run_path.h"
@@ -61,9 +60,7 @@ std::string parametersOf(const Message& message) {
 }
 
 std::string microseconds(double us) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2f us", us);
-    return text;
+    return printed("%.2f us", us);
 }
 
 std::string added(double us, double noise_us) {

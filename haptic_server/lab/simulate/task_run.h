@@ -1,5 +1,5 @@
-// Follows an attempt at a scene's task from tick to tick and judges it in the end, as a live session does. It
-// is for one normal thread.
+// Follows an attempt at a scene's task from tick to tick, judges it in the end, and writes results and
+// report, as a live session does. It is for one normal thread; writing waits for the disk.
 #pragma once
 
 #include <memory>

@@ -22,7 +22,6 @@
 
 #include "common/base/user_error.h"
 #include "common/text/printed_text.h"
-#include "haptic_server/scans/confined/confine_reader.h"
 #include "haptic_server/scans/confined/import_limits.h"
 #include "haptic_server/scans/confined/reader_pipe.h"
 #include "haptic_server/scans/confined/shared_name.h"
@@ -115,16 +114,11 @@ bool receiveValues(Incoming& from, size_t count, RawValues& values) {
 }
 
 bool receiveValues(Incoming& from, const Head& head, RawValues& values) {
-    switch (head.type) {  // order of RawValues::Samples
-        case 0:
-            return receiveValues<uint8_t>(from, head.values, values);
-        case 1:
-            return receiveValues<int16_t>(from, head.values, values);
-        case 2:
-            return receiveValues<uint16_t>(from, head.values, values);
-        default:
-            return receiveValues<float>(from, head.values, values);
-    }
+    constexpr bool (*kReceive[])(Incoming&, size_t, RawValues&) = {
+        // order of RawValues::Samples
+        receiveValues<uint8_t>, receiveValues<int16_t>, receiveValues<uint16_t>, receiveValues<float>};
+    static_assert(std::size(kReceive) == std::variant_size_v<RawValues::Samples>);
+    return kReceive[head.type](from, head.values, values);
 }
 
 void sendVolume(int file, RawVolume raw) {
@@ -249,12 +243,6 @@ void handleSignals() {
     _exit(0);  // no destructor of the parent's objects may run twice
 }
 
-std::string secondsText(std::chrono::milliseconds time) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", std::chrono::duration<double>(time).count());
-    return text;
-}
-
 // Whoever waits for a disk that is gone cannot be ended, so it is not waited for long. Returns how it ended.
 int endOf(pid_t child) {
     kill(child, SIGKILL);  // one that has closed the pipe by ending has ended as it did
@@ -295,7 +283,8 @@ Received receiveFrom(const std::filesystem::path& path, const StartReader& start
         kill(child, SIGKILL);
         // Whoever waits for a disk that is gone cannot be ended, so its end is not waited for either.
         waitpid(child, nullptr, WNOHANG);
-        throw UserError(nameOfFileBeingRead(path) + ": could not be read within " + secondsText(most) +
+        throw UserError(nameOfFileBeingRead(path) + ": could not be read within " +
+                        printed("%g", std::chrono::duration<double>(most).count()) +
                         " s; is its disk or network slow or gone, or does it lead to a pipe?");
     }
     const int status = endOf(child);

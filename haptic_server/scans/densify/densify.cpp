@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <span>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "common/base/user_error.h"
+#include "common/text/printed_text.h"
 
 namespace bonemill {
 namespace {
@@ -51,9 +51,7 @@ void clearVoxels(VoxelVolume& volume, const Eigen::Vector3i& brick) {
 }
 
 std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", value);
-    return text;
+    return printed("%g", value);
 }
 
 // Of integers all densities there can be are in a table, and ascend.
@@ -226,18 +224,6 @@ DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window) 
     return mapping;
 }
 
-VoxelVolume densify(const RawVolume& raw, const DensityMapping& mapping) {
-    VoxelVolume volume(raw.geometry, mapping.iso);
-    const size_t row = size_t(volume.dims().x()), slice = row * size_t(volume.dims().y());
-    raw.values.visit([&]<class T>(std::span<const T> samples) {
-        const DensityOf<T> density(mapping);
-        volume.fill([&](int i, int j, int k) {
-            return density(samples[size_t(i) + row * size_t(j) + slice * size_t(k)]);
-        });
-    });
-    return volume;
-}
-
 VoxelVolume densifyNearBone(const RawVolume& raw, const DensityMapping& mapping,
                             const std::function<bool(size_t)>& is_kept) {
     return nearBone(raw, mapping, is_kept, [](int) {});
@@ -251,10 +237,6 @@ VoxelVolume densifyNearBone(RawVolume&& raw, const DensityMapping& mapping,
         // Bricks are filled layer by layer, so what lies a brick below is not asked for again.
         for (; kept + kBrickEdge <= size_t(k); ++kept) raw.values.forget(slice * kept, slice * (kept + 1));
     });
-}
-
-VoxelVolume densify(const RawVolume& raw, const DensityWindow& window) {
-    return densify(raw, chooseMapping(raw, window));
 }
 
 }  // namespace bonemill

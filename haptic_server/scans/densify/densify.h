@@ -1,9 +1,9 @@
-// Turns raw values into the bone's densities: window and iso-value.
+// Turns raw values into the bone's densities: window and iso-value; and clears what is no bone and not near
+// any, for it need not be kept.
 //
 // It is not RT-safe (it allocates) and has no shared state.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <optional>
 
@@ -38,15 +38,12 @@ struct DensityMapping {
 // value is finite.
 DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window);
 
-VoxelVolume densify(const RawVolume& raw, const DensityMapping& mapping);
-// What clearFarFromBone(is_kept) makes of that (far_air.h), without memory for what it clears.
+// Of all densities what clearFarFromBone(is_kept) leaves, without memory for what it clears.
 VoxelVolume densifyNearBone(const RawVolume& raw, const DensityMapping& mapping,
                             const std::function<bool(size_t)>& is_kept = {});
 // Gives the raw values' memory back as their densities come: both are never there as a whole.
 VoxelVolume densifyNearBone(RawVolume&& raw, const DensityMapping& mapping,
                             const std::function<bool(size_t)>& is_kept = {});
-// Does chooseMapping and densify in one.
-VoxelVolume densify(const RawVolume& raw, const DensityWindow& window);
 
 // Does is(brick) hold for this brick or one of its neighbours?
 template <class Is>

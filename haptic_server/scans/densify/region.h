@@ -1,5 +1,5 @@
-// Cuts the part of a scan where the burr works out of it, and gives it voxels that are fine enough for the
-// burr.
+// Gives a scan other voxels: cuts the part where the burr works out of it, with voxels that are fine enough
+// for the burr, and makes larger ones of what is only looked at.
 //
 // The scan is taken for a cubic B-spline through its voxels (Unser, Splines, IEEE Signal Processing Magazine
 // 16, 1999): smooth to the second derivative, and exact at the scan's own voxels. It makes nothing sharper
@@ -29,7 +29,8 @@ VolumeGeometry regionGeometry(const VolumeGeometry& scan, const Eigen::AlignedBo
 RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region, const ValueRange& band,
                          double blur = 0);
 
-// The coefficients depend on samples farther away by less than 1e-6 of their value.
+// The cubic B-spline is one through samples one apart, mirrored at both ends. Its coefficients depend on
+// samples farther away by less than 1e-6 of their value.
 inline constexpr int kSplineReach = 12;
 
 // Samples become the spline's coefficients, in place.
@@ -42,7 +43,7 @@ struct SplineWeights {
 };
 SplineWeights splineWeightsAt(double at, int count) noexcept;
 
-// Takes the voxel indices of `to` to those of `from`.
+// From the voxels of one grid to those of another: takes the voxel indices of `to` to those of `from`.
 inline Eigen::Affine3d indexMap(const VolumeGeometry& to, const VolumeGeometry& from) {
     const Pose X = from.X_WV.inverse() * to.X_WV;
     Eigen::Affine3d map = Eigen::Affine3d::Identity();

@@ -2,8 +2,6 @@
 
 #include <array>
 #include <bitset>
-#include <span>
-#include <vector>
 
 #include "common/base/user_error.h"
 #include "haptic_server/core/volume/index_box.h"

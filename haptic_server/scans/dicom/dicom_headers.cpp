@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "common/base/user_error.h"
 #include "common/process/work_ahead.h"
@@ -15,7 +13,6 @@
 #include "haptic_server/scans/dicom/dicom_groups.h"
 #include "haptic_server/scans/dicom/dicom_place.h"
 #include "haptic_server/scans/dicom/dicom_scan.h"
-#include "haptic_server/scans/dicom/dicom_slice.h"
 #include "haptic_server/scans/pixels/dicom_rescale.h"
 #include "haptic_server/scans/pixels/itk_image_file.h"
 
@@ -183,6 +180,17 @@ std::vector<DicomSlice> readHeader(const std::filesystem::path& path, LeftOut& l
     return slicesOf(places, slice);
 }
 
+std::string reasonToLeaveOut(const DicomScan& scan) {
+    if (scan.kind == DicomKind::kNotDicom) return "files that are not DICOM";
+    if (scan.drawing == DicomDrawing::kNone) return "DICOM files without an image";
+    if (scan.drawing == DicomDrawing::kSegmentation)
+        return "DICOM segmentations (SEG), each of which is a label map: give its file by name "
+               "(volume.label_path, make-case --labels)";
+    return "DICOM contours, surfaces or label maps (RTSTRUCT and others), which 3D Slicer loads and exports "
+           "as "
+           ".seg.nrrd or NIfTI";
+}
+
 }  // namespace
 
 void LeftOut::add(const std::string& reason, const std::filesystem::path& file) {
@@ -209,38 +217,14 @@ std::string LeftOut::text() const {
     return text;
 }
 
-namespace {
-
-std::vector<DicomSlice> leaveDrawingOut(DicomDrawing drawing, const std::filesystem::path& path,
-                                        LeftOut& left_out) {
-    left_out.add(drawing == DicomDrawing::kSegmentation
-                     ? "DICOM segmentations (SEG), each of which is a label map: give its file by name "
-                       "(volume.label_path, make-case --labels)"
-                     : "DICOM contours, surfaces or label maps (RTSTRUCT and others), which 3D Slicer loads "
-                       "and exports as .seg.nrrd or NIfTI",
-                 path);
-    return {};
-}
-
-}  // namespace
-
 std::vector<DicomSlice> slicesOfFile(const std::filesystem::path& path, LeftOut& left_out) {
     const DicomScan scan = scanDicomFile(path);
-    switch (scan.kind) {
-        case DicomKind::kNotDicom:
-            left_out.add("files that are not DICOM", path);
-            return {};
-        case DicomKind::kNoImage:
-            if (scan.drawing != DicomDrawing::kNone) return leaveDrawingOut(scan.drawing, path, left_out);
-            left_out.add("DICOM files without an image", path);
-            return {};
-        case DicomKind::kCutShort:
-            throw UserError(path.string() + ": the DICOM file is cut short or damaged: " + scan.problem);
-        case DicomKind::kImage:
-            if (scan.drawing != DicomDrawing::kNone) return leaveDrawingOut(scan.drawing, path, left_out);
-            break;
-    }
-    return readHeader(path, left_out);
+    if (scan.kind == DicomKind::kCutShort)
+        throw UserError(path.string() + ": the DICOM file is cut short or damaged: " + scan.problem);
+    if (scan.kind == DicomKind::kImage && scan.drawing == DicomDrawing::kNone)
+        return readHeader(path, left_out);
+    left_out.add(reasonToLeaveOut(scan), path);
+    return {};
 }
 
 std::vector<DicomSlice> slicesOfFiles(const std::vector<std::filesystem::path>& files, LeftOut& left_out,

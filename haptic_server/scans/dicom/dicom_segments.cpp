@@ -3,9 +3,6 @@
 #include <gdcmReader.h>
 #include <gdcmTransferSyntax.h>
 
-#include <algorithm>
-#include <array>
-#include <cstring>
 #include <map>
 #include <set>
 #include <span>

@@ -17,8 +17,9 @@ namespace bonemill {
 // scanned (dicom_scan.h). Throws UserError naming it.
 RawVolume importDicomSegments(const std::filesystem::path& file);
 
-// Of L*, a* and b* as stored (L* of 0 .. 100 and a*, b* of -128 .. 127 over 0 .. 65535): red, green, blue of
-// sRGB, 0 .. 1, each cut off there.
+// The colours are CIELab of the profile connection space (illuminant D50), PS3.3 C.10.7.1.1. Of L*, a* and b*
+// as stored (L* of 0 .. 100 and a*, b* of -128 .. 127 over 0 .. 65535): red, green, blue of sRGB, 0 .. 1,
+// each cut off there.
 inline Eigen::Vector3d colorOfLab(const std::array<uint16_t, 3>& stored) {
     constexpr double kMax = 65535;
     const double lightness = stored[0] / kMax * 100;

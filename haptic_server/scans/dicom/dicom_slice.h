@@ -13,7 +13,8 @@
 
 namespace bonemill {
 
-// As the headers say, without padding; empty: nothing.
+// What tells the pictures of one series apart that show the same place: several acquisitions, phases,
+// weightings or reconstructions. As the headers say, without padding; empty: nothing.
 struct DicomTraits {
     std::string acquisition_number;  // (0020,0012), of frames (0020,9156)
     std::string temporal_position;   // (0020,0100), of frames (0020,9128)

@@ -24,6 +24,19 @@ constexpr double kMaxLeaningDegrees =
 constexpr double kTurnedDegrees = 0.05;
 constexpr size_t kMostNamed = 4;
 
+double placeAlong(const Eigen::Vector3d& normal, const DicomSlice& slice) {
+    return normal.dot(slice.position_mm);
+}
+
+std::string nameOfSlice(const DicomSlice& slice) {
+    const std::string file = slice.path.filename().string();
+    return slice.frame == 0 ? file : file + " frame " + std::to_string(slice.frame + 1);
+}
+
+std::string nameAndPlace(const DicomSlice& slice, const Eigen::Vector3d& normal) {
+    return nameOfSlice(slice) + printed(" at %.3f mm", placeAlong(normal, slice));
+}
+
 double degreesBetween(const DicomSlice& a, const DicomSlice& b) {
     Eigen::Matrix3d R_WA, R_WB;
     R_WA << a.row_direction, a.column_direction, a.normal();
@@ -80,19 +93,6 @@ SliceDistances distancesOf(const std::vector<SlicePlace>& places) {
     const SliceDistances found{*std::ranges::min_element(all), 0, *most, size_t(most - all.begin())};
     std::ranges::sort(all);
     return {found.least, all[all.size() / 2], found.most, found.after_most};
-}
-
-double placeAlong(const Eigen::Vector3d& normal, const DicomSlice& slice) {
-    return normal.dot(slice.position_mm);
-}
-
-std::string nameOfSlice(const DicomSlice& slice) {
-    const std::string file = slice.path.filename().string();
-    return slice.frame == 0 ? file : file + " frame " + std::to_string(slice.frame + 1);
-}
-
-std::string nameAndPlace(const DicomSlice& slice, const Eigen::Vector3d& normal) {
-    return nameOfSlice(slice) + printed(" at %.3f mm", placeAlong(normal, slice));
 }
 
 // Empty, or that N slices are missing that bone cannot be guessed there, and where.

@@ -1,4 +1,5 @@
-// Finds what floats beside the bone, and takes it away: noise, pieces of the headrest, wires.
+// Finds where the bone lies and what floats beside it, and takes that away: noise, pieces of the headrest,
+// wires.
 //
 // A piece is what is connected through voxel faces (6 neighbours) at or above the iso-value. For start-up
 // only: not RT-safe, allocates 16 bytes per run of such voxels along x, and BonePiece per piece.
@@ -12,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "haptic_server/core/volume/index_box.h"
 #include "haptic_server/core/volume/voxel_volume.h"
 
 namespace bonemill {
@@ -62,7 +62,7 @@ struct PieceCount {
 // Drops the pieces with fewer voxels than that.
 PieceCount removeSmallPieces(VoxelVolume& volume, uint32_t smallest_piece_voxels);
 
-// The voxels that bone reaches to; empty without bone.
+// The voxels that bone reaches to; empty without bone. Looks at every voxel that is not air all around.
 IndexBox boneBox(const VoxelVolume& volume);
 
 // Its middle voxels' places in V, m.

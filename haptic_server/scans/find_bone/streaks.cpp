@@ -5,8 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "common/base/units.h"
-
 namespace bonemill {
 namespace {
 

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <map>
-#include <optional>
 #include <sstream>
 #include <string>
 

@@ -15,6 +15,11 @@ namespace {
 
 using nlohmann::json;
 
+// These words stand behind the program's name, and before the path.
+constexpr char kReadVolumeWord[] = "read-volume";  // then the options
+constexpr char kReadSeriesWord[] = "read-series";
+
+// As one word, for the program that reads.
 std::string textOfOptions(const ImportOptions& options) {
     json text = {{"series_uid", options.series_uid},
                  {"acquisition", options.acquisition},
@@ -47,7 +52,7 @@ constexpr int kPipe = 3, kName = 4;
 std::string reader_program;  // empty: none
 
 // With CLOEXEC ends above those numbers nothing else of this process's files is left open in the reader.
-pid_t spawnReader(std::vector<std::string> words, int pipe, int name) {
+pid_t spawn(std::vector<std::string> words, int pipe, int name) {
     std::vector<char*> raw;
     for (std::string& word : words) raw.push_back(word.data());
     raw.push_back(nullptr);
@@ -64,6 +69,10 @@ pid_t spawnReader(std::vector<std::string> words, int pipe, int name) {
     if (posix_spawn(&child, words[0].c_str(), &actions, nullptr, raw.data(), environ) != 0) child = -1;
     posix_spawn_file_actions_destroy(&actions);
     return child;
+}
+
+StartReader spawnReader(const std::vector<std::string>& words) {
+    return [words](int pipe, int name) { return spawn(words, pipe, name); };
 }
 
 // The scenes of deploy/scenes read what deploy/make-phantoms puts into build/data.
@@ -91,20 +100,6 @@ void setReaderProgram(const std::string& program) {
     reader_program = program;
 }
 
-bool hasReaderProgram() {
-    return !reader_program.empty();
-}
-
-RawVolume importByProgram(const std::filesystem::path& path, const ImportOptions& options) {
-    std::vector<std::string> words{reader_program, kReadVolumeWord, path.string(), textOfOptions(options)};
-    return importFrom(path, [&](int pipe, int name) { return spawnReader(words, pipe, name); });
-}
-
-std::vector<std::string> listByProgram(const std::filesystem::path& path) {
-    std::vector<std::string> words{reader_program, kReadSeriesWord, path.string()};
-    return linesFrom(path, [&](int pipe, int name) { return spawnReader(words, pipe, name); });
-}
-
 // A path may look like an option, so that no parser of options sees it.
 void runReaderIfCalled(int argc, char** argv) {
     const std::vector<std::string> words(argv, argv + argc);
@@ -119,8 +114,9 @@ void runReaderIfCalled(int argc, char** argv) {
 }
 
 RawVolume importVolume(const std::filesystem::path& path, const ImportOptions& options) {
-    if (hasReaderProgram()) return importByProgram(path, options);
-    return importGuarded(path, [&] { return importVolumeHere(path, options); });
+    if (reader_program.empty()) return importGuarded(path, [&] { return importVolumeHere(path, options); });
+    return importFrom(path,
+                      spawnReader({reader_program, kReadVolumeWord, path.string(), textOfOptions(options)}));
 }
 
 RawVolume importVolumeHere(const std::filesystem::path& path, const ImportOptions& options) {
@@ -131,8 +127,8 @@ RawVolume importVolumeHere(const std::filesystem::path& path, const ImportOption
 }
 
 std::vector<std::string> listSeries(const std::filesystem::path& path) {
-    if (hasReaderProgram()) return listByProgram(path);
-    return linesGuarded(path, [&] { return listSeriesHere(path); });
+    if (reader_program.empty()) return linesGuarded(path, [&] { return listSeriesHere(path); });
+    return linesFrom(path, spawnReader({reader_program, kReadSeriesWord, path.string()}));
 }
 
 std::vector<std::string> listSeriesHere(const std::filesystem::path& path) {

@@ -10,8 +10,13 @@
 //   .stl .ply             closed surface
 //
 // Lengths in m, world frame W = LPS of the file (x to the patient's left, y back, z up). Start-up
-// only: allocates, and starts a process that reads (guarded_import.h, import_program.h); not RT-safe, not for
-// two threads at once.
+// only: allocates, and starts a process that reads (guarded_import.h); not RT-safe, not for two threads at
+// once.
+//
+// The reader may be a program of its own: haptic_server starts itself once more for it. A child that is
+// forked while other threads run may only call what is safe in a signal handler: a lock that another thread
+// held stays locked in it for ever. A process that is spawned begins anew, and the kernel copies no page
+// table of locked memory for it, which the tick would feel.
 #pragma once
 
 #include <filesystem>
@@ -42,23 +47,15 @@ RawVolume importVolumeHere(const std::filesystem::path& path, const ImportOption
 std::vector<std::string> listSeries(const std::filesystem::path& path);
 std::vector<std::string> listSeriesHere(const std::filesystem::path& path);
 
-// These words stand behind the program's name, and before the path.
-inline constexpr char kReadVolumeWord[] = "read-volume";  // then the options (import_options_text.h)
-inline constexpr char kReadSeriesWord[] = "read-series";
-
 // Runs the reader's own end if the words of the command line call it, and does not return then.
 void runReaderIfCalled(int argc, char** argv);
 
 // From now on importVolume() and listSeries() start this program as a reader: `haptic_server`'s main says it
 // first of all.
 void setReaderProgram(const std::string& program);
-bool hasReaderProgram();
 
-// Do what importVolume() and listSeries() do. Throw UserError.
-RawVolume importByProgram(const std::filesystem::path& path, const ImportOptions& options);
-std::vector<std::string> listByProgram(const std::filesystem::path& path);
-
-// The file or folder is there. Both throw UserError with one message that names it.
+// What reads volumes in this build, for the reader's process: every_reader.cpp, or nrrd_reader.cpp where it
+// has no readers of scans. The file or folder is there. Both throw UserError with one message that names it.
 RawVolume readVolume(const std::filesystem::path& path, const ImportOptions& options);
 std::vector<std::string> readSeries(const std::filesystem::path& path);
 

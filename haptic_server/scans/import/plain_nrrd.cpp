@@ -6,10 +6,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <functional>
-#include <memory>
-#include <sstream>
 #include <vector>
 
 #include "common/base/user_error.h"
@@ -21,15 +17,6 @@ namespace bonemill {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "bytes are swapped for files that are big endian");
-
-std::vector<double> numbersIn(std::string text) {
-    for (char& c : text)
-        if (c == '(' || c == ',' || c == ')') c = ' ';
-    std::istringstream words(text);
-    std::vector<double> numbers;
-    for (std::string word; words >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
-    return numbers;
-}
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
     throw UserError(path.string() + ": " + why +

@@ -1,4 +1,4 @@
-// Segments as text, and what people write of them.
+// Segments as text, what people write of them, and numbers for the combinations of them that voxels are of.
 #pragma once
 
 #include <bitset>
@@ -26,6 +26,7 @@ std::vector<uint32_t> labelsOfSegment(const Segments& segments, const std::strin
 
 using SegmentMembers = std::bitset<kMaxSegments>;  // numbers in Segments::list
 
+// With them a label map stays one number per voxel.
 class SegmentCodes {
   public:
     // `file` is for messages.

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
-#include <vector>
 
 #include "common/base/user_error.h"
 
@@ -77,22 +76,18 @@ bool isPatientSpace(const std::string& space) {
 }
 
 // The library takes vectors whose length is no number for 1 mm.
-void checkDirections(std::string text, const std::filesystem::path& path) {
+void checkDirections(const std::string& text, const std::filesystem::path& path) {
     constexpr double kFarTooLong = 1e100;
-    for (char& c : text)
-        if (c == '(' || c == ',' || c == ')') c = ' ';
-    std::istringstream words(text);
-    for (std::string word; words >> word;)
-        if (!(std::abs(std::strtod(word.c_str(), nullptr)) <= kFarTooLong))
+    for (const double n : numbersIn(text))
+        if (!(std::abs(n) <= kFarTooLong))
             throw UserError(path.string() +
                             ": the voxel spacing is not a sensible length; the header is damaged");
 }
 
 // For "nan", which stands where nothing is known, the library takes 1 mm, too.
 void checkSpacings(const std::string& text, const std::filesystem::path& path) {
-    std::istringstream words(text);
-    for (std::string word; words >> word;)
-        if (!std::isfinite(std::strtod(word.c_str(), nullptr)))
+    for (const double n : numbersIn(text))
+        if (!std::isfinite(n))
             throw UserError(path.string() + ": its spacings (" + text +
                             ") are no lengths; write the voxels' size into the NRRD header");
 }
@@ -100,9 +95,8 @@ void checkSpacings(const std::string& text, const std::filesystem::path& path) {
 // The library counts some of them with 32 bit, and would take 2^32 + 1 for 1.
 void checkSizes(const std::string& text, const std::filesystem::path& path) {
     constexpr double kMostSize = double(uint64_t(1) << 31);
-    std::istringstream words(text);
-    for (std::string word; words >> word;)
-        if (!(std::strtod(word.c_str(), nullptr) <= kMostSize))
+    for (const double n : numbersIn(text))
+        if (!(n <= kMostSize))
             throw UserError(path.string() + ": its sizes (" + text + ") are absurd; the header is damaged");
 }
 
@@ -147,6 +141,15 @@ void takeLine(const std::string& line, const std::filesystem::path& path, NrrdHe
 }
 
 }  // namespace
+
+std::vector<double> numbersIn(std::string text) {
+    for (char& c : text)
+        if (c == '(' || c == ',' || c == ')') c = ' ';
+    std::istringstream words(text);
+    std::vector<double> numbers;
+    for (std::string word; words >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
+    return numbers;
+}
 
 std::string firstBytes(const std::filesystem::path& path, size_t most) {
     std::ifstream file(path, std::ios::binary);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
-#include <cstdio>
 #include <fstream>
 #include <new>
 #include <type_traits>
@@ -14,50 +13,19 @@
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/files/whole_file.h"
+#include "common/text/printed_text.h"
 #include "haptic_server/scans/nrrd/nrrd_header.h"
 
 namespace bonemill {
 namespace {
 
-class Deflater {
-  public:
-    Deflater() {
-        constexpr int kGzipWindow = 15 + 16;  // zlib: 16 added asks for a gzip wrapper, without a time stamp
-        if (deflateInit2(&stream_, Z_BEST_SPEED, Z_DEFLATED, kGzipWindow, 8, Z_DEFAULT_STRATEGY) != Z_OK)
-            throw std::bad_alloc();
-    }
-    ~Deflater() { deflateEnd(&stream_); }
-    Deflater(const Deflater&) = delete;
-    Deflater& operator=(const Deflater&) = delete;
-
-    // `flush` is Z_NO_FLUSH, or Z_FINISH for the last bytes.
-    void write(std::span<const std::byte> bytes, int flush, std::ofstream& file) {
-        stream_.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data()));
-        stream_.avail_in = uInt(bytes.size());
-        do {
-            stream_.next_out = out_.data();
-            stream_.avail_out = uInt(out_.size());
-            deflate(&stream_, flush);
-            file.write(reinterpret_cast<const char*>(out_.data()),
-                       std::streamsize(out_.size() - stream_.avail_out));
-        } while (stream_.avail_out == 0);  // zlib: room left means that all input is used
-    }
-
-  private:
-    z_stream stream_{};
-    std::vector<Bytef> out_ = std::vector<Bytef>(size_t(1) << 18);
-};
-
 static_assert(std::endian::native == std::endian::little, "the header says little endian");
 
 std::string vectorText(const Eigen::Vector3d& v) {
-    char text[128];
-    std::snprintf(text, sizeof text, "(%.17g,%.17g,%.17g)", v.x(), v.y(), v.z());
-    return text;
+    return printed("(%.17g,%.17g,%.17g)", v.x(), v.y(), v.z());
 }
 
-std::string headerText(const VolumeGeometry& geometry, const char* type, NrrdEncoding encoding,
-                       bool lacks_patient_axes) {
+std::string headerText(const VolumeGeometry& geometry, const char* type, bool lacks_patient_axes) {
     const Eigen::Matrix3d R_WV = geometry.X_WV.rotation.toRotationMatrix();
     const Eigen::Vector3d spacing_mm = geometry.spacing * kPerMillimetre;
     std::string text = "NRRD0004\n";
@@ -66,9 +34,8 @@ std::string headerText(const VolumeGeometry& geometry, const char* type, NrrdEnc
     for (int a = 0; a < 3; ++a) text += ' ' + std::to_string(geometry.dims[a]);
     text += "\nspace directions:";
     for (int a = 0; a < 3; ++a) text += ' ' + vectorText(R_WV.col(a) * spacing_mm[a]);
-    text += "\nkinds: domain domain domain\nendian: little\n";
-    text += std::string("encoding: ") + (encoding == NrrdEncoding::kGzip ? "gzip" : "raw");
-    text += "\nspace units: \"mm\" \"mm\" \"mm\"\n";
+    text += "\nkinds: domain domain domain\nendian: little\nencoding: gzip\n";
+    text += "space units: \"mm\" \"mm\" \"mm\"\n";
     text += "space origin: " + vectorText(geometry.X_WV.position * kPerMillimetre) + "\n";
     text += std::string(kNrrdGeometryKey) + ":=" + geometryToText(geometry) + "\n\n";
     return text;
@@ -81,36 +48,27 @@ constexpr const char* typeName() {
     return std::is_same_v<T, uint16_t> ? "uint16" : "float";
 }
 
-template <class T>
-void write(const std::filesystem::path& path, const VolumeGeometry& geometry, std::span<const T> values,
-           NrrdEncoding encoding) {
-    NrrdStream<T> file(path, geometry, encoding);
-    file.append(values);
-    file.close();
-}
-
 }  // namespace
 
 template <class T>
 class NrrdStream<T>::File {
   public:
-    File(const std::filesystem::path& path, const std::string& header, NrrdEncoding encoding)
+    File(const std::filesystem::path& path, const std::string& header)
         : whole_(path), file_(whole_.part(), std::ios::binary | std::ios::trunc) {
+        constexpr int kGzipWindow = 15 + 16;  // zlib: 16 added asks for a gzip wrapper, without a time stamp
         file_.write(header.data(), std::streamsize(header.size()));
-        if (encoding == NrrdEncoding::kGzip) deflater_ = std::make_unique<Deflater>();
+        if (deflateInit2(&stream_, Z_BEST_SPEED, Z_DEFLATED, kGzipWindow, 8, Z_DEFAULT_STRATEGY) != Z_OK)
+            throw std::bad_alloc();
     }
+    ~File() { deflateEnd(&stream_); }
+
     void write(std::span<const std::byte> bytes) {
         constexpr size_t kChunk = size_t(1) << 26;  // zlib counts with 32 bit
-        for (size_t begin = 0; begin < bytes.size(); begin += kChunk) {
-            const auto chunk = bytes.subspan(begin, std::min(kChunk, bytes.size() - begin));
-            if (deflater_)
-                deflater_->write(chunk, Z_NO_FLUSH, file_);
-            else
-                file_.write(reinterpret_cast<const char*>(chunk.data()), std::streamsize(chunk.size()));
-        }
+        for (size_t begin = 0; begin < bytes.size(); begin += kChunk)
+            pack(bytes.subspan(begin, std::min(kChunk, bytes.size() - begin)), Z_NO_FLUSH);
     }
     void close(bool is_full) {
-        if (deflater_) deflater_->write({}, Z_FINISH, file_);
+        pack({}, Z_FINISH);
         file_.close();
         if (!file_) throw UserError("cannot write " + whole_.path().string() + "; is its disk full?");
         if (!is_full) throw UserError(whole_.path().string() + ": too few or too many values for the volume");
@@ -118,16 +76,29 @@ class NrrdStream<T>::File {
     }
 
   private:
+    // `flush` is Z_NO_FLUSH, or Z_FINISH for the last bytes.
+    void pack(std::span<const std::byte> bytes, int flush) {
+        stream_.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data()));
+        stream_.avail_in = uInt(bytes.size());
+        do {
+            stream_.next_out = out_.data();
+            stream_.avail_out = uInt(out_.size());
+            deflate(&stream_, flush);
+            file_.write(reinterpret_cast<const char*>(out_.data()),
+                        std::streamsize(out_.size() - stream_.avail_out));
+        } while (stream_.avail_out == 0);  // zlib: room left means that all input is used
+    }
+
     WholeFile whole_;
     std::ofstream file_;
-    std::unique_ptr<Deflater> deflater_;
+    z_stream stream_{};
+    std::vector<Bytef> out_ = std::vector<Bytef>(size_t(1) << 18);
 };
 
 template <class T>
 NrrdStream<T>::NrrdStream(const std::filesystem::path& path, const VolumeGeometry& geometry,
-                          NrrdEncoding encoding, bool lacks_patient_axes)
-    : file_(std::make_unique<File>(path, headerText(geometry, typeName<T>(), encoding, lacks_patient_axes),
-                                   encoding)),
+                          bool lacks_patient_axes)
+    : file_(std::make_unique<File>(path, headerText(geometry, typeName<T>(), lacks_patient_axes))),
       missing_(geometry.voxelCount()) {}
 
 template <class T>
@@ -149,24 +120,9 @@ template class NrrdStream<int16_t>;
 template class NrrdStream<uint16_t>;
 template class NrrdStream<float>;
 
-void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,
-               std::span<const uint8_t> values, NrrdEncoding encoding) {
-    write(path, geometry, values, encoding);
-}
-
-void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,
-               std::span<const uint16_t> values, NrrdEncoding encoding) {
-    write(path, geometry, values, encoding);
-}
-
-void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,
-               std::span<const float> values, NrrdEncoding encoding) {
-    write(path, geometry, values, encoding);
-}
-
-void writeNrrd(const std::filesystem::path& path, const VoxelVolume& volume, NrrdEncoding encoding) {
+void writeNrrd(const std::filesystem::path& path, const VoxelVolume& volume) {
     const Eigen::Vector3i& n = volume.dims();
-    NrrdStream<Density> file(path, volume.geometry(), encoding);
+    NrrdStream<Density> file(path, volume.geometry());
     std::vector<Density> row(size_t(n.x()));
     for (int k = 0; k < n.z(); ++k)
         for (int j = 0; j < n.y(); ++j) {

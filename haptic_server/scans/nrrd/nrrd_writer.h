@@ -16,12 +16,11 @@
 
 namespace bonemill {
 
-enum class NrrdEncoding { kRaw, kGzip };
-
+// Writes a file of T = uint8_t, int16_t, uint16_t or float as the values come: no volume is too large for it.
 template <class T>
 class NrrdStream {
   public:
-    NrrdStream(const std::filesystem::path& path, const VolumeGeometry& geometry, NrrdEncoding encoding,
+    NrrdStream(const std::filesystem::path& path, const VolumeGeometry& geometry,
                bool lacks_patient_axes = false);
     ~NrrdStream();
     NrrdStream(const NrrdStream&) = delete;
@@ -39,16 +38,7 @@ class NrrdStream {
     uint64_t missing_;  // values still to come
 };
 
-// `values` are x fastest, exactly geometry.voxelCount() of them.
-void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,
-               std::span<const uint8_t> values, NrrdEncoding encoding = NrrdEncoding::kGzip);
-void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,
-               std::span<const uint16_t> values, NrrdEncoding encoding = NrrdEncoding::kGzip);
-void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,
-               std::span<const float> values, NrrdEncoding encoding = NrrdEncoding::kGzip);
-
 // Writes the densities (counts, 16 bit) without the border of air.
-void writeNrrd(const std::filesystem::path& path, const VoxelVolume& volume,
-               NrrdEncoding encoding = NrrdEncoding::kGzip);
+void writeNrrd(const std::filesystem::path& path, const VoxelVolume& volume);
 
 }  // namespace bonemill

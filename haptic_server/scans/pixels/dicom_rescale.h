@@ -1,9 +1,9 @@
-// How a DICOM image's stored values become what they mean (HU for CT): slope * stored + intercept.
+// The decimal numbers of a DICOM text (VR DS, "0.5\0.5"), which libraries read as 0 or as 1 where there is no
+// number; and how stored values become what they mean (HU for CT): slope * stored + intercept.
 //
 // There is no Eigen in here: ITK's sources include it.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <map>
 #include <mutex>
 #include <span>
 #include <sstream>
@@ -110,46 +111,22 @@ void readSamples(itk::ImageIOBase& io, RawValues& values) {
 // It is false for a sample type that is no plain number.
 bool readAs(itk::IOComponentEnum type, itk::ImageIOBase& io, RawValues& values) {
     using Type = itk::IOComponentEnum;
-    switch (type) {
-        case Type::UCHAR:
-            readSamples<unsigned char>(io, values);
-            break;
-        case Type::CHAR:
-            readSamples<signed char>(io, values);
-            break;
-        case Type::USHORT:
-            readSamples<unsigned short>(io, values);
-            break;
-        case Type::SHORT:
-            readSamples<short>(io, values);
-            break;
-        case Type::UINT:
-            readSamples<unsigned int>(io, values);
-            break;
-        case Type::INT:
-            readSamples<int>(io, values);
-            break;
-        case Type::ULONG:
-            readSamples<unsigned long>(io, values);
-            break;
-        case Type::LONG:
-            readSamples<long>(io, values);
-            break;
-        case Type::ULONGLONG:
-            readSamples<unsigned long long>(io, values);
-            break;
-        case Type::LONGLONG:
-            readSamples<long long>(io, values);
-            break;
-        case Type::FLOAT:
-            readSamples<float>(io, values);
-            break;
-        case Type::DOUBLE:
-            readSamples<double>(io, values);
-            break;
-        default:
-            return false;
-    }
+    using Read = void (*)(itk::ImageIOBase&, RawValues&);
+    static const std::map<Type, Read> kReads{{Type::UCHAR, readSamples<unsigned char>},
+                                             {Type::CHAR, readSamples<signed char>},
+                                             {Type::USHORT, readSamples<unsigned short>},
+                                             {Type::SHORT, readSamples<short>},
+                                             {Type::UINT, readSamples<unsigned int>},
+                                             {Type::INT, readSamples<int>},
+                                             {Type::ULONG, readSamples<unsigned long>},
+                                             {Type::LONG, readSamples<long>},
+                                             {Type::ULONGLONG, readSamples<unsigned long long>},
+                                             {Type::LONGLONG, readSamples<long long>},
+                                             {Type::FLOAT, readSamples<float>},
+                                             {Type::DOUBLE, readSamples<double>}};
+    const auto read = kReads.find(type);
+    if (read == kReads.end()) return false;
+    read->second(io, values);
     return true;
 }
 

@@ -165,7 +165,7 @@ TEST(PlantedPatient, IsFoundInPackedBytes) {
     geometry.dims = {24, 24, 24};
     std::vector<uint8_t> values(geometry.voxelCount(), 0);
     std::ranges::copy(std::string("QvPlanted"), values.begin() + 5000);
-    NrrdStream<uint8_t> stream(folder / "a.nrrd", geometry, NrrdEncoding::kGzip);
+    NrrdStream<uint8_t> stream(folder / "a.nrrd", geometry);
     stream.append(std::span<const uint8_t>(values));
     stream.close();
     EXPECT_TRUE(test::plantedIn(textOfFile(folder / "a.nrrd")).empty());

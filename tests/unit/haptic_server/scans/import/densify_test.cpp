@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "tests/support/whole_densities.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"
 
 namespace bonemill {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "haptic_server/scans/formats/volume_file.h"
-#include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/write_nrrd.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"
 #include "tests/unit/haptic_server/scans/import/seg_nrrd.h"
 #include "tests/unit/haptic_server/scans/import/volume_files.h"
