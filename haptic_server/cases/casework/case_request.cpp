@@ -7,8 +7,7 @@
 #include "common/base/user_error.h"
 #include "common/cli/number_range.h"
 #include "common/text/printed_text.h"
-#include "haptic_server/scans/labels/material_ids.h"
-#include "haptic_server/scans/labels/segment_text.h"
+#include "haptic_server/scans/labels/labels.h"
 
 namespace bonemill {
 namespace {
@@ -61,6 +60,8 @@ std::string numberText(double value) {
 
 class RequestWords {
   public:
+    explicit RequestWords(const std::string& first) : words_{first} {}
+
     void add(const char* option, const std::string& word) {
         if (!word.empty()) words_.insert(words_.end(), {option, word});
     }
@@ -112,7 +113,7 @@ bool isSameStructure(const CaseLabel& a, const CaseLabel& b) {
 }  // namespace
 
 std::vector<std::string> wordsOf(const CaseRequest& request) {
-    RequestWords words;
+    RequestWords words(request.scan);
     words.add("--out", request.out);
     words.add("--series", request.series);
     words.add("--acquisition", request.acquisition);
@@ -130,9 +131,7 @@ std::vector<std::string> wordsOf(const CaseRequest& request) {
     for (const std::string& word : request.label_words) words.add("--label", word);
     words.add("--tools", request.tools);
     words.add("--figures", request.figures);
-    std::vector<std::string> all{request.scan};
-    for (std::string& word : words.take()) all.push_back(std::move(word));
-    return all;
+    return words.take();
 }
 
 std::string commandLineOf(const std::string& command, const CaseRequest& request) {

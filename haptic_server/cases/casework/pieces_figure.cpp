@@ -8,7 +8,7 @@
 
 #include "common/base/units.h"
 #include "common/text/printed_text.h"
-#include "haptic_server/scans/find_bone/volume_text.h"
+#include "haptic_server/scans/find_bone/bone_pieces.h"
 
 namespace bonemill {
 namespace {
@@ -73,7 +73,7 @@ std::vector<PieceView> viewsOf(const CasePlan& plan, const VolumeGeometry& geome
     for (const SideOfFigure& side : kSides) views.emplace_back(side.side, box, pixel);
     const Eigen::Matrix3d axes = geometry.X_WV.rotation.toRotationMatrix() * geometry.spacing.asDiagonal();
     const Eigen::Vector3d half = axes.cwiseAbs().rowwise().sum() / 2;
-    plan.pieces->forEachRun([&](size_t piece, const Eigen::Vector3i& first, int length) {
+    plan.all_pieces->forEachRun([&](size_t piece, const Eigen::Vector3i& first, int length) {
         if (piece >= count) return;
         for (int n = 0; n < length; ++n) {
             const Eigen::Vector3d p_W =
@@ -155,7 +155,7 @@ std::string legendOf(const CasePlan& plan, const VolumeGeometry& geometry, const
     };
     next(nullptr, "{/:Bold Pieces of bone}, by the numbers of --drop-piece");
     for (size_t n = 0; n < std::min(count, kMaxColours); ++n) {
-        const double volume = double(plan.pieces->list()[n].voxels) * geometry.spacing.prod();
+        const double volume = double(plan.all_pieces->list()[n].voxels) * geometry.spacing.prod();
         next(&kColours[n],
              std::to_string(n + 1) + ":  " + volumeText(volume) + (plan.is_dropped[n] ? ", left out" : ""));
     }
@@ -268,11 +268,11 @@ std::vector<PieceView::Pixel> PieceView::labelsOf(uint8_t pieces) const {
 
 PiecesFigure piecesFigure(const RawVolume& scan, const CasePlan& plan) {
     const VolumeGeometry& geometry = scan.geometry;
-    const auto noise = std::ranges::count_if(plan.pieces->list(), [&](const BonePiece& piece) {
+    const auto noise = std::ranges::count_if(plan.all_pieces->list(), [&](const BonePiece& piece) {
         return piece.voxels < plan.smallest_piece_voxels;
     });
-    const size_t count = plan.pieces->list().size() - size_t(noise);
-    const Eigen::AlignedBox3d box = boxOfDrawn(*plan.pieces, geometry, count);
+    const size_t count = plan.all_pieces->list().size() - size_t(noise);
+    const Eigen::AlignedBox3d box = boxOfDrawn(*plan.all_pieces, geometry, count);
     const double pixel = std::max(box.sizes().maxCoeff() / kMaxPixels, geometry.spacing.minCoeff());
     const std::vector<PieceView> views = viewsOf(plan, geometry, box, pixel, count);
     std::vector<Colour> colours(kColours.begin(), kColours.end());

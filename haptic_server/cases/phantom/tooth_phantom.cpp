@@ -7,6 +7,7 @@
 
 #include "common/base/units.h"
 #include "haptic_server/cases/phantom/spline_shapes.h"
+#include "haptic_server/core/volume/index_box.h"
 
 namespace bonemill {
 namespace {
@@ -158,11 +159,9 @@ class TissueMap {
   public:
     explicit TissueMap(const VolumeGeometry& geometry) : size_(geometry.dims.array() + 2) {
         tissue_.reserve(size_t(size_.x()) * size_t(size_.y()) * size_t(size_.z()));
-        for (int k = -1; k <= geometry.dims.z(); ++k)
-            for (int j = -1; j <= geometry.dims.y(); ++j)
-                for (int i = -1; i <= geometry.dims.x(); ++i)
-                    tissue_.push_back(
-                        toothTissue(geometry.X_WV * geometry.spacing.cwiseProduct(Eigen::Vector3d(i, j, k))));
+        forEachIndex({Eigen::Vector3i::Constant(-1), geometry.dims}, [&](const Eigen::Vector3i& v) {
+            tissue_.push_back(toothTissue(geometry.X_WV * geometry.spacing.cwiseProduct(v.cast<double>())));
+        });
     }
     ToothTissue at(int i, int j, int k) const {
         return tissue_[size_t(i + 1) +

@@ -10,7 +10,7 @@
 #include "common/base/user_error.h"
 #include "common/config/scene_tools.h"
 #include "common/process/gnuplot.h"
-#include "haptic_server/lab/accuracy_report/plot.h"
+#include "haptic_server/lab/accuracy_report/report_files.h"
 #include "haptic_server/lab/accuracy_report/sweep.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 

@@ -54,13 +54,11 @@ VoxelVolume halfSpace(double half_edge, double spacing, std::mt19937& random) {
     const Vector3d shift = spacing / 2 * Vector3d(uniform(random), uniform(random), uniform(random));
     geometry.X_WV.position = shift - geometry.X_WV.rotation * middle;
     VoxelVolume volume(geometry, kIso);
-    for (int k = 0; k < geometry.dims.z(); ++k)
-        for (int j = 0; j < geometry.dims.y(); ++j)
-            for (int i = 0; i < geometry.dims.x(); ++i) {
-                const double height = (geometry.X_WV * (spacing * Vector3d(i, j, k))).z();
-                const double density = kIso - height / (kProbedRampVoxels * spacing) * kMaxDensity;
-                volume.set(i, j, k, Density(std::lround(std::clamp(density, 0.0, double(kMaxDensity)))));
-            }
+    forEachIndex({Eigen::Vector3i::Zero(), geometry.dims.array() - 1}, [&](const Eigen::Vector3i& v) {
+        const double height = (geometry.X_WV * (spacing * v.cast<double>())).z();
+        const double density = kIso - height / (kProbedRampVoxels * spacing) * kMaxDensity;
+        volume.set(v.x(), v.y(), v.z(), Density(std::lround(std::clamp(density, 0.0, double(kMaxDensity)))));
+    });
     return volume;
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "common/device_messages/device_messages.h"
-#include "haptic_server/lab/accuracy_report/fine_bone.h"
+#include "haptic_server/lab/accuracy_report/truth.h"
 #include "haptic_server/lab/simulate/run_path.h"
 
 namespace bonemill {
@@ -38,15 +38,13 @@ std::vector<Vector3d> thinned(const std::vector<Vector3d>& path_W, const Pose& X
 // Counts samples of bone inside the burr at any of the positions (V of `before`).
 size_t sweptCount(const VoxelVolume& before, const std::vector<Vector3d>& path, double radius) {
     size_t count = 0;
-    for (int k = 0; k < before.dims().z(); ++k)
-        for (int j = 0; j < before.dims().y(); ++j)
-            for (int i = 0; i < before.dims().x(); ++i) {
-                if (before.at(i, j, k) < before.iso()) continue;
-                const Vector3d p_V = before.spacing().cwiseProduct(Vector3d(i, j, k));
-                count += std::any_of(path.begin(), path.end(), [&](const Vector3d& center) {
-                    return (p_V - center).squaredNorm() < radius * radius;
-                });
-            }
+    forEachIndex({Eigen::Vector3i::Zero(), before.dims().array() - 1}, [&](const Eigen::Vector3i& v) {
+        if (before.at(v.x(), v.y(), v.z()) < before.iso()) return;
+        const Vector3d p_V = before.spacing().cwiseProduct(v.cast<double>());
+        count += std::any_of(path.begin(), path.end(), [&](const Vector3d& center) {
+            return (p_V - center).squaredNorm() < radius * radius;
+        });
+    });
     return count;
 }
 

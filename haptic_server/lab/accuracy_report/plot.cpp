@@ -1,8 +1,9 @@
-#include "haptic_server/lab/accuracy_report/plot.h"
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+
+#include "common/text/printed_text.h"
+#include "haptic_server/lab/accuracy_report/report_files.h"
 
 namespace bonemill {
 namespace {
@@ -30,15 +31,6 @@ Vector2d placeAt(const PlotLabel& label, int direction, double gap) {
 }
 
 constexpr double kMinError = 1e-3;  // %, for the logarithm
-
-std::string quoted(const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') out += '\\';
-        out += c;
-    }
-    return out + '"';
-}
 
 double errorPercent(const SettingFigures& f) {
     return std::max(kMinError, 100 * f.errors.force_vector);
@@ -87,7 +79,7 @@ std::string labels(const ReportData& data, const Axes& axes) {
         return place.str();
     };
     for (const PlotLabel& label : all) {
-        text << "set label " << quoted(label.text) << " at " << screen(label.center)
+        text << "set label " << sceneText(label.text) << " at " << screen(label.center)
              << " center noenhanced font \",10\" front\n";
         if (label.needs_line)
             text << "set arrow from " << screen(label.point) << " to " << screen(label.center)
@@ -117,7 +109,7 @@ std::string legend(const ReportData& data) {
     for (size_t n = 0; n < data.settings.size(); ++n) {
         const SettingFigures& f = data.settings[n];
         const std::string number = isPreset(f) ? "" : std::to_string(n + 1) + "  ";
-        text << "set label " << quoted(number + f.name + (f.is_in_force ? "  (in force)" : ""))
+        text << "set label " << sceneText(number + f.name + (f.is_in_force ? "  (in force)" : ""))
              << " at screen 0.665, screen " << 0.92 - double(n) * line << " left noenhanced font \",10\"\n";
     }
     return text.str();
@@ -126,8 +118,8 @@ std::string legend(const ReportData& data) {
 std::string settingsOfPicture(const ReportData& data, const Axes& axes, const std::filesystem::path& png) {
     std::ostringstream script;
     script << "set terminal pngcairo size " << Axes::kWidth << ',' << Axes::kHeight
-           << " font \"DejaVu Sans,11\"\nset output " << quoted(png.string()) << "\nset title "
-           << quoted(data.scene + ": force error against tick time") << " noenhanced font \",14\"\n";
+           << " font \"DejaVu Sans,11\"\nset output " << sceneText(png.string()) << "\nset title "
+           << sceneText(data.scene + ": force error against tick time") << " noenhanced font \",14\"\n";
     script << "set lmargin at screen " << Axes::kLeft << "\nset rmargin at screen " << Axes::kRight
            << "\nset bmargin at screen " << Axes::kBottom << "\nset tmargin at screen " << Axes::kTop << '\n';
     script

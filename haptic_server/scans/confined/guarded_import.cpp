@@ -16,6 +16,7 @@
 #include <ctime>
 #include <new>
 #include <span>
+#include <sstream>
 #include <stdexcept>
 #include <type_traits>
 #include <variant>
@@ -25,7 +26,7 @@
 #include "haptic_server/scans/confined/import_limits.h"
 #include "haptic_server/scans/confined/reader_pipe.h"
 #include "haptic_server/scans/confined/shared_name.h"
-#include "haptic_server/scans/labels/segment_text.h"
+#include "haptic_server/scans/labels/labels.h"
 
 namespace bonemill {
 namespace {
@@ -160,11 +161,8 @@ void sendLines(int file, const Lines& lines) {
 
 Lines linesOf(const std::string& text) {
     Lines lines;
-    for (size_t begin = 0; begin < text.size();) {
-        const size_t end = std::min(text.find('\n', begin), text.size());
-        lines.push_back(printable(text.substr(begin, end - begin)));
-        begin = end + 1;
-    }
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) lines.push_back(printable(line));
     return lines;
 }
 
@@ -298,7 +296,7 @@ Received receiveFrom(const std::filesystem::path& path, const StartReader& start
 
 // The child is `read` in a copy of this process.
 StartReader forkOf(const std::function<void(int pipe)>& read) {
-    return [&read](int pipe, int) {
+    return [read](int pipe, int) {
         std::fflush(nullptr);  // or the child might write what is still buffered a second time
         const pid_t child = fork();
         if (child == 0) read(pipe);
@@ -327,14 +325,12 @@ Lines linesFrom(const std::filesystem::path& path, const StartReader& start, std
 
 RawVolume importGuarded(const std::filesystem::path& path, const std::function<RawVolume()>& read,
                         std::chrono::milliseconds most) {
-    const std::function<void(int)> as_child = [&](int pipe) { readAsChild(pipe, path, read); };
-    return importFrom(path, forkOf(as_child), most);
+    return importFrom(path, forkOf([&](int pipe) { readAsChild(pipe, path, read); }), most);
 }
 
 Lines linesGuarded(const std::filesystem::path& path, const std::function<Lines()>& read,
                    std::chrono::milliseconds most) {
-    const std::function<void(int)> as_child = [&](int pipe) { readLinesAsChild(pipe, path, read); };
-    return linesFrom(path, forkOf(as_child), most);
+    return linesFrom(path, forkOf([&](int pipe) { readLinesAsChild(pipe, path, read); }), most);
 }
 
 }  // namespace bonemill

@@ -11,8 +11,8 @@
 #include "common/text/printed_text.h"
 #include "haptic_server/scans/confined/import_limits.h"
 #include "haptic_server/scans/dicom/dicom_groups.h"
-#include "haptic_server/scans/dicom/dicom_place.h"
 #include "haptic_server/scans/dicom/dicom_scan.h"
+#include "haptic_server/scans/dicom/dicom_slice.h"
 #include "haptic_server/scans/pixels/dicom_rescale.h"
 #include "haptic_server/scans/pixels/itk_image_file.h"
 
@@ -85,15 +85,13 @@ constexpr size_t kMaxEdge = 16384;  // detectors of today have 4096; more is a d
 
 DicomTraits traitsOf(const ItkImageFile& image) {
     const auto text = [&](const char* tag) { return withoutPadding(image.dicomTag(tag)); };
-    DicomTraits traits;
-    traits.acquisition_number = text("0020|0012");
-    traits.temporal_position = text("0020|0100");
-    traits.b_value = text("0018|9087");
-    traits.kernel = text("0018|1210");
-    traits.image_type = text("0008|0008");
-    traits.acquisition_time = text("0008|0032");
-    traits.content_time = text("0008|0033");
-    return traits;
+    return {.acquisition_number = text("0020|0012"),
+            .temporal_position = text("0020|0100"),
+            .b_value = text("0018|9087"),
+            .kernel = text("0018|1210"),
+            .image_type = text("0008|0008"),
+            .acquisition_time = text("0008|0032"),
+            .content_time = text("0008|0033")};
 }
 
 // All images of one file have this in common.
@@ -112,14 +110,6 @@ DicomSlice headerOf(const ItkImageFile& image, const std::filesystem::path& path
     slice.rows = int(header.dims[1]);
     slice.rescale = rescaleFromTexts(image.dicomTag("0028|1053"), image.dicomTag("0028|1052"), path.string());
     return slice;
-}
-
-void putAt(const DicomPlace& place, DicomSlice& slice) {
-    slice.position_mm = place.position_mm;
-    slice.row_direction = place.row_direction;
-    slice.column_direction = place.column_direction;
-    slice.pixel_spacing_mm = place.pixel_spacing_mm;
-    slice.axes_rounding = place.rounding;
 }
 
 // What a frame says goes before what its file does.
@@ -145,7 +135,7 @@ std::vector<DicomSlice> slicesOf(const std::vector<DicomFrame>& frames, const Di
     std::vector<DicomSlice> slices(frames.size(), common);
     for (size_t f = 0; f < frames.size(); ++f) {
         slices[f].frame = int(f);
-        putAt(frames[f].place, slices[f]);
+        static_cast<DicomPlace&>(slices[f]) = frames[f].place;
         if (frames[f].rescale) slices[f].rescale = frames[f].rescale;
         takeTraits(frames[f].traits, slices[f].traits);
     }
@@ -166,10 +156,9 @@ std::vector<DicomSlice> readHeader(const std::filesystem::path& path, LeftOut& l
     }
     DicomSlice slice = headerOf(image, path);
     if (frames == 1) {
-        putAt(placeFromTexts(
-                  {image.dicomTag("0020|0032"), image.dicomTag("0020|0037"), image.dicomTag("0028|0030")},
-                  kTwoDigits, path.string()),
-              slice);
+        static_cast<DicomPlace&>(slice) = placeFromTexts(
+            {image.dicomTag("0020|0032"), image.dicomTag("0020|0037"), image.dicomTag("0028|0030")},
+            kTwoDigits, path.string());
         return {slice};
     }
     const std::vector<DicomFrame> places = readFrames(path);
@@ -194,19 +183,17 @@ std::string reasonToLeaveOut(const DicomScan& scan) {
 }  // namespace
 
 void LeftOut::add(const std::string& reason, const std::filesystem::path& file) {
-    for (Entry& entry : entries_)
-        if (entry.reason == reason) return void(++entry.count);
-    entries_.push_back({reason, file.filename().string(), 1});
+    add({reason, file.filename().string(), 1});
 }
 
 void LeftOut::add(const LeftOut& more) {
-    for (const Entry& entry : more.entries_) {
-        const auto same = std::ranges::find(entries_, entry.reason, &Entry::reason);
-        if (same != entries_.end())
-            same->count += entry.count;
-        else
-            entries_.push_back(entry);
-    }
+    for (const Entry& entry : more.entries_) add(entry);
+}
+
+void LeftOut::add(const Entry& entry) {
+    const auto same = std::ranges::find(entries_, entry.reason, &Entry::reason);
+    if (same == entries_.end()) return entries_.push_back(entry);
+    same->count += entry.count;
 }
 
 std::string LeftOut::text() const {

@@ -14,7 +14,7 @@
 #include "haptic_server/scans/confined/shared_name.h"
 #include "haptic_server/scans/dicom/dicom_groups.h"
 #include "haptic_server/scans/dicom/segment_grid.h"
-#include "haptic_server/scans/labels/segment_text.h"
+#include "haptic_server/scans/labels/labels.h"
 #include "haptic_server/scans/pixels/dicom_rescale.h"
 
 namespace bonemill {

@@ -268,7 +268,7 @@ std::string problemsOf(const DicomStack& stack, const std::vector<SlicePlace>& p
 // The places are as good as the directions that they were measured along.
 void noteRounding(DicomStack& stack) {
     double rounding = 0;
-    for (const DicomSlice& slice : stack.slices) rounding = std::max(rounding, slice.axes_rounding);
+    for (const DicomSlice& slice : stack.slices) rounding = std::max(rounding, slice.rounding);
     if (rounding > kSaidRounding)
         note(stack.remark, printed("the orientation is rounded in the files: it may be off by %.2g degrees",
                                    rounding / kDegree));

@@ -6,8 +6,8 @@
 
 #include "common/base/units.h"
 #include "common/text/printed_text.h"
+#include "haptic_server/scans/find_bone/bone_pieces.h"
 #include "haptic_server/scans/find_bone/propose_iso.h"
-#include "haptic_server/scans/find_bone/volume_text.h"
 
 namespace bonemill {
 namespace {

@@ -206,11 +206,7 @@ NiftiHeader readNiftiHeader(const std::filesystem::path& path) {
     if (bits <= 0 || bits % 8 != 0)
         throw UserError(file + ": its NIfTI header states " + std::to_string(bits) +
                         " bits per voxel; whole bytes are needed");
-    NiftiHeader out{.data_offset = uint64_t(data_offset),
-                    .bytes_per_voxel = uint64_t(bits / 8),
-                    .has_patient_space = false,
-                    .frame = {},
-                    .remark = {}};
+    NiftiHeader out{.data_offset = uint64_t(data_offset), .bytes_per_voxel = uint64_t(bits / 8)};
     takeFrame(header, out);
     return out;
 }

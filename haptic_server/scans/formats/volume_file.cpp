@@ -9,7 +9,6 @@
 #include "common/base/user_error.h"
 #include "common/files/require_file.h"
 #include "haptic_server/scans/confined/import_limits.h"
-#include "haptic_server/scans/formats/image_stack.h"
 #include "haptic_server/scans/formats/nifti_header.h"
 #include "haptic_server/scans/formats/stored_bytes.h"
 #include "haptic_server/scans/frame/physical_frame.h"
@@ -162,8 +161,8 @@ struct FileFacts {
     bool has_patient_space = true;
     bool has_spacing = true;              // libraries take 1 mm where it is not said
     uint64_t stored_bytes_per_voxel = 0;  // 0: as many as the library's
-    std::optional<FileFrame> frame;       // nothing: the library's
-    std::string remark;
+    std::optional<FileFrame> frame = {};  // nothing: the library's
+    std::string remark = {};
     NrrdSegments segments = {};
     std::optional<Eigen::Vector3d> spacing_mm = {};  // what the scene says of it
 };
@@ -252,8 +251,6 @@ RawVolume importNrrd(const std::filesystem::path& path, const std::optional<Eige
                     .mm_per_unit = header.mm_per_unit,
                     .has_patient_space = header.has_patient_space,
                     .has_spacing = header.has_spacing,
-                    .frame = {},
-                    .remark = {},
                     .segments = header.segments,
                     .spacing_mm = spacing_mm};
     if (!header.data_file.empty()) facts.data = StoredData{path.parent_path() / header.data_file};
@@ -286,8 +283,6 @@ RawVolume importMetaImage(const std::filesystem::path& path,
                     .mm_per_unit = header.mm_per_unit,
                     .has_patient_space = header.has_patient_space,
                     .has_spacing = header.has_spacing,
-                    .frame = {},
-                    .remark = {},
                     .spacing_mm = spacing_mm};
     if (!header.data_file.empty()) facts.data = StoredData{path.parent_path() / header.data_file};
     if (header.is_compressed) {

@@ -1,7 +1,9 @@
-// Reads volumes of one file: NRRD, NIfTI and MetaImage through ITK, InVesalius projects, and bone that is
-// given as its closed surface. All throw UserError with one message that names the file.
+// Reads what is no DICOM: NRRD, NIfTI and MetaImage through ITK, InVesalius projects, bone that is given as
+// its closed surface, and folders of pictures, one of each slice, as micro-CT scanners and ImageJ write them.
+// All throw UserError with one message that names the file.
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 
@@ -29,5 +31,20 @@ RawVolume importInv3(const std::filesystem::path& path);
 // they have `inside` in the bone and 0 outside, and surface_ramp.h between. A mesh is refused that is not
 // closed or contradicts itself, and one of too many voxels.
 RawVolume importSurface(const std::filesystem::path& path, std::optional<double> voxel_mm, double inside);
+
+// Are most of the folder's files PNG or TIFF? Hidden ones do not count.
+bool isImageStack(const std::filesystem::path& folder);
+
+// Grey pictures of 8 or 16 bit, all of one size, in the natural order of their names: columns go along x,
+// rows along y, slices along z. `spacing_mm` is the voxels' size, which pictures do not say. Throws
+// UserError.
+RawVolume importImageStack(const std::filesystem::path& folder,
+                           const std::optional<Eigen::Vector3d>& spacing_mm);
+
+// Orders "a2" before "a10": numbers in names count as numbers.
+bool isBeforeNaturally(const std::string& a, const std::string& b);
+
+// Throws UserError unless all three are lengths above 0 that voxels can have.
+void checkSpacing(const Eigen::Vector3d& spacing_mm, const std::string& file);
 
 }  // namespace bonemill

@@ -7,7 +7,6 @@
 #include "common/base/user_error.h"
 #include "common/text/printed_text.h"
 #include "haptic_server/scans/dicom/dicom_folder.h"
-#include "haptic_server/scans/formats/image_stack.h"
 #include "haptic_server/scans/formats/volume_file.h"
 #include "haptic_server/scans/import/import_volume.h"
 

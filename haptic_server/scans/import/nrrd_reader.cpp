@@ -4,7 +4,6 @@
 
 #include "common/base/user_error.h"
 #include "haptic_server/scans/import/import_volume.h"
-#include "haptic_server/scans/import/plain_nrrd.h"
 
 namespace bonemill {
 

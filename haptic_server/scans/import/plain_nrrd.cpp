@@ -1,5 +1,3 @@
-#include "haptic_server/scans/import/plain_nrrd.h"
-
 #include <fcntl.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -11,6 +9,7 @@
 #include "common/base/user_error.h"
 #include "haptic_server/scans/confined/import_limits.h"
 #include "haptic_server/scans/frame/physical_frame.h"
+#include "haptic_server/scans/import/import_volume.h"
 #include "haptic_server/scans/nrrd/nrrd_header.h"
 
 namespace bonemill {

@@ -6,8 +6,7 @@
 #include <unordered_map>
 
 #include "common/base/user_error.h"
-#include "haptic_server/scans/labels/material_ids.h"
-#include "haptic_server/scans/labels/segment_text.h"
+#include "haptic_server/scans/labels/labels.h"
 #include "haptic_server/scans/nrrd/nrrd_header.h"
 
 namespace bonemill {

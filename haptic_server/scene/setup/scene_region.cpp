@@ -14,7 +14,6 @@
 #include "haptic_server/scans/densify/region.h"
 #include "haptic_server/scans/find_bone/bone_pieces.h"
 #include "haptic_server/scans/find_bone/propose_iso.h"
-#include "haptic_server/scans/find_bone/volume_text.h"
 #include "haptic_server/scene/setup/refuse_field.h"
 #include "haptic_server/scene/setup/scene_pieces.h"
 

@@ -1,15 +1,20 @@
-#include "haptic_server/scans/labels/segment_text.h"
+#include "haptic_server/scans/labels/labels.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "common/base/user_error.h"
-#include "haptic_server/scans/labels/material_ids.h"
 
 namespace bonemill {
 namespace {
+
+bool isInRange(const MaterialRule& rule, double value) {
+    return rule.has_range && std::isfinite(value) && (!rule.from || value >= *rule.from) &&
+           (!rule.below || value < *rule.below);
+}
 
 // Of a few structures there are dozens.
 constexpr size_t kMaxCombinations = 4096, kMaxMemberships = 100'000;
@@ -47,6 +52,19 @@ std::string namesOf(const Segments& segments) {
 }
 
 }  // namespace
+
+std::vector<MaterialId> materialIds(const RawVolume& raw, std::span<const MaterialRule> rules,
+                                    std::vector<MaterialId> of_labels) {
+    std::vector<MaterialId> ids = std::move(of_labels);
+    ids.resize(raw.values.size(), kNoMaterial);
+    if (std::ranges::none_of(rules, &MaterialRule::has_range)) return ids;
+    raw.values.visit([&](auto samples) {
+        for (size_t n = 0; n < samples.size(); ++n)
+            for (size_t rule = rules.size(); rule > ids[n]; --rule)  // the later one wins
+                if (isInRange(rules[rule - 1], double(samples[n]))) ids[n] = MaterialId(rule);
+    });
+    return ids;
+}
 
 SegmentCodes::SegmentCodes(std::string file) : file_(std::move(file)) {
     codes_[{}] = 0;
