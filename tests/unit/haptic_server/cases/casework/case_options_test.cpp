@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
+
 #include "haptic_server/cases/casework/case_request.h"
 
 namespace bonemill {
