@@ -13,7 +13,6 @@
 #include "common/log/log.h"
 #include "common/process/run_program.h"
 #include "haptic_server/cases/casework/case_request.h"
-#include "haptic_server/cases/casework/make_case.h"
 #include "haptic_server/lab/accuracy_report/accuracy_report.h"
 #include "haptic_server/lab/assess/assess_journal.h"
 #include "haptic_server/recording/export/export_journal.h"

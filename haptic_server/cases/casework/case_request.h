@@ -1,9 +1,10 @@
-// What a teacher says of the case that is to be made, also as words of a command line; all but the scan has a
-// default.
+// What a teacher says of the training case that is to be made of a scan, also as words of a command line, and
+// the making of it. All but the scan has a default.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,5 +60,11 @@ void addCaseOptions(CLI::App& app, CaseRequest& request);
 std::vector<std::string> wordsOf(const CaseRequest& request);
 // They stand behind `command`, as one line for a shell.
 std::string commandLineOf(const std::string& command, const CaseRequest& request);
+
+// Makes the case: a folder with the scan, its labels, the scene and where it all comes from. Nothing in it
+// comes from the scan's file but values and geometry: no name, no date, no UID, no path. (A face can still be
+// made of a CT of a head.) The folder must not exist, or be empty; it is there as a whole or not at all. What
+// was found and chosen goes to `out`. Throws UserError.
+void makeCase(const CaseRequest& request, const std::string& version, std::ostream& out);
 
 }  // namespace bonemill

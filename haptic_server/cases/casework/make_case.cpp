@@ -1,5 +1,3 @@
-#include "haptic_server/cases/casework/make_case.h"
-
 #include <google/protobuf/text_format.h>
 
 #include <algorithm>
@@ -20,6 +18,7 @@
 #include "common/files/require_file.h"
 #include "haptic_server/cases/casework/case_figures.h"
 #include "haptic_server/cases/casework/case_plan.h"
+#include "haptic_server/cases/casework/case_request.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "haptic_server/scene/setup/scene_region.h"

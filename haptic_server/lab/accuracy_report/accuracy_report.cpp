@@ -53,12 +53,6 @@ std::vector<int> shellFactorsOf(const std::vector<AccuracySettings>& settings) {
     return {factors.begin(), factors.end()};
 }
 
-// Has the finest level only: paths and truth are laid out with it.
-BoneModel layoutBone(const Simulation& simulation) {
-    return BoneModel(VoxelVolume(simulation.bone->volume), simulation.bone->lattice.leafCells(),
-                     ShellConfig{.spare_points = 1});
-}
-
 SweepProgress progressOf(size_t count, std::ostream& out) {
     return [count, &out, start = SteadyClock::now()](const SettingFigures& f, size_t done) {
         const double left = secondsSince(start) / double(done) * double(count - done);
@@ -82,7 +76,9 @@ ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::os
     tick.hand.max_torque = tick.hand_space.torqueAtTool(tick.hand.max_torque);
     tick.hand_space = {};
 
-    BoneModel bone = layoutBone(simulation);
+    // With the finest level only, paths and truth are laid out.
+    BoneModel bone(VoxelVolume(simulation.bone->volume), simulation.bone->lattice.leafCells(),
+                   ShellConfig{.spare_points = 1});
     TouchProbe probe(bone, tool.model);
     const auto places =
         findProbingPlaces(loaded.scene.simulated_operator(), bone, tick.tool.burr.radius, probe);

@@ -49,12 +49,11 @@ size_t sweptCount(const VoxelVolume& before, const std::vector<Vector3d>& path, 
 }
 
 size_t removedCount(const VoxelVolume& before, const VoxelVolume& after) {
-    const Eigen::Vector3i& dims = before.dims();
     int64_t count = 0;
-    for (int k = 0; k < dims.z(); ++k)
-        for (int j = 0; j < dims.y(); ++j)
-            for (int i = 0; i < dims.x(); ++i)
-                count += int(before.at(i, j, k) >= before.iso()) - int(after.at(i, j, k) >= after.iso());
+    forEachIndex({Eigen::Vector3i::Zero(), before.dims().array() - 1}, [&](const Eigen::Vector3i& v) {
+        count += int(before.at(v.x(), v.y(), v.z()) >= before.iso()) -
+                 int(after.at(v.x(), v.y(), v.z()) >= after.iso());
+    });
     return size_t(std::max<int64_t>(count, 0));
 }
 

@@ -40,10 +40,6 @@ bool isPreset(const SettingFigures& f) {
     return presetOfName(f.name).has_value();
 }
 
-std::string labelOf(const SettingFigures& f, size_t n) {
-    return isPreset(f) ? f.name : std::to_string(n + 1);
-}
-
 // Lays logarithmic axes on the picture: pixels, with the origin at the lower left.
 struct Axes {
     static constexpr double kWidth = 1500, kHeight = 850;
@@ -69,7 +65,8 @@ std::string labels(const ReportData& data, const Axes& axes) {
     std::vector<PlotLabel> all;
     for (size_t n = 0; n < data.settings.size(); ++n) {
         const SettingFigures& f = data.settings[n];
-        all.push_back({.point = axes.pixel(f.times.p99_9, errorPercent(f)), .text = labelOf(f, n)});
+        all.push_back({.point = axes.pixel(f.times.p99_9, errorPercent(f)),
+                       .text = isPreset(f) ? f.name : std::to_string(n + 1)});
     }
     layOutLabels(all);
     std::ostringstream text;

@@ -9,11 +9,11 @@
 namespace bonemill {
 namespace {
 
+using Eigen::Vector3d;
+
 constexpr double kStep = 50e-6;            // m: thinner than any wall that a scan shows
 constexpr double kTolerance = 1e-6;        // m
 constexpr AccuracySettings kExactField{};  // analytic if the tool has shapes
-
-using Eigen::Vector3d;
 
 constexpr double kPush = 20e-6;  // m: how deep the tool is pushed to learn where the bone pushes back
 constexpr size_t kMaxScenarioPlaces = 2;
@@ -39,15 +39,11 @@ struct Approach {
         places.push_back({name, X_WT, normal, room});
         return true;
     }
-    bool straight(const std::string& name, const Pose& from, const Vector3d& direction, double length) {
-        return along(
-            name,
-            [=](double way) {
-                return Pose{from.position + way * direction, from.rotation};
-            },
-            length);
-    }
 };
+
+TouchProbe::PoseAt straight(const Pose& from, const Vector3d& direction) {
+    return [=](double way) { return Pose{from.position + way * direction, from.rotation}; };
+}
 
 void addScenarioPlaces(const scene::SimulatedOperator& scenario, Approach& approach) {
     for (int n = 0; n + 1 < scenario.waypoint_size() && approach.places.size() < kMaxScenarioPlaces; ++n) {
@@ -73,7 +69,7 @@ void addFacePlaces(const BoneModel& bone, Approach& approach) {
             geometry.X_WV.rotation * ((face & 1 ? 1.0 : -1.0) * Vector3d::Unit(2 - face / 2));
         const double way = size.norm();
         const Pose from{middle + way * outward, rotationBetween(Vector3d::UnitY(), outward)};
-        approach.straight("from the volume's face " + std::to_string(face + 1), from, -outward, way);
+        approach.along("from the volume's face " + std::to_string(face + 1), straight(from, -outward), way);
     }
 }
 
@@ -82,7 +78,7 @@ void addPlacesBeside(const ProbingPlace& first, double burr_radius, Approach& ap
     for (const Vector3d& side : {t, Vector3d(first.normal_W.cross(t))}) {
         const Pose from{first.X_WT.position + 2 * burr_radius * first.normal_W + 1.5 * burr_radius * side,
                         first.X_WT.rotation};
-        approach.straight("1.5 burr radii beside it", from, -first.normal_W, 4 * burr_radius);
+        approach.along("1.5 burr radii beside it", straight(from, -first.normal_W), 4 * burr_radius);
     }
 }
 
@@ -101,7 +97,8 @@ void addLyingPlace(const ProbingPlace& first, double burr_radius, Approach& appr
                         rotationBetween(shaft, along) * first.X_WT.rotation};
         std::vector<ProbingPlace> found;
         Approach lying{approach.probe, found};
-        if (!lying.straight("lying on its shaft there", from, -first.normal_W, height + 4 * burr_radius))
+        if (!lying.along("lying on its shaft there", straight(from, -first.normal_W),
+                         height + 4 * burr_radius))
             continue;
         const Pose pushed{found[0].X_WT.position - kPush * found[0].normal_W, found[0].X_WT.rotation};
         const double arm = approach.probe.armOf(pushed);
@@ -111,8 +108,6 @@ void addLyingPlace(const ProbingPlace& first, double burr_radius, Approach& appr
     }
     if (best) approach.places.push_back(*best);
 }
-
-using Eigen::Vector3d;
 
 constexpr int kLoopKnots = 24;
 constexpr int kPressKnots = 3;
@@ -202,7 +197,7 @@ std::optional<double> TouchProbe::freeWay(const PoseAt& pose_at, double longest)
 
 std::optional<double> TouchProbe::freeWay(const Pose& X_WT, const Eigen::Vector3d& direction,
                                           double longest) {
-    return freeWay([&](double way) { return Pose{X_WT.position + way * direction, X_WT.rotation}; }, longest);
+    return freeWay(straight(X_WT, direction), longest);
 }
 
 Eigen::AlignedBox3d TouchProbe::surfaceNear(std::span<const Pose> path, double distance) const {

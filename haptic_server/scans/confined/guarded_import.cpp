@@ -149,10 +149,6 @@ void sendText(int file, uint8_t kind, const std::string& text) {
     writeAll(file, &head, sizeof head) && writeAll(file, text.data(), text.size());
 }
 
-void sendError(int file, const std::string& message) {
-    sendText(file, kError, message);
-}
-
 void sendLines(int file, const Lines& lines) {
     std::string text;
     for (const std::string& line : lines) text += line + '\n';
@@ -232,11 +228,12 @@ void handleSignals() {
         confineReader();
         send();
     } catch (const std::bad_alloc&) {
-        sendError(file, path.string() + ": there is not enough memory to read it; crop or resample it");
+        sendText(file, kError,
+                 path.string() + ": there is not enough memory to read it; crop or resample it");
     } catch (const UserError& error) {
-        sendError(file, error.what());
+        sendText(file, kError, error.what());
     } catch (const std::exception& error) {
-        sendError(file, path.string() + ": cannot be read: " + error.what());
+        sendText(file, kError, path.string() + ": cannot be read: " + error.what());
     }
     _exit(0);  // no destructor of the parent's objects may run twice
 }

@@ -73,11 +73,6 @@ void readSlices(const std::vector<DicomSlice>& slices, RawValues& values) {
     });
 }
 
-// Air is negative on no other scale.
-bool reachesAir(const RawValues& values) {
-    return values.range().low <= -500;
-}
-
 bool isSamePicture(const DicomSlice& a, const DicomSlice& b) {
     if (a.frame != 0 || b.frame != 0) return false;
     RawValues of_a, of_b;
@@ -127,7 +122,7 @@ RawVolume readChoice(const DicomChoice& choice, const std::string& name) {
             first.row_direction * grid.aside_mm.x() + first.column_direction * grid.aside_mm.y();
     }
     makeRightHanded(frame, name, raw.geometry, raw.values);
-    raw.is_hounsfield = first.isCt() && reachesAir(raw.values);
+    raw.is_hounsfield = first.isCt() && raw.values.range().low <= -500;  // air is negative on no other scale
     raw.description = describe(choice);
     return raw;
 }

@@ -176,8 +176,7 @@ std::string reasonToLeaveOut(const DicomScan& scan) {
         return "DICOM segmentations (SEG), each of which is a label map: give its file by name "
                "(volume.label_path, make-case --labels)";
     return "DICOM contours, surfaces or label maps (RTSTRUCT and others), which 3D Slicer loads and exports "
-           "as "
-           ".seg.nrrd or NIfTI";
+           "as .seg.nrrd or NIfTI";
 }
 
 }  // namespace

@@ -48,11 +48,6 @@ bool hasNumberWithin(const std::string& digits, int low, int high) {
     return number >= low && number <= high;
 }
 
-std::string upperCase(std::string text) {
-    std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::toupper(c)); });
-    return text;
-}
-
 bool canBeUsed(const DicomStack& stack) {
     return stack.problem.empty() && !isScout(stack);
 }
@@ -223,7 +218,8 @@ DicomChoice choiceOf(const std::vector<DicomStack>& stacks, const DicomStack& be
 }  // namespace
 
 bool isBoneKernel(const std::string& kernel) {
-    const std::string name = upperCase(kernel);
+    std::string name = kernel;
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::toupper(c)); });
     for (const char* word : kBoneWords)
         if (name.find(word) != std::string::npos) return true;
     for (const char* letters : kBoneLetters)

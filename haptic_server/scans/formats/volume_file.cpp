@@ -190,18 +190,6 @@ std::string segmentRemark(const Segments& segments) {
            (segments.are_layered ? " in layers" : "");
 }
 
-void requireSpacing(ItkFormat format, const FileFacts& facts, const std::string& file) {
-    if (facts.has_spacing && facts.spacing_mm)
-        throw UserError(file + ": says the voxels' size itself; leave volume.spacing_mm out");
-    if (facts.spacing_mm) return checkSpacing(*facts.spacing_mm, file);
-    if (!facts.has_spacing)
-        throw UserError(
-            file +
-            ": says nothing of the voxels' size; write volume.spacing_mm, or write it into the header in mm "
-            "(" +
-            (format == ItkFormat::kNrrd ? "spacings or space directions" : "ElementSpacing = X Y Z") + ")");
-}
-
 FileFrame frameFor(const FileFacts& facts, const ItkImageHeader& header) {
     FileFrame frame = facts.frame.value_or(frameOf(header, facts.mm_per_unit));
     if (facts.spacing_mm) frame.spacing_mm = *facts.spacing_mm;
@@ -220,7 +208,10 @@ RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const
     const uint64_t copies = format == ItkFormat::kNifti ? 2 : 1;  // its library fills a buffer of its own
     const uint64_t layers = header.components;
     checkVolumeSize(dims, copies * layers * header.bytes_per_voxel, file);
-    requireSpacing(format, facts, file);
+    requireOneSpacing(facts.has_spacing, facts.spacing_mm.has_value(),
+                      format == ItkFormat::kNrrd ? "spacings or space directions" : "ElementSpacing = X Y Z",
+                      file);
+    if (facts.spacing_mm) checkSpacing(*facts.spacing_mm, file);
     const uint64_t voxels = dims[0] * dims[1] * dims[2];
     const uint64_t stored = facts.stored_bytes_per_voxel;
     const uint64_t needed = layers * voxels * (stored > 0 ? stored : header.bytes_per_voxel);

@@ -19,10 +19,6 @@ std::string lowerCase(std::string text) {
     return text;
 }
 
-bool isSurface(const std::string& name) {
-    return name.ends_with(".stl") || name.ends_with(".ply");
-}
-
 bool isFolder(const std::filesystem::path& path) {
     std::error_code error;
     return std::filesystem::is_directory(path, error);
@@ -60,7 +56,8 @@ RawVolume readVolume(const std::filesystem::path& path, const ImportOptions& opt
     refuseZip(path, name);
     if (isDicomDirectory(path)) return importDicomDirectory(path, wish);
     if (name.ends_with(".dcm") || isDicom(path)) return importDicomFile(path, wish);
-    if (isSurface(name)) return importSurface(path, options.surface_voxel_mm, options.surface_value);
+    if (name.ends_with(".stl") || name.ends_with(".ply"))
+        return importSurface(path, options.surface_voxel_mm, options.surface_value);
     throw UserError(
         path.string() +
         ": is of no known type; give a folder with a DICOM series or PNG or TIFF images, or a file "

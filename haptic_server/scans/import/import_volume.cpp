@@ -89,11 +89,6 @@ void requireThere(const std::filesystem::path& path) {
     requireFile(path);
 }
 
-void describeNonFinite(RawVolume& raw) {
-    const size_t count = raw.values.range().non_finite;
-    if (count > 0) raw.description += "; " + std::to_string(count) + " values are not finite";
-}
-
 }  // namespace
 
 void setReaderProgram(const std::string& program) {
@@ -122,7 +117,8 @@ RawVolume importVolume(const std::filesystem::path& path, const ImportOptions& o
 RawVolume importVolumeHere(const std::filesystem::path& path, const ImportOptions& options) {
     requireThere(path);
     RawVolume raw = readVolume(path, options);
-    describeNonFinite(raw);
+    const size_t count = raw.values.range().non_finite;
+    if (count > 0) raw.description += "; " + std::to_string(count) + " values are not finite";
     return raw;
 }
 

@@ -100,10 +100,6 @@ void checkSizes(const std::string& text, const std::filesystem::path& path) {
             throw UserError(path.string() + ": its sizes (" + text + ") are absurd; the header is damaged");
 }
 
-struct Units {
-    std::string of_space, of_axes;
-};
-
 void keepField(const std::string& name, const std::string& value, NrrdFields& fields) {
     if (name == "type") fields.type = value;
     if (name == "endian") fields.endian = fieldName(value);
@@ -112,11 +108,13 @@ void keepField(const std::string& name, const std::string& value, NrrdFields& fi
     if (name == "spacedirections") fields.space_directions = value;
     if (name == "spaceorigin") fields.space_origin = value;
     if (name == "spacings") fields.spacings = value;
+    if (name == "spaceunits") fields.space_units = value;
+    if (name == "units") fields.axis_units = value;
     if (name == "lineskip" || name == "byteskip") fields.has_skip = fields.has_skip || value != "0";
 }
 
 void takeField(const std::string& name, const std::string& value, const std::filesystem::path& path,
-               NrrdHeader& header, Units& units) {
+               NrrdHeader& header) {
     keepField(name, value, header.fields);
     if (name == "space") header.has_patient_space = isPatientSpace(value);
     if (name == "encoding") header.encoding = fieldName(value);
@@ -125,16 +123,13 @@ void takeField(const std::string& name, const std::string& value, const std::fil
     if (name == "spacings") checkSpacings(value, path);
     if (name == "sizes") checkSizes(value, path);
     header.has_spacing = header.has_spacing || name == "spacedirections" || name == "spacings";
-    if (name == "spaceunits") units.of_space = value;
-    if (name == "units") units.of_axes = value;
 }
 
-void takeLine(const std::string& line, const std::filesystem::path& path, NrrdHeader& header, Units& units) {
+void takeLine(const std::string& line, const std::filesystem::path& path, NrrdHeader& header) {
     const auto colon = line.find(':');
     if (line[0] == '#' || colon == std::string::npos) return;
     if (line.compare(colon, 2, ":=") != 0)
-        return takeField(fieldName(line.substr(0, colon)), trimmed(line.substr(colon + 1)), path, header,
-                         units);
+        return takeField(fieldName(line.substr(0, colon)), trimmed(line.substr(colon + 1)), path, header);
     if (line.substr(0, colon) == kNrrdGeometryKey)
         header.exact_geometry = geometryFromText(line.substr(colon + 2));
     takeSegmentLine(line.substr(0, colon), line.substr(colon + 2), path, header.segments);
@@ -171,16 +166,17 @@ NrrdHeader readNrrdHeader(const std::filesystem::path& path) {
     if (!std::getline(text, line) || line.rfind("NRRD000", 0) != 0)
         throw UserError(path.string() + ": is not a NRRD file (it does not start with NRRD000)");
     NrrdHeader header;
-    Units units;
     header.bytes = line.size() + 1;
     while (std::getline(text, line)) {
         header.bytes += line.size() + 1;
         if (trimmed(line).empty()) break;
-        takeLine(line, path, header, units);
+        takeLine(line, path, header);
     }
     if (header.bytes >= kMaxHeaderBytes)
         throw UserError(path.string() + ": the NRRD header does not end; the file is damaged");
-    header.mm_per_unit = mmPerUnitOfAll(units.of_space.empty() ? units.of_axes : units.of_space, path);
+    const NrrdFields& fields = header.fields;
+    header.mm_per_unit =
+        mmPerUnitOfAll(fields.space_units.empty() ? fields.axis_units : fields.space_units, path);
     return header;
 }
 

@@ -15,7 +15,7 @@ namespace bonemill {
 
 // As the file says it, unchecked; absent fields are empty.
 struct NrrdFields {
-    std::string type, endian, space;
+    std::string type, endian, space, space_units, axis_units;
     std::string sizes, space_directions, space_origin, spacings;
     bool has_skip = false;  // data begin later than right behind the header
 };

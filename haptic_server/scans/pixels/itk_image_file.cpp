@@ -24,25 +24,20 @@
 namespace bonemill {
 namespace {
 
+template <class Io>
+itk::ImageIOBase::Pointer makeIo() {
+    return Io::New().GetPointer();
+}
+
 // The library's list of what it can make is made when it is first asked, by one thread at a time here.
 itk::ImageIOBase::Pointer makeReader(ItkFormat format) {
     static std::mutex only_one;
     const std::lock_guard lock(only_one);
-    switch (format) {
-        case ItkFormat::kNrrd:
-            return itk::NrrdImageIO::New().GetPointer();
-        case ItkFormat::kNifti:
-            return itk::NiftiImageIO::New().GetPointer();
-        case ItkFormat::kMetaImage:
-            return itk::MetaImageIO::New().GetPointer();
-        case ItkFormat::kPng:
-            return itk::PNGImageIO::New().GetPointer();
-        case ItkFormat::kTiff:
-            return itk::TIFFImageIO::New().GetPointer();
-        case ItkFormat::kDicom:
-            break;
-    }
-    return itk::GDCMImageIO::New().GetPointer();
+    static const std::map<ItkFormat, itk::ImageIOBase::Pointer (*)()> kMakers{
+        {ItkFormat::kNrrd, makeIo<itk::NrrdImageIO>},      {ItkFormat::kNifti, makeIo<itk::NiftiImageIO>},
+        {ItkFormat::kMetaImage, makeIo<itk::MetaImageIO>}, {ItkFormat::kPng, makeIo<itk::PNGImageIO>},
+        {ItkFormat::kTiff, makeIo<itk::TIFFImageIO>},      {ItkFormat::kDicom, makeIo<itk::GDCMImageIO>}};
+    return kMakers.at(format)();
 }
 
 // Puts the library's message on one line, without "ITK ERROR: NrrdImageIO(0x55...): ".

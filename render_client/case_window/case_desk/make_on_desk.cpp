@@ -2,7 +2,6 @@
 #include <sstream>
 
 #include "haptic_server/cases/casework/case_request.h"
-#include "haptic_server/cases/casework/make_case.h"
 #include "render_client/case_window/case_desk/case_desk.h"
 
 namespace bonemill {

@@ -1,6 +1,4 @@
 // A case as a whole: made of a scan that names a patient everywhere, read back as a session would.
-#include "haptic_server/cases/casework/make_case.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -8,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "haptic_server/cases/casework/case_request.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "haptic_server/scene/setup/scene_setup.h"
