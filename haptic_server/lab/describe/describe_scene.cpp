@@ -172,9 +172,7 @@ std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario, double
 
 std::string percentilesUs(std::vector<int64_t> durations_ns) {
     const TickTimes times = timesOf(std::move(durations_ns));
-    std::ostringstream text;
-    text << "p50 " << times.p50 << " us, p99 " << times.p99 << " us";
-    return text.str();
+    return printed("p50 %g us, p99 %g us", times.p50, times.p99);
 }
 
 std::string describeLevels(const PointShell& shell) {

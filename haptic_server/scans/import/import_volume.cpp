@@ -3,6 +3,7 @@
 #include <spawn.h>
 #include <unistd.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "common/base/user_error.h"
@@ -38,11 +39,8 @@ ImportOptions optionsFromText(const std::string& text) {
     options.acquisition = from.at("acquisition").get<std::string>();
     options.surface_value = from.at("surface_value").get<double>();
     if (from.contains("surface_voxel_mm")) options.surface_voxel_mm = from["surface_voxel_mm"].get<double>();
-    if (from.contains("spacing_mm")) {
-        const json& mm = from["spacing_mm"];
-        options.spacing_mm =
-            Eigen::Vector3d(mm.at(0).get<double>(), mm.at(1).get<double>(), mm.at(2).get<double>());
-    }
+    if (from.contains("spacing_mm"))
+        options.spacing_mm = Eigen::Vector3d(from["spacing_mm"].get<std::array<double, 3>>().data());
     return options;
 }
 
