@@ -12,7 +12,7 @@
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
-#include "haptic_server/lab/accuracy_report/timed_run.h"
+#include "haptic_server/lab/accuracy_report/measures.h"
 #include "haptic_server/laws/all_laws.h"
 #include "haptic_server/recording/statistics/tick_times.h"
 #include "haptic_server/scene/tool_build/build_tool.h"

@@ -8,7 +8,6 @@
 #include "common/rt/clock.h"
 #include "haptic_server/core/bone/bone_model.h"
 #include "haptic_server/core/milling/timed_milling.h"
-#include "haptic_server/scans/densify/densify.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "haptic_server/surface/mesh/mesher.h"
 #include "tests/bench/bench_commands.h"
@@ -16,6 +15,7 @@
 #include "tests/bench/leaf_cells.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
+#include "tests/support/whole_densities.h"
 
 namespace bonemill::bench {
 namespace {

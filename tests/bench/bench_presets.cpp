@@ -11,11 +11,11 @@
 #include "haptic_server/cases/phantom/tooth_phantom.h"
 #include "haptic_server/core/tick/fixed_tick.h"
 #include "haptic_server/laws/all_laws.h"
-#include "haptic_server/scans/densify/densify.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
 #include "tests/bench/bench_commands.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/typical_effects.h"
+#include "tests/support/whole_densities.h"
 
 namespace bonemill::bench {
 namespace {

@@ -12,7 +12,6 @@
 #include "common/mesh_codec/mesh_codec.h"
 #include "common/rt/clock.h"
 #include "haptic_server/core/bone/bone_model.h"
-#include "haptic_server/scans/densify/densify.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "haptic_server/surface/mesh/mesher.h"
 #include "render_client/link/subscribe/scene_subscriber.h"
@@ -24,6 +23,7 @@
 #include "tests/support/dds_session.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
+#include "tests/support/whole_densities.h"
 
 namespace bonemill::bench {
 namespace {

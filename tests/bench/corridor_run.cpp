@@ -7,10 +7,9 @@
 #include "haptic_server/cases/phantom/tooth_phantom.h"
 #include "haptic_server/core/telemetry/fault_names.h"
 #include "haptic_server/core/tick/tick_budget.h"
-#include "haptic_server/scans/densify/densify.h"
-#include "haptic_server/scans/densify/far_air.h"
 #include "tests/bench/bench_output.h"
 #include "tests/support/typical_effects.h"
+#include "tests/support/whole_densities.h"
 
 namespace bonemill::bench {
 namespace {

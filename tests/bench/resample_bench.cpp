@@ -10,11 +10,11 @@
 #include <random>
 
 #include "common/base/units.h"
-#include "haptic_server/cases/phantom/analytic_body.h"
-#include "haptic_server/scans/densify/densify.h"
 #include "haptic_server/scans/densify/region.h"
 #include "haptic_server/surface/mesh/leaf_mesher.h"
 #include "tests/support/contact_scene.h"
+#include "tests/support/sampled_body.h"
+#include "tests/support/whole_densities.h"
 
 namespace bonemill {
 namespace {

@@ -22,7 +22,6 @@
 #include "common/rt/clock.h"
 #include "haptic_server/core/bone/bone_model.h"
 #include "haptic_server/scans/dicom/dicom_headers.h"
-#include "haptic_server/scans/import/import_program.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "haptic_server/scene/setup/scanned_bone.h"
 #include "haptic_server/surface/mesh/mesher.h"

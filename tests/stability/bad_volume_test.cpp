@@ -1,10 +1,10 @@
 // Takes volumes that no scanner should deliver: whatever comes out is finite and within the limits.
 #include <random>
 
-#include "haptic_server/scans/densify/densify.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"
+#include "tests/support/whole_densities.h"
 
 namespace bonemill::test {
 namespace {

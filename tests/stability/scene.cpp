@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "haptic_server/scans/densify/protected_distance.h"
+#include "haptic_server/scans/densify/distance_transform.h"
 #include "tests/support/milling_config.h"
 
 namespace bonemill::test {

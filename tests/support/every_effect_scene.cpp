@@ -25,7 +25,7 @@ double heightOf(int k, const EveryEffectBlock& block) {
 
 template <class T, class ValueAt>
 void write(const std::string& file, const EveryEffectBlock& block, ValueAt&& valueAt) {
-    NrrdStream<T> stream(file, geometryOf(block), NrrdEncoding::kRaw);
+    NrrdStream<T> stream(file, geometryOf(block));
     for (int k = 0; k < block.edge; ++k)
         stream.append(
             std::vector<T>(size_t(block.edge) * size_t(block.edge), T(valueAt(heightOf(k, block)))));

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iostream>
 #include <limits>
-#include <numbers>
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
@@ -12,15 +11,53 @@
 #include "common/cli/number_range.h"
 #include "common/files/require_apart.h"
 #include "common/process/run_program.h"
-#include "haptic_server/apps/make_phantom/anatomy_commands.h"
 #include "haptic_server/cases/phantom/analytic_body.h"
-#include "haptic_server/cases/phantom/block_phantom.h"
+#include "haptic_server/cases/phantom/skull_labels.h"
 #include "haptic_server/cases/phantom/tooth_phantom.h"
+#include "haptic_server/cases/phantom/vertebra_phantom.h"
 #include "haptic_server/cases/phantom_dicom/dicom_series_writer.h"
-#include "haptic_server/scans/nrrd/nrrd_stream.h"
+#include "haptic_server/scans/import/import_volume.h"
+#include "haptic_server/scans/nrrd/nrrd_writer.h"
 
 namespace bonemill {
 namespace {
+
+template <class T>
+void write(const std::string& file, const VolumeGeometry& geometry, std::span<const T> values) {
+    NrrdStream<T> stream(file, geometry);
+    stream.append(values);
+    stream.close();
+    std::cout << "wrote " << file << "\n";
+}
+
+struct VertebraArguments {
+    std::string file, labels;
+    double voxel_mm = 0.4;
+};
+
+void makeVertebra(const VertebraArguments& arguments) {
+    requireApart({{"--out", arguments.file}, {"--labels", arguments.labels}}, {});
+    const VertebraScan scan = scanVertebra(vertebraGrid(arguments.voxel_mm * kMillimetre));
+    const std::vector<int16_t> hu = scan.ct.values.visit(
+        [](const auto& samples) { return std::vector<int16_t>(samples.begin(), samples.end()); });
+    write<int16_t>(arguments.file, scan.ct.geometry, hu);
+    if (!arguments.labels.empty()) write<uint8_t>(arguments.labels, scan.ct.geometry, scan.labels);
+}
+
+struct SkullArguments {
+    std::string volume, file;
+};
+
+void makeSkullLabels(const SkullArguments& arguments) {
+    requireApart({{"--out", arguments.file}}, {{"--volume", arguments.volume}});
+    const VolumeGeometry geometry = importVolume(arguments.volume).geometry;
+    if (geometry.dims != kCraniumDims)
+        throw UserError(
+            arguments.volume +
+            ": is not the CT head that these structures were placed in; give Cranium.inv3 of Debian's "
+            "invesalius-examples");
+    write<uint8_t>(arguments.file, geometry, skullLabels(geometry));
+}
 
 struct ToothArguments {
     std::string folder;
@@ -53,7 +90,7 @@ struct BodyArguments {
 // Writes value_at(position in W) for each voxel.
 template <class T, class ValueAt>
 void writeGrid(const std::string& file, const VolumeGeometry& grid, ValueAt&& value_at) {
-    NrrdStream<T> stream(file, grid, NrrdEncoding::kGzip);
+    NrrdStream<T> stream(file, grid);
     std::vector<T> row(size_t(grid.dims.x()));
     for (int k = 0; k < grid.dims.z(); ++k)
         for (int j = 0; j < grid.dims.y(); ++j) {
@@ -152,7 +189,7 @@ void writeBody(const BodyArguments& arguments) {
         centredGrid(Eigen::Vector3i(arguments.dims.data()), arguments.voxel_mm * kMillimetre);
     const AnalyticBody body = bodyOf(arguments);
     constexpr double kFull = std::numeric_limits<T>::max();
-    NrrdStream<T> file(arguments.file, grid, NrrdEncoding::kGzip);
+    NrrdStream<T> file(arguments.file, grid);
     for (int k = 0; k < grid.dims.z(); ++k) {
         const std::vector<float> slice = sampleBodySlice(body, grid, kFull, k);
         file.append(std::vector<T>(slice.begin(), slice.end()));
@@ -165,87 +202,100 @@ void makeBody(const BodyArguments& arguments) {
     arguments.bits == 8 ? writeBody<uint8_t>(arguments) : writeBody<uint16_t>(arguments);
 }
 
-void addTooth(CLI::App& app, ToothArguments& arguments) {
-    CLI::App* tooth =
-        app.add_subcommand("tooth", "molar-like tooth as a DICOM CT series, 256x256x161, 0.125 mm, HU");
-    tooth->add_option("--out", arguments.folder, "folder to write to")->required();
-    tooth->add_option("--noise-hu", arguments.scan.noise_hu, "standard deviation of the noise")
-        ->check(within(0, 500))
-        ->capture_default_str();
-    tooth->add_option("--seed", arguments.scan.seed, "seed of the noise")->capture_default_str();
-    tooth->add_option("--labels", arguments.labels,
-                      "NRRD file to write: 1 pulp, 2 caries, 3 dentine, 4 enamel, 0 none");
+void addNumber(CLI::App& command, const char* name, double& value, double low, double high,
+               const char* help) {
+    command.add_option(name, value, help)->check(within(low, high))->capture_default_str();
 }
 
-void addBlock(CLI::App& app, BlockArguments& arguments) {
-    CLI::App* block =
-        app.add_subcommand("block", "block of layers of any density as NRRD, HU; top face at z = 0");
-    block->add_option("--out", arguments.file, "NRRD file to write")->required();
-    block->add_option("--labels", arguments.labels, "NRRD file to write: layers from 1, 0 outside");
-    block->add_option("--size-mm", arguments.size_mm, "of the block")
-        ->expected(3)
-        ->check(within(0.1, 1e3))
-        ->capture_default_str();
+template <class T, class Limits>
+void addThree(CLI::App& command, const char* name, std::vector<T>& values, const Limits& limits,
+              const char* help) {
+    command.add_option(name, values, help)->expected(3)->check(limits)->capture_default_str();
+}
+
+void addTooth(CLI::App& tooth, ToothArguments& arguments) {
+    tooth.add_option("--out", arguments.folder, "folder to write to")->required();
+    addNumber(tooth, "--noise-hu", arguments.scan.noise_hu, 0, 500, "standard deviation of the noise");
+    tooth.add_option("--seed", arguments.scan.seed, "seed of the noise")->capture_default_str();
+    tooth.add_option("--labels", arguments.labels,
+                     "NRRD file to write: 1 pulp, 2 caries, 3 dentine, 4 enamel, 0 none");
+}
+
+void addBlock(CLI::App& block, BlockArguments& arguments) {
+    block.add_option("--out", arguments.file, "NRRD file to write")->required();
+    block.add_option("--labels", arguments.labels, "NRRD file to write: layers from 1, 0 outside");
+    addThree(block, "--size-mm", arguments.size_mm, within(0.1, 1e3), "of the block");
     block
-        ->add_option("--layers", arguments.layers,
-                     "from the surface inwards: THICKNESS_MM:HU ..., the last one HU alone")
+        .add_option("--layers", arguments.layers,
+                    "from the surface inwards: THICKNESS_MM:HU ..., the last one HU alone")
         ->expected(1, 255)
         ->capture_default_str();
-    block->add_flag("--shell", arguments.is_shell, "layers follow all faces, not only the top");
-    block->add_option("--air-hu", arguments.air_hu)->check(within(-1024, 30000))->capture_default_str();
-    block->add_option("--voxel-mm", arguments.voxel_mm, "edge of a voxel")
-        ->check(within(1e-3, 100))
-        ->capture_default_str();
-    block->add_option("--margin-mm", arguments.margin_mm, "air around the block")
-        ->check(within(0, 1e3))
-        ->capture_default_str();
+    block.add_flag("--shell", arguments.is_shell, "layers follow all faces, not only the top");
+    addNumber(block, "--air-hu", arguments.air_hu, -1024, 30000, "");
+    addNumber(block, "--voxel-mm", arguments.voxel_mm, 1e-3, 100, "edge of a voxel");
+    addNumber(block, "--margin-mm", arguments.margin_mm, 0, 1e3, "air around the block");
 }
 
-void addBody(CLI::App& app, BodyArguments& arguments) {
-    CLI::App* body =
-        app.add_subcommand("body", "analytic body as NRRD; the exact surfaces are in docs/teach/volumes.md");
-    body->add_option("--kind", arguments.kind, "slab, sphere, hole, wedge or thin-wall")
+void addBody(CLI::App& body, BodyArguments& arguments) {
+    body.add_option("--kind", arguments.kind, "slab, sphere, hole, wedge or thin-wall")
         ->required()
         ->check(CLI::IsMember({"slab", "sphere", "hole", "wedge", "thin-wall"}));
-    body->add_option("--out", arguments.file, "NRRD file to write")->required();
-    const auto number = [&](const char* name, double& value, double low, double high, const char* help) {
-        body->add_option(name, value, help)->check(within(low, high))->capture_default_str();
-    };
-    number("--voxel-mm", arguments.voxel_mm, 1e-3, 100, "edge of a voxel");
-    number("--radius-mm", arguments.radius_mm, 1e-3, 1e4, "sphere and hole");
-    number("--thickness-mm", arguments.thickness_mm, 1e-3, 1e4, "slab, plate with the hole and thin wall");
-    number("--angle-deg", arguments.angle_deg, 1, 179, "full opening angle of the wedge");
-    body->add_option("--bits", arguments.bits, "8 or 16")
+    body.add_option("--out", arguments.file, "NRRD file to write")->required();
+    addNumber(body, "--voxel-mm", arguments.voxel_mm, 1e-3, 100, "edge of a voxel");
+    addNumber(body, "--radius-mm", arguments.radius_mm, 1e-3, 1e4, "sphere and hole");
+    addNumber(body, "--thickness-mm", arguments.thickness_mm, 1e-3, 1e4,
+              "slab, plate with the hole and thin wall");
+    addNumber(body, "--angle-deg", arguments.angle_deg, 1, 179, "full opening angle of the wedge");
+    body.add_option("--bits", arguments.bits, "8 or 16")
         ->check(CLI::IsMember({8, 16}))
         ->capture_default_str();
-    body->add_option("--dims", arguments.dims, "voxels per axis")
-        ->expected(3)
-        ->check(CLI::Range(2, 1024))
-        ->capture_default_str();
-    body->add_option("--rotate-deg", arguments.rotate_deg, "about x, then y, then z of the world")
-        ->expected(3)
-        ->check(within(-360, 360))
-        ->capture_default_str();
-    body->add_option("--offset-mm", arguments.offset_mm, "of the body from the middle of the grid")
-        ->expected(3)
-        ->check(within(-1e4, 1e4))
-        ->capture_default_str();
+    addThree(body, "--dims", arguments.dims, CLI::Range(2, 1024), "voxels per axis");
+    addThree(body, "--rotate-deg", arguments.rotate_deg, within(-360, 360),
+             "about x, then y, then z of the world");
+    addThree(body, "--offset-mm", arguments.offset_mm, within(-1e4, 1e4),
+             "of the body from the middle of the grid");
 }
 
+void addVertebra(CLI::App& vertebra, VertebraArguments& arguments) {
+    vertebra.add_option("--out", arguments.file, "NRRD file to write")->required();
+    vertebra.add_option("--labels", arguments.labels, "NRRD file to write the tissues to, on the same grid");
+    addNumber(vertebra, "--voxel-mm", arguments.voxel_mm, 0.2, 2, "edge of a voxel");
+}
+
+void addSkullLabels(CLI::App& skull, SkullArguments& arguments) {
+    skull.add_option("--volume", arguments.volume, "that scan, Cranium.inv3")->required();
+    skull.add_option("--out", arguments.file, "NRRD file to write")->required();
+}
+
+// Commands run while the command line is parsed, and throw UserError.
 int run(int argc, char** argv) {
     CLI::App app("Writes phantoms of known shape as CT volumes.", "make_phantom");
+    const auto add = [&](const char* name, const char* about, auto make, auto& arguments) -> CLI::App& {
+        CLI::App* const command = app.add_subcommand(name, about);
+        command->callback([make, &arguments] { make(arguments); });
+        return *command;
+    };
     ToothArguments tooth;
     BlockArguments block;
     BodyArguments body;
-    addTooth(app, tooth);
-    addBlock(app, block);
-    addBody(app, body);
-    addAnatomyCommands(app);
+    VertebraArguments vertebra;
+    SkullArguments skull;
+    addTooth(
+        add("tooth", "molar-like tooth as a DICOM CT series, 256x256x161, 0.125 mm, HU", makeTooth, tooth),
+        tooth);
+    addBlock(add("block", "block of layers of any density as NRRD, HU; top face at z = 0", makeBlock, block),
+             block);
+    addBody(
+        add("body", "analytic body as NRRD; the exact surfaces are in docs/teach/volumes.md", makeBody, body),
+        body);
+    addVertebra(
+        add("vertebra", "lumbar vertebra with nerves and vessels as NRRD, HU", makeVertebra, vertebra),
+        vertebra);
+    addSkullLabels(add("skull_labels", "structures to spare in the left mastoid of Cranium.inv3",
+                       makeSkullLabels, skull),
+                   skull);
     app.require_subcommand(1);
-    if (!parseCommandLine(app, argc, argv, "make_phantom")) return 0;
-    if (app.got_subcommand("tooth")) makeTooth(tooth);
-    if (app.got_subcommand("block")) makeBlock(block);
-    if (app.got_subcommand("body")) makeBody(body);
+    parseCommandLine(app, argc, argv, "make_phantom");
     return 0;
 }
 

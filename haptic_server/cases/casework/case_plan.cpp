@@ -125,13 +125,7 @@ CaseBone findBone(const RawVolume& scan, const CaseRequest& request) {
     DensityWindow window;
     window.iso = request.iso;
     const DensityMapping mapping = chooseMapping(scan, window);
-    CaseBone bone{.mapping = mapping,
-                  .volume = densifyNearBone(scan, mapping),
-                  .pieces = {},
-                  .metal = {},
-                  .all_pieces = nullptr,
-                  .is_dropped = {},
-                  .remarks = {}};
+    CaseBone bone{{.mapping = mapping}, densifyNearBone(scan, mapping)};
     if (mapping.proposed) bone.remarks.push_back("iso-value " + textOf(*mapping.proposed));
     bone.all_pieces = std::make_shared<const BonePieces>(bone.volume);
     const BonePieces& pieces = *bone.all_pieces;
@@ -149,13 +143,7 @@ CaseBone findBone(const RawVolume& scan, const CaseRequest& request) {
 }
 
 CasePlan planCase(const CaseBone& bone, const CaseRequest& request) {
-    CasePlan plan;
-    plan.mapping = bone.mapping;
-    plan.smallest_piece_voxels = bone.smallest_piece_voxels;
-    plan.metal = bone.metal;
-    plan.pieces = bone.all_pieces;
-    plan.is_dropped = bone.is_dropped;
-    plan.remarks = bone.remarks;
+    CasePlan plan{bone};
     const Eigen::Vector3d middle = pointOf(request.at_mm).value_or(bone.middle);
     const ScanBone scan(bone.volume);
     double within = scan.reach();

@@ -21,30 +21,27 @@ struct CasePiece {
     bool is_dropped = false;
 };
 
-// The bone of a scan at an iso-value.
-struct CaseBone {
-    DensityMapping mapping;
-    VoxelVolume volume;             // without noise and pieces that are left out
-    std::vector<CasePiece> pieces;  // the largest first; --drop-piece counts from 1
-    size_t noise_pieces = 0;        // smaller than those
-    uint32_t smallest_piece_voxels = 0;
-    Eigen::Vector3d middle = Eigen::Vector3d::Zero();  // W, m: of the largest piece that is kept
-    Metal metal;
-    std::shared_ptr<const BonePieces> all_pieces;
-    std::vector<bool> is_dropped;      // each of them
-    std::vector<std::string> remarks;  // for people
+// What is found in a scan at an iso-value.
+struct CaseFacts {
+    DensityMapping mapping = {};
+    uint32_t smallest_piece_voxels = 0;  // less is noise
+    Metal metal = {};
+    std::shared_ptr<const BonePieces> all_pieces = {};
+    std::vector<bool> is_dropped = {};      // each of them: asked for, or noise
+    std::vector<std::string> remarks = {};  // for people
 };
 
-struct CasePlan {
-    DensityMapping mapping;
-    std::optional<Eigen::AlignedBox3d> region;            // W, m; none: all of the bone
-    uint32_t smallest_piece_voxels = 0;                   // of the scan: less is noise
+struct CaseBone : CaseFacts {
+    VoxelVolume volume;                                // without noise and pieces that are left out
+    std::vector<CasePiece> pieces = {};                // the largest first; --drop-piece counts from 1
+    size_t noise_pieces = 0;                           // smaller than those
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();  // W, m: of the largest piece that is kept
+};
+
+struct CasePlan : CaseFacts {
+    std::optional<Eigen::AlignedBox3d> region = {};       // W, m; none: all of the bone
     Eigen::Vector3d outwards = Eigen::Vector3d::UnitZ();  // W: from the bone to the hand
     Eigen::Vector3d start = Eigen::Vector3d::Zero();      // W, m: on the bone, where the hand begins
-    Metal metal;                                          // of the scan
-    std::shared_ptr<const BonePieces> pieces;             // of the scan
-    std::vector<bool> is_dropped;                         // each of them: asked for, or noise
-    std::vector<std::string> remarks;                     // for people
 };
 
 // Looks at the request's iso-value and at the pieces that it leaves out. This is the long part of the work.

@@ -1,13 +1,19 @@
-// What a teacher says of the case that is to be made; all but the scan has a default.
+// What a teacher says of the training case that is to be made of a scan, also as words of a command line, and
+// the making of it. All but the scan has a default.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "haptic_server/core/volume/segments.h"
+
+namespace CLI {
+class App;
+}
 
 namespace bonemill {
 
@@ -46,5 +52,19 @@ std::vector<CaseLabel> labelsOf(const std::vector<std::string>& words);
 
 // Gives the structures without a number the labels and the colours of the file's segments. Throws UserError.
 void findSegments(const Segments& segments, const std::string& file, std::vector<CaseLabel>& labels);
+
+// Adds the scan and the options of make-case.
+void addCaseOptions(CLI::App& app, CaseRequest& request);
+
+// The words from which those options read this request.
+std::vector<std::string> wordsOf(const CaseRequest& request);
+// They stand behind `command`, as one line for a shell.
+std::string commandLineOf(const std::string& command, const CaseRequest& request);
+
+// Makes the case: a folder with the scan, its labels, the scene and where it all comes from. Nothing in it
+// comes from the scan's file but values and geometry: no name, no date, no UID, no path. (A face can still be
+// made of a CT of a head.) The folder must not exist, or be empty; it is there as a whole or not at all. What
+// was found and chosen goes to `out`. Throws UserError.
+void makeCase(const CaseRequest& request, const std::string& version, std::ostream& out);
 
 }  // namespace bonemill

@@ -1,12 +1,15 @@
-#include "haptic_server/cases/casework/make_case.h"
+#include <google/protobuf/text_format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <vector>
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
@@ -14,14 +17,141 @@
 #include "common/digest/sha256.h"
 #include "common/files/require_file.h"
 #include "haptic_server/cases/casework/case_figures.h"
-#include "haptic_server/cases/casework/case_scene.h"
+#include "haptic_server/cases/casework/case_plan.h"
+#include "haptic_server/cases/casework/case_request.h"
 #include "haptic_server/scans/import/import_volume.h"
-#include "haptic_server/scans/nrrd/nrrd_stream.h"
+#include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "haptic_server/scene/setup/scene_region.h"
 #include "haptic_server/scene/setup/scene_setup.h"
+#include "proto/scene.pb.h"
 
 namespace bonemill {
 namespace {
+
+constexpr char kScanOfCase[] = "scan.nrrd", kLabelsOfCase[] = "labels.nrrd";
+
+constexpr double kViewAside = 30, kViewUp = 12,
+                 kMostElevation = 80;  // deg, so that the tool does not hide its place
+constexpr double kViewOfRegion = 2.2;  // distances of its edge
+constexpr double kWarningMm = 2;
+
+void assign(const Eigen::Vector3d& p, scene::Vec3* out) {
+    const auto rounded = [](double metres) { return std::round(metres * kPerMillimetre * 1e3) / 1e3; };
+    out->set_x(rounded(p.x()));
+    out->set_y(rounded(p.y()));
+    out->set_z(rounded(p.z()));
+}
+
+void describeVolume(const CasePlan& plan, const CaseRequest& request, bool has_labels,
+                    scene::Volume* volume) {
+    volume->set_path(kScanOfCase);
+    volume->set_iso_value(plan.mapping.iso_value);
+    if (has_labels) volume->set_label_path(kLabelsOfCase);
+    if (plan.smallest_piece_voxels > 1) volume->set_smallest_piece_voxels(plan.smallest_piece_voxels);
+    for (const uint32_t piece : request.drop_pieces) volume->add_drop_piece(piece);
+    if (!plan.region) return;
+    assign(plan.region->min(), volume->mutable_region()->mutable_min_mm());
+    assign(plan.region->max(), volume->mutable_region()->mutable_max_mm());
+    if (request.voxel_mm) volume->mutable_region()->set_resample_mm(*request.voxel_mm);
+}
+
+std::string taskOf(const CaseRequest& request) {
+    if (request.credit.empty()) return request.task;
+    return request.task + (request.task.empty() ? "" : " ") + "Scan: " + request.credit;
+}
+
+// Its neutral pose holds the burr on the bone, the shaft towards the hand.
+void describeHand(const CasePlan& plan, scene::Device* device) {
+    assign(plan.start, device->mutable_p_wd_mm());
+    const auto q = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), plan.outwards);
+    device->mutable_q_wd()->set_w(q.w());
+    device->mutable_q_wd()->set_x(q.x());
+    device->mutable_q_wd()->set_y(q.y());
+    device->mutable_q_wd()->set_z(q.z());
+}
+
+// Azimuth 0 looks from -y, 90 from +x (common/geometry/view_axes.h).
+void describeView(const CasePlan& plan, const CaseRequest& request, scene::Camera* camera) {
+    const Eigen::Vector3d& eye = plan.outwards;
+    const double azimuth = std::atan2(eye.x(), -eye.y()) / kDegree, elevation = std::asin(eye.z()) / kDegree;
+    camera->set_azimuth_deg(std::round(std::remainder(azimuth - kViewAside, 360)));
+    camera->set_elevation_deg(std::round(std::clamp(elevation + kViewUp, -kMostElevation, kMostElevation)));
+    if (!plan.region) return;
+    assign(plan.start, camera->mutable_target_mm());
+    camera->set_distance_mm(kViewOfRegion * request.size_mm);
+}
+
+void describeStructures(const std::vector<CaseLabel>& labels, scene::Scene& scene) {
+    constexpr std::array<std::array<double, 3>, 5> kColours = {
+        {{0.30, 0.35, 0.85}, {1.00, 0.80, 0.10}, {0.78, 0.60, 0.92}, {0.85, 0.35, 0.30}, {0.40, 0.75, 0.55}}};
+    size_t colour = 0;
+    for (const CaseLabel& label : labels) {
+        scene::Material& material = *scene.add_material();
+        material.set_name(label.name);
+        for (const uint32_t number : label.labels) material.add_label(number);
+        const auto& own = kColours[colour++ % kColours.size()];
+        const Eigen::Vector3d rgb = label.color.value_or(Eigen::Vector3d(own[0], own[1], own[2]));
+        material.mutable_color()->set_red(rgb[0]);
+        material.mutable_color()->set_green(rgb[1]);
+        material.mutable_color()->set_blue(rgb[2]);
+        material.set_is_protected(label.role == CaseLabel::Role::kProtected);
+        if (material.is_protected()) {
+            scene.mutable_effects()->mutable_protected_structures()->set_warning_distance_mm(kWarningMm);
+            scene::Task::Gate& gate = *scene.mutable_assessment()->add_gate();
+            gate.set_figure("structure.lost_volume:" + label.name);
+            gate.set_at_most(0);
+        }
+        if (label.role == CaseLabel::Role::kTarget) {
+            scene::Task::Zone& zone = *scene.mutable_assessment()->add_zone();
+            zone.set_name(label.name);
+            zone.set_role(scene::Task::TARGET);
+            zone.add_material(label.name);
+        }
+    }
+}
+
+// What every milling of bone has; a burr that turns is what most of it needs.
+void describeEffects(const std::vector<scene::Tool>& tools, scene::Effects* effects) {
+    const bool all_turn = !tools.empty() && std::ranges::all_of(tools, &scene::Tool::has_speed_rpm);
+    if (!all_turn) {
+        effects->mutable_time_removal();
+        return;
+    }
+    effects->mutable_energy_removal();
+    effects->mutable_cutting_force();
+    effects->mutable_surface_friction();
+    effects->mutable_burr_vibration();
+    effects->mutable_bone_dust();
+    effects->mutable_burr_spin();
+    effects->mutable_milling_sound();
+}
+
+// `tools` may be empty; `scan_file` and `label_file` (empty: none) stand as they are.
+scene::Scene sceneOfCase(const CasePlan& plan, const CaseRequest& request,
+                         const std::vector<CaseLabel>& labels, const std::vector<scene::Tool>& tools,
+                         const std::string& name) {
+    scene::Scene scene;
+    scene.set_name(name);
+    if (!request.title.empty()) scene.set_title(request.title);
+    if (const std::string task = taskOf(request); !task.empty()) scene.set_task(task);
+    describeVolume(plan, request, !request.labels.empty(), scene.mutable_volume());
+    for (const scene::Tool& tool : tools) *scene.add_tool() = tool;
+    describeEffects(tools, scene.mutable_effects());
+    describeStructures(labels, scene);
+    describeHand(plan, scene.mutable_device());
+    describeView(plan, request, scene.mutable_camera());
+    return scene;
+}
+
+// The text that loadScene() reads.
+std::string textOfScene(const scene::Scene& scene) {
+    std::string text;
+    google::protobuf::TextFormat::PrintToString(scene, &text);
+    return "# A case made of a scan (docs/teach/cases.md). docs/lab/scene.md has every field with its unit, "
+           "default "
+           "and range.\n" +
+           text;
+}
 
 namespace fs = std::filesystem;
 
@@ -61,16 +191,10 @@ class CaseFolder {
 
 void writeVolume(const fs::path& file, const RawVolume& volume) {
     volume.values.visit([&]<class T>(std::span<const T> samples) {
-        NrrdStream<T> stream(file, volume.geometry, NrrdEncoding::kGzip, volume.lacks_patient_axes);
+        NrrdStream<T> stream(file, volume.geometry, volume.lacks_patient_axes);
         stream.append(samples);
         stream.close();
     });
-}
-
-void writeText(const fs::path& file, const std::string& text) {
-    std::ofstream out(file);
-    if (!(out << text << std::flush))
-        throw UserError(file.string() + ": cannot be written; is the disk full?");
 }
 
 std::vector<scene::Tool> toolsOfFile(const std::string& file) {
@@ -179,8 +303,8 @@ void makeCase(const CaseRequest& request, const std::string& version, std::ostre
         writeVolume(folder / kLabelsOfCase, map);
     }
     const std::string scene_file = folder.name() + ".textproto";
-    writeText(folder / scene_file, textOfScene(sceneOfCase(plan, request, labels, tools, folder.name())));
-    writeText(folder / "provenance.json", provenanceOf(scan, plan, request, folder / kScanOfCase, version));
+    writeWhole(folder / scene_file, textOfScene(sceneOfCase(plan, request, labels, tools, folder.name())));
+    writeWhole(folder / "provenance.json", provenanceOf(scan, plan, request, folder / kScanOfCase, version));
     const Simulation simulation = makeSimulation(loadScene(folder / scene_file));  // as a session would
     for (const std::string& remark : simulation.remarks) out << remark << '\n';
     for (const std::string& warning : simulation.warnings) out << "warning: " << warning << '\n';

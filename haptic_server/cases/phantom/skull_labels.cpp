@@ -2,6 +2,7 @@
 
 #include "common/base/units.h"
 #include "haptic_server/cases/phantom/spline_shapes.h"
+#include "haptic_server/core/volume/index_box.h"
 
 namespace bonemill {
 namespace {
@@ -63,12 +64,10 @@ std::vector<uint8_t> skullLabels(const VolumeGeometry& geometry) {
         if (sinus.contains(p_mm)) return SkullLabel::kSigmoidSinus;
         return dura.contains(p_mm) ? SkullLabel::kDura : SkullLabel::kNone;
     };
-    for (int k = 0; k < geometry.dims.z(); ++k)
-        for (int j = 0; j < geometry.dims.y(); ++j)
-            for (int i = 0; i < geometry.dims.x(); ++i) {
-                const Eigen::Vector3d p_V = geometry.spacing.cwiseProduct(Eigen::Vector3d(i, j, k));
-                labels.push_back(uint8_t(labelAt(geometry.X_WV * p_V * kPerMillimetre)));
-            }
+    forEachIndex({Eigen::Vector3i::Zero(), geometry.dims.array() - 1}, [&](const Eigen::Vector3i& v) {
+        const Eigen::Vector3d p_V = geometry.spacing.cwiseProduct(v.cast<double>());
+        labels.push_back(uint8_t(labelAt(geometry.X_WV * p_V * kPerMillimetre)));
+    });
     return labels;
 }
 

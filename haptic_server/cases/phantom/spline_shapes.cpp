@@ -1,7 +1,5 @@
 #include "haptic_server/cases/phantom/spline_shapes.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace bonemill {

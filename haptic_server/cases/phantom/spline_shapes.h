@@ -1,10 +1,12 @@
-// Makes soft structures of the phantoms: tubes and sheets about smooth curves through
-// given points (Catmull-Rom).
+// Makes soft structures of the phantoms: tubes and sheets about smooth curves through given points
+// (Catmull-Rom); and puts shapes together that are functions, negative inside.
 //
 // There is one length unit throughout (the phantoms use mm). Thread-safe; start-up only, allocates.
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace bonemill {
@@ -49,5 +51,16 @@ class SplineSheet {
     Eigen::Vector2d high_;
     double thickness_;
 };
+
+inline double smoothStep(double low, double high, double x) noexcept {
+    const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+}
+
+// Makes the smooth union of two implicit shapes with a fillet of about `fillet`.
+inline double blend(double a, double b, double fillet) noexcept {
+    const double h = std::max(fillet - std::abs(a - b), 0.0) / fillet;
+    return std::min(a, b) - h * h * fillet / 4;
+}
 
 }  // namespace bonemill

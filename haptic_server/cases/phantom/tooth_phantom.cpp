@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "common/base/units.h"
-#include "haptic_server/cases/phantom/implicit_shapes.h"
+#include "haptic_server/cases/phantom/spline_shapes.h"
+#include "haptic_server/core/volume/index_box.h"
 
 namespace bonemill {
 namespace {
@@ -153,34 +154,14 @@ double noise(uint64_t seed, uint64_t index) {
     return sum * std::sqrt(3.0);
 }
 
-}  // namespace
-
-ToothTissue toothTissue(const Eigen::Vector3d& p_W) noexcept {
-    const Eigen::Vector3d p_mm = p_W * kPerMillimetre;
-    const bool is_far = p_mm.head<2>().cwiseAbs().maxCoeff() > kReach || p_mm.z() < 0 || p_mm.z() > kHighest;
-    return is_far ? ToothTissue::kAir : tissueAt(p_mm);
-}
-
-VolumeGeometry toothGrid() {
-    VolumeGeometry geometry;
-    geometry.dims = {256, 256, 161};
-    geometry.spacing.setConstant(0.125e-3);
-    geometry.X_WV.position = {-127.5 * 0.125e-3, -127.5 * 0.125e-3, 0};
-    return geometry;
-}
-
-namespace {
-
 // Holds the tissue at the centres of all voxels and of one layer around them.
 class TissueMap {
   public:
     explicit TissueMap(const VolumeGeometry& geometry) : size_(geometry.dims.array() + 2) {
         tissue_.reserve(size_t(size_.x()) * size_t(size_.y()) * size_t(size_.z()));
-        for (int k = -1; k <= geometry.dims.z(); ++k)
-            for (int j = -1; j <= geometry.dims.y(); ++j)
-                for (int i = -1; i <= geometry.dims.x(); ++i)
-                    tissue_.push_back(
-                        toothTissue(geometry.X_WV * geometry.spacing.cwiseProduct(Eigen::Vector3d(i, j, k))));
+        forEachIndex({Eigen::Vector3i::Constant(-1), geometry.dims}, [&](const Eigen::Vector3i& v) {
+            tissue_.push_back(toothTissue(geometry.X_WV * geometry.spacing.cwiseProduct(v.cast<double>())));
+        });
     }
     ToothTissue at(int i, int j, int k) const {
         return tissue_[size_t(i + 1) +
@@ -198,6 +179,20 @@ class TissueMap {
 };
 
 }  // namespace
+
+ToothTissue toothTissue(const Eigen::Vector3d& p_W) noexcept {
+    const Eigen::Vector3d p_mm = p_W * kPerMillimetre;
+    const bool is_far = p_mm.head<2>().cwiseAbs().maxCoeff() > kReach || p_mm.z() < 0 || p_mm.z() > kHighest;
+    return is_far ? ToothTissue::kAir : tissueAt(p_mm);
+}
+
+VolumeGeometry toothGrid() {
+    VolumeGeometry geometry;
+    geometry.dims = {256, 256, 161};
+    geometry.spacing.setConstant(0.125e-3);
+    geometry.X_WV.position = {-127.5 * 0.125e-3, -127.5 * 0.125e-3, 0};
+    return geometry;
+}
 
 RawVolume scanTooth(const VolumeGeometry& geometry, const ToothScan& scan) {
     RawVolume raw;

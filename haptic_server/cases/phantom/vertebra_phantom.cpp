@@ -5,8 +5,8 @@
 #include <span>
 
 #include "common/base/units.h"
-#include "haptic_server/cases/phantom/implicit_shapes.h"
 #include "haptic_server/cases/phantom/spline_shapes.h"
+#include "haptic_server/core/volume/index_box.h"
 
 namespace bonemill {
 namespace {
@@ -180,13 +180,10 @@ class DepthMap {
     DepthMap(const VolumeGeometry& geometry) : geometry_(geometry) {
         const Eigen::Array3i cubes = (geometry.dims.array() + kEdge - 1) / kEdge;
         const double reach = kMargin * (geometry.spacing * kEdge / 2).norm() * kPerMillimetre;
-        for (int k = 0; k < cubes.z(); ++k)
-            for (int j = 0; j < cubes.y(); ++j)
-                for (int i = 0; i < cubes.x(); ++i) {
-                    const Vector3d middle = (Vector3d(i, j, k).array() * kEdge + (kEdge - 1) / 2.0).matrix();
-                    const double depth = -bone(pointOf(middle));
-                    is_far_.push_back(depth < -reach - kFar);
-                }
+        forEachIndex({Eigen::Vector3i::Zero(), cubes - 1}, [&](const Eigen::Vector3i& cube) {
+            const Vector3d middle = cube.cast<double>().array() * kEdge + (kEdge - 1) / 2.0;
+            is_far_.push_back(-bone(pointOf(middle)) < -reach - kFar);
+        });
         cubes_ = cubes;
     }
     Vector3d pointOf(const Vector3d& index) const {

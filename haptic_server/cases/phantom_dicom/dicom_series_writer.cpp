@@ -1,15 +1,20 @@
 #include "haptic_server/cases/phantom_dicom/dicom_series_writer.h"
 
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
-#include "haptic_server/cases/phantom/dicom_uid.h"
 #include "haptic_server/cases/phantom_dicom/dicom_slice_writer.h"
 
 namespace bonemill {
 namespace {
+
+uint64_t fnv1a(const std::string& text, uint64_t hash) {
+    for (const unsigned char c : text) hash = (hash ^ c) * 0x100000001b3u;
+    return hash;
+}
 
 using Tags = std::vector<std::pair<std::string, std::string>>;
 
@@ -54,6 +59,16 @@ std::vector<int16_t> sliceValues(const RawVolume& volume, int k) {
 }
 
 }  // namespace
+
+std::string uidFromText(const std::string& text) {
+    // It follows RFC 9562 version 8 (own hash), variant 1, written as one decimal number (ITU-T X.667).
+    const uint64_t high = (fnv1a(text, 0xcbf29ce484222325u) & ~uint64_t(0xf000)) | 0x8000;
+    const uint64_t low = (fnv1a(text, 0x9ae16a3b2f90404fu) & 0x3fffffffffffffffu) | 0x8000000000000000u;
+    unsigned __int128 number = static_cast<unsigned __int128>(high) << 64 | low;
+    std::string digits;
+    for (; number > 0; number /= 10) digits += char('0' + int(number % 10));
+    return "2.25." + std::string(digits.rbegin(), digits.rend());
+}
 
 void writeCtSeries(const std::filesystem::path& folder, const RawVolume& volume, const CtSeriesText& text) {
     std::error_code error;

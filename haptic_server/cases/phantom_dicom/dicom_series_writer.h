@@ -18,4 +18,7 @@ struct CtSeriesText {
 // ... in the order of the third axis. Creates the folder. Throws UserError when a file cannot be written.
 void writeCtSeries(const std::filesystem::path& folder, const RawVolume& volume, const CtSeriesText& text);
 
+// Makes a valid UID under 2.25 (UUID-derived) from any text: the same text gives the same UID.
+std::string uidFromText(const std::string& text);
+
 }  // namespace bonemill

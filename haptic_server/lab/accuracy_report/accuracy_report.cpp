@@ -4,19 +4,19 @@
 #include <chrono>
 #include <fstream>
 #include <ostream>
+#include <set>
 #include <thread>
 
 #include "common/base/user_error.h"
 #include "common/config/scene_tools.h"
 #include "common/process/gnuplot.h"
-#include "haptic_server/lab/accuracy_report/plot.h"
-#include "haptic_server/lab/accuracy_report/sweep_settings.h"
+#include "haptic_server/lab/accuracy_report/report_files.h"
+#include "haptic_server/lab/accuracy_report/sweep.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 
 namespace bonemill {
 namespace {
 
-const std::vector<int> kRefinements{2, 4};
 constexpr int kMaxThreads = 4;
 
 using SteadyClock = std::chrono::steady_clock;
@@ -41,45 +41,28 @@ std::string machineName() {
 }
 
 std::vector<int> refinementsOf(const std::vector<AccuracySettings>& settings) {
-    std::vector<int> refinements = kRefinements;
+    std::set<int> refinements{2, 4};
     for (const AccuracySettings& s : settings)
-        if (s.sdf_refinement > 1) refinements.push_back(s.sdf_refinement);
-    std::sort(refinements.begin(), refinements.end());
-    refinements.erase(std::unique(refinements.begin(), refinements.end()), refinements.end());
-    return refinements;
+        if (s.sdf_refinement > 1) refinements.insert(s.sdf_refinement);
+    return {refinements.begin(), refinements.end()};
 }
 
 std::vector<int> shellFactorsOf(const std::vector<AccuracySettings>& settings) {
-    std::vector<int> factors;
-    for (const AccuracySettings& s : settings) factors.push_back(s.shell_factor);
-    std::sort(factors.begin(), factors.end());
-    factors.erase(std::unique(factors.begin(), factors.end()), factors.end());
-    return factors;
+    std::set<int> factors;
+    for (const AccuracySettings& s : settings) factors.insert(s.shell_factor);
+    return {factors.begin(), factors.end()};
 }
 
-// Has the finest level only: paths and truth are laid out with it.
-BoneModel layoutBone(const Simulation& simulation) {
-    return BoneModel(VoxelVolume(simulation.bone->volume), simulation.bone->lattice.leafCells(),
-                     ShellConfig{.spare_points = 1});
-}
-
-class Progress {
-  public:
-    Progress(std::ostream& out, size_t count) : out_(out), count_(count) {}
-    void operator()(const SettingFigures& f, size_t done) {
-        const double left = secondsSince(start_) / double(done) * double(count_ - done);
+SweepProgress progressOf(size_t count, std::ostream& out) {
+    return [count, &out, start = SteadyClock::now()](const SettingFigures& f, size_t done) {
+        const double left = secondsSince(start) / double(done) * double(count - done);
         char text[256];
         std::snprintf(text, sizeof text,
-                      "[%2zu/%zu] %s: force error %.3g %%, p99.9 %.3g us; about %.0f s left", done, count_,
+                      "[%2zu/%zu] %s: force error %.3g %%, p99.9 %.3g us; about %.0f s left", done, count,
                       f.name.c_str(), 100 * f.errors.force_vector, f.times.p99_9, left);
-        out_ << text << std::endl;
-    }
-
-  private:
-    std::ostream& out_;
-    size_t count_;
-    SteadyClock::time_point start_ = SteadyClock::now();
-};
+        out << text << std::endl;
+    };
+}
 
 // Measures everything; the files come later.
 ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::ostream& progress) {
@@ -93,7 +76,9 @@ ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::os
     tick.hand.max_torque = tick.hand_space.torqueAtTool(tick.hand.max_torque);
     tick.hand_space = {};
 
-    BoneModel bone = layoutBone(simulation);
+    // With the finest level only, paths and truth are laid out.
+    BoneModel bone(VoxelVolume(simulation.bone->volume), simulation.bone->lattice.leafCells(),
+                   ShellConfig{.spare_points = 1});
     TouchProbe probe(bone, tool.model);
     const auto places =
         findProbingPlaces(loaded.scene.simulated_operator(), bone, tick.tool.burr.radius, probe);
@@ -120,7 +105,7 @@ ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::os
     const SweepInput input{loaded.scene, bone.volume, bone.lattice.leafCells(), tick.tool, strokes, truth,
                            milling,      plane};
     ReportData data;
-    data.settings = sweep(input, settings, Progress(progress, settings.size()));
+    data.settings = sweep(input, settings, progressOf(settings.size(), progress));
     data.front = paretoFront(paretoPoints(data.settings));
     data.truth = summaryOf(strokes, truth);
     data.patches = plane.patchErrors();

@@ -116,8 +116,7 @@ std::string truthText(const ReportData& data) {
         "surface, sampled " +
         std::to_string(truth.refinement) +
         " times as densely per axis at 2 × 2 places per contact point, with the tool's exact distances (a "
-        "mesh: "
-        "its grid refined 4 times), in double precision, with as many solver iterations as it takes. ";
+        "mesh: its grid refined 4 times), in double precision, with as many solver iterations as it takes. ";
     text += format(
         "Along the probing path its force is %.3g N (root mean square; most %.3g N), its torque %.3g N·mm "
         "(most %.3g). ",
@@ -131,8 +130,7 @@ std::string truthText(const ReportData& data) {
 std::string pathText(const ReportData& data) {
     std::string text =
         "**Probing path.** Smooth closed strokes: press, slide round a loop with changing load and a few "
-        "degrees of "
-        "turning, let go; nothing is milled. Places:";
+        "degrees of turning, let go; nothing is milled. Places:";
     const char* separator = " ";
     for (const std::string& stroke : data.truth.strokes) text += separator + stroke, separator = "; ";
     return text + ".\n\n";
@@ -143,13 +141,10 @@ std::string figuresText(const ReportData& data) {
         "**Errors** are root mean squares over all ticks in which the true force is at least " +
         format("%g N", Errors::kFeltForce) +
         ". The *force error*, by which the settings are ranked, is the length of the difference of the force "
-        "vectors; it "
-        "and the errors of magnitudes are relative to the root mean square of the true ones. **Deepest**: "
-        "contact point "
-        "in the tool. **Noise**: root mean square of the force's second differences from tick to tick. "
-        "**Closed-path "
-        "energy**: the least that any closed stroke took from the hand; below zero a stroke gave energy "
-        "out.\n\n";
+        "vectors; it and the errors of magnitudes are relative to the root mean square of the true ones. "
+        "**Deepest**: contact point in the tool. **Noise**: root mean square of the force's second "
+        "differences from tick to tick. **Closed-path energy**: the least that any closed stroke took from "
+        "the hand; below zero a stroke gave energy out.\n\n";
     text += "**Anisotropy**: spread of the force of the burr pressed on a plane with 0.5 to 4 N over " +
             format("%d rotated and shifted voxel grids of %.3g mm", AnalyticProbe::kGrids,
                    kPerMillimetre * data.spacing) +
@@ -157,25 +152,21 @@ std::string figuresText(const ReportData& data) {
             "closed form.\n\n";
     return text +
            "**Removed volume**: bone removed by milling into it and sideways, against the volume that the "
-           "burr swept on "
-           "the simulated tool's own way; beside it the share of what the burr would have swept on the "
-           "device's way "
-           "(little: the burr rides on the bone and does not get in).\n\n";
+           "burr swept on the simulated tool's own way; beside it the share of what the burr would have "
+           "swept on the device's way (little: the burr rides on the bone and does not get in).\n\n";
 }
 
 std::string timesText(const ReportData& data) {
     return "**Times** are of whole ticks, probing and milling together, on this machine (" + data.machine +
            "), one thread, not in real time. The same work runs three times and the shortest time of each "
-           "tick "
-           "counts, so that "
-           "what other programs take does not; a live session has that on top (docs/lab/realtime.md)." +
+           "tick counts, so that what other programs take does not; a live session has that on top "
+           "(docs/lab/realtime.md)." +
            format(" The scene's tick has %.4g µs.\n\n", kPerMicrosecond * data.tick_period);
 }
 
 std::string otherLawsText() {
     return "**†** These are other contact laws: thesis_2012, and those of other schools "
-           "(docs/research/laws.md). They "
-           "compute another force. There is no truth of it that a finer "
+           "(docs/research/laws.md). They compute another force. There is no truth of it that a finer "
            "sampling would approach. Their columns of errors show how far they are from the truth of the "
            "gradient law; they take no part in the front and are never proposed.\n\n";
 }
@@ -190,12 +181,10 @@ std::string kindText(const PatchErrors& p) {
 std::string patchTable(const ReportData& data) {
     std::string table =
         "## How large a contact must be\n\nThe contact alone, without the coupling that evens out: burr at a "
-        "prescribed "
-        "depth in a plane, over the same grids, against π κ (R − d) d². Force errors in %, root mean square "
-        "over the "
-        "grids; the largest, and those of the direction: patch.csv. By how finely the bone is sampled "
-        "(accuracy.sample_spacing_um).\n\n| shell factor | contact circle, "
-        "voxels | depth µm |";
+        "prescribed depth in a plane, over the same grids, against π κ (R − d) d². Force errors in %, root "
+        "mean square over the grids; the largest, and those of the direction: patch.csv. By how finely the "
+        "bone is sampled (accuracy.sample_spacing_um).\n\n| shell factor | contact circle, voxels | depth µm "
+        "|";
     std::string rule = "|--:|--:|--:|", rows;
     const PatchErrors* row = nullptr;  // first of the current row
     for (const PatchErrors& p : data.patches) {
@@ -228,8 +217,7 @@ std::string reportText(const ReportData& data) {
     for (const std::string& line : reportConclusions(data)) text += "- " + line + '\n';
     text += format(
         "- Voxels of %.3g mm, burr radius %.3g mm: with %.2g N the burr touches a plane over a circle of "
-        "%.2g "
-        "voxels; the table at the end says what so few voxels cost.\n\n",
+        "%.2g voxels; the table at the end says what so few voxels cost.\n\n",
         kPerMillimetre * data.spacing, kPerMillimetre * data.burr_radius, data.truth.force_rms,
         data.contact_width / data.spacing);
     text += "![force error against tick time](pareto.png)\n\n";

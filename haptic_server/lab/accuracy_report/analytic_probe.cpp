@@ -6,8 +6,7 @@
 
 #include "haptic_server/core/contact/gradient_contact.h"
 #include "haptic_server/core/equilibrium/spo_model.h"
-#include "haptic_server/lab/accuracy_report/probe_limits.h"
-#include "haptic_server/lab/accuracy_report/timed_run.h"
+#include "haptic_server/lab/accuracy_report/measures.h"
 #include "haptic_server/lab/simulate/run_path.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
 
@@ -55,13 +54,11 @@ VoxelVolume halfSpace(double half_edge, double spacing, std::mt19937& random) {
     const Vector3d shift = spacing / 2 * Vector3d(uniform(random), uniform(random), uniform(random));
     geometry.X_WV.position = shift - geometry.X_WV.rotation * middle;
     VoxelVolume volume(geometry, kIso);
-    for (int k = 0; k < geometry.dims.z(); ++k)
-        for (int j = 0; j < geometry.dims.y(); ++j)
-            for (int i = 0; i < geometry.dims.x(); ++i) {
-                const double height = (geometry.X_WV * (spacing * Vector3d(i, j, k))).z();
-                const double density = kIso - height / (kProbedRampVoxels * spacing) * kMaxDensity;
-                volume.set(i, j, k, Density(std::lround(std::clamp(density, 0.0, double(kMaxDensity)))));
-            }
+    forEachIndex({Eigen::Vector3i::Zero(), geometry.dims.array() - 1}, [&](const Eigen::Vector3i& v) {
+        const double height = (geometry.X_WV * (spacing * v.cast<double>())).z();
+        const double density = kIso - height / (kProbedRampVoxels * spacing) * kMaxDensity;
+        volume.set(v.x(), v.y(), v.z(), Density(std::lround(std::clamp(density, 0.0, double(kMaxDensity)))));
+    });
     return volume;
 }
 
@@ -100,11 +97,6 @@ Rest restOf(const RunRecords& records, double radius) {
 
 }  // namespace
 
-struct AnalyticProbe::Plane {
-    BoneModel bone;
-    Eigen::Quaterniond R_WT;
-};
-
 double forceOnSphere(double kappa, double radius, double depth) noexcept {
     return depth <= 0 ? 0 : M_PI * kappa * (radius - depth) * depth * depth;
 }
@@ -139,14 +131,11 @@ AnalyticProbe::AnalyticProbe(const AnalyticProbeConfig& config) : config_(config
         std::min(kWidestOfRadius * radius, kWidths[std::size(kWidths) - 1] * config.spacing);
     for (int n = 0; n < kGrids; ++n) {
         VoxelVolume volume = halfSpace(widest / 2 + kBorderVoxels * config.spacing, config.spacing, random);
-        planes_.push_back(
-            std::make_unique<Plane>(Plane{BoneModel(std::move(volume), Eigen::Vector3i::Constant(kLeafCells),
-                                                    ShellConfig{.levels = levels, .spare_points = 1}),
-                                          randomRotation(random)}));
+        planes_.push_back({BoneModel(std::move(volume), Eigen::Vector3i::Constant(kLeafCells),
+                                     ShellConfig{.levels = levels, .spare_points = 1}),
+                           randomRotation(random)});
     }
 }
-
-AnalyticProbe::~AnalyticProbe() = default;
 
 PlaneErrors AnalyticProbe::measure(const AccuracySettings& settings) {
     FixedTickConfig tick = config_.tick;
@@ -164,9 +153,9 @@ PlaneErrors AnalyticProbe::measure(const AccuracySettings& settings) {
         const double true_depth = depthUnderSpring(tick, true_stretch);
         const double true_force = springForce(tick.toolCoupling(), true_stretch - true_depth);
         double low = INFINITY, high = 0, sum = 0;
-        for (const auto& plane : planes_) {
+        for (Plane& plane : planes_) {
             const Rest rest = restOf(
-                runPath(tick, plane->bone, inputsOf(pressPath(plane->R_WT, radius, true_stretch), tick.dt)),
+                runPath(tick, plane.bone, inputsOf(pressPath(plane.R_WT, radius, true_stretch), tick.dt)),
                 radius);
             errors.force += std::pow(rest.force / true_force - 1, 2);
             errors.depth += std::pow(rest.depth - true_depth, 2);
@@ -192,10 +181,10 @@ PatchErrors AnalyticProbe::patchAt(const AccuracySettings& settings, double widt
     const double true_force = forceOnSphere(kappa, radius, errors.depth);
     GradientContact contact({.stiffness_per_area = kappa, .stiffness_cap = INFINITY});
     const ToolField& field = burr_.field(settings);
-    for (const auto& plane : planes_) {
-        const BoneModel& bone = plane->bone;
+    for (const Plane& plane : planes_) {
+        const BoneModel& bone = plane.bone;
         const Pose X_WV = bone.volume.geometry().X_WV;
-        const Pose X_VT = X_WV.inverse() * Pose{{0, 0, radius - errors.depth}, plane->R_WT};
+        const Pose X_VT = X_WV.inverse() * Pose{{0, 0, radius - errors.depth}, plane.R_WT};
         contact.gather({bone.volume, bone.lattice, bone.shell, levelOf(bone.shell, settings),
                         settings.sample_spacing, settings.most_samples},
                        field, X_VT, 1e-6);

@@ -3,9 +3,9 @@
 // grids, so that what remains is the accuracy of the sampling, and how it depends on the grid's direction.
 #pragma once
 
-#include <memory>
 #include <vector>
 
+#include "haptic_server/core/bone/bone_model.h"
 #include "haptic_server/core/tick/tick_config.h"
 
 namespace bonemill {
@@ -56,7 +56,6 @@ class AnalyticProbe {
     static constexpr int kGrids = 20;
 
     explicit AnalyticProbe(const AnalyticProbeConfig& config);
-    ~AnalyticProbe();
 
     PlaneErrors measure(const AccuracySettings& settings);
     // There is one entry for each shell factor with the analytic burr and each preset's sampling, and
@@ -64,12 +63,15 @@ class AnalyticProbe {
     std::vector<PatchErrors> patchErrors() const;
 
   private:
-    struct Plane;  // the half-space z_W < 0 in voxels of its own direction
+    struct Plane {  // the half-space z_W < 0 in voxels of its own direction
+        BoneModel bone;
+        Eigen::Quaterniond R_WT;
+    };
     PatchErrors patchAt(const AccuracySettings& settings, double width_voxels) const;
 
     AnalyticProbeConfig config_;
     ToolModel burr_;
-    std::vector<std::unique_ptr<Plane>> planes_;
+    std::vector<Plane> planes_;
 };
 
 }  // namespace bonemill

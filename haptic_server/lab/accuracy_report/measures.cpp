@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptic_server/lab/simulate/run_path.h"
+
 namespace bonemill {
 namespace {
 
@@ -15,6 +17,18 @@ double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }
 
 }  // namespace
+
+RunRecords runPathTimed(const FixedTickConfig& config, BoneModel& bone, std::span<const Pose> path_WT) {
+    const std::vector<DeviceInput> path = inputsOf(path_WT, config.dt);
+    RunRecords records = runPath(config, bone, path);
+    for (int pass = 1; pass < kPasses; ++pass) keepShorterTimes(records, runPath(config, bone, path));
+    return records;
+}
+
+void keepShorterTimes(RunRecords& records, const RunRecords& again) noexcept {
+    for (size_t n = 0; n < std::min(records.size(), again.size()); ++n)
+        records[n].compute_ns = std::min(records[n].compute_ns, again[n].compute_ns);
+}
 
 std::vector<TickAnswer> answersOf(const RunRecords& records) {
     std::vector<TickAnswer> answers;

@@ -1,13 +1,32 @@
-// Tells a run and the truth apart along the same device path. It computes in SI and has no shared state.
+// Runs ticks along a path of device poses, and tells a run and the truth apart along the same path. It
+// computes in SI, has no shared state, and is not RT-safe.
 #pragma once
 
-#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "common/geometry/pose.h"
-#include "haptic_server/lab/accuracy_report/timed_run.h"
+#include "haptic_server/core/bone/bone_model.h"
+#include "haptic_server/core/telemetry/tick_record.h"
+#include "haptic_server/core/tick/tick_config.h"
 
 namespace bonemill {
+
+using PosePath = std::vector<Pose>;  // device poses X_WT, one per tick
+using RunRecords = std::vector<TickRecord>;
+
+// Does the same work kPasses times: the first run's records get the shortest time of each tick, so that what
+// other programs took of the processor does not count. Nothing is milled.
+RunRecords runPathTimed(const FixedTickConfig& config, BoneModel& bone, std::span<const Pose> path_WT);
+inline constexpr int kPasses = 3;
+
+// compute_ns of each tick becomes the smaller one of both runs of the same work.
+void keepShorterTimes(RunRecords& records, const RunRecords& again) noexcept;
+
+// What the probes of the report have in common.
+constexpr double kHeaviestShare = 0.6;    // of the coupling's saturation: no probe presses harder
+constexpr int kLeafCells = 16;            // along each edge of a leaf
+constexpr int kUnlimitedSamples = 32768;  // what is near the burr, or touches it, is always fewer
 
 // One tick answers with the tool's pose in W, and with what the hand feels (axes W).
 struct TickAnswer {

@@ -1,11 +1,9 @@
 #include "haptic_server/lab/accuracy_report/milling_probe.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "common/device_messages/device_messages.h"
-#include "haptic_server/lab/accuracy_report/fine_bone.h"
-#include "haptic_server/lab/accuracy_report/smooth_path.h"
+#include "haptic_server/lab/accuracy_report/truth.h"
 #include "haptic_server/lab/simulate/run_path.h"
 
 namespace bonemill {
@@ -40,25 +38,22 @@ std::vector<Vector3d> thinned(const std::vector<Vector3d>& path_W, const Pose& X
 // Counts samples of bone inside the burr at any of the positions (V of `before`).
 size_t sweptCount(const VoxelVolume& before, const std::vector<Vector3d>& path, double radius) {
     size_t count = 0;
-    for (int k = 0; k < before.dims().z(); ++k)
-        for (int j = 0; j < before.dims().y(); ++j)
-            for (int i = 0; i < before.dims().x(); ++i) {
-                if (before.at(i, j, k) < before.iso()) continue;
-                const Vector3d p_V = before.spacing().cwiseProduct(Vector3d(i, j, k));
-                count += std::any_of(path.begin(), path.end(), [&](const Vector3d& center) {
-                    return (p_V - center).squaredNorm() < radius * radius;
-                });
-            }
+    forEachIndex({Eigen::Vector3i::Zero(), before.dims().array() - 1}, [&](const Eigen::Vector3i& v) {
+        if (before.at(v.x(), v.y(), v.z()) < before.iso()) return;
+        const Vector3d p_V = before.spacing().cwiseProduct(v.cast<double>());
+        count += std::any_of(path.begin(), path.end(), [&](const Vector3d& center) {
+            return (p_V - center).squaredNorm() < radius * radius;
+        });
+    });
     return count;
 }
 
 size_t removedCount(const VoxelVolume& before, const VoxelVolume& after) {
-    const Eigen::Vector3i& dims = before.dims();
     int64_t count = 0;
-    for (int k = 0; k < dims.z(); ++k)
-        for (int j = 0; j < dims.y(); ++j)
-            for (int i = 0; i < dims.x(); ++i)
-                count += int(before.at(i, j, k) >= before.iso()) - int(after.at(i, j, k) >= after.iso());
+    forEachIndex({Eigen::Vector3i::Zero(), before.dims().array() - 1}, [&](const Eigen::Vector3i& v) {
+        count += int(before.at(v.x(), v.y(), v.z()) >= before.iso()) -
+                 int(after.at(v.x(), v.y(), v.z()) >= after.iso());
+    });
     return size_t(std::max<int64_t>(count, 0));
 }
 

@@ -1,11 +1,9 @@
 // Measures how much bone the burr takes away, against the volume that it swept.
 #pragma once
 
-#include <optional>
-
 #include "haptic_server/core/bone/bone_history.h"
-#include "haptic_server/lab/accuracy_report/probing_places.h"
-#include "haptic_server/lab/accuracy_report/timed_run.h"
+#include "haptic_server/lab/accuracy_report/measures.h"
+#include "haptic_server/lab/accuracy_report/probing_path.h"
 
 namespace bonemill {
 

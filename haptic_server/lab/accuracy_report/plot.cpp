@@ -1,24 +1,36 @@
-#include "haptic_server/lab/accuracy_report/plot.h"
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
-#include "haptic_server/lab/accuracy_report/label_layout.h"
+#include "common/text/printed_text.h"
+#include "haptic_server/lab/accuracy_report/report_files.h"
 
 namespace bonemill {
 namespace {
 
-constexpr double kMinError = 1e-3;  // %, for the logarithm
+using Eigen::Vector2d;
 
-std::string quoted(const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') out += '\\';
-        out += c;
+constexpr double kCharacterWidth = 8, kTextHeight = 15;  // pixels, of the plot's label font, rounded up
+constexpr double kPointRadius = 6;
+constexpr double kGaps[] = {3, 14, 28, 45, 65, 90};  // between point and text
+constexpr double kLongestGapWithoutLine = 3;
+constexpr int kDirections = 16;
+
+struct Rectangle {
+    Vector2d center, half;
+    bool overlaps(const Rectangle& other) const {
+        return ((center - other.center).cwiseAbs().array() < (half + other.half).array()).all();
     }
-    return out + '"';
+};
+
+// The text's middle lies there when it is `gap` outside of the point in this direction.
+Vector2d placeAt(const PlotLabel& label, int direction, double gap) {
+    const double angle = M_PI / 4 + 2 * M_PI * direction / kDirections;  // first: right above
+    const Vector2d unit(std::cos(angle), std::sin(angle));
+    return label.point + unit.cwiseProduct(labelHalfSize(label.text)) + (kPointRadius + gap) * unit;
 }
+
+constexpr double kMinError = 1e-3;  // %, for the logarithm
 
 double errorPercent(const SettingFigures& f) {
     return std::max(kMinError, 100 * f.errors.force_vector);
@@ -26,10 +38,6 @@ double errorPercent(const SettingFigures& f) {
 
 bool isPreset(const SettingFigures& f) {
     return presetOfName(f.name).has_value();
-}
-
-std::string labelOf(const SettingFigures& f, size_t n) {
-    return isPreset(f) ? f.name : std::to_string(n + 1);
 }
 
 // Lays logarithmic axes on the picture: pixels, with the origin at the lower left.
@@ -57,7 +65,8 @@ std::string labels(const ReportData& data, const Axes& axes) {
     std::vector<PlotLabel> all;
     for (size_t n = 0; n < data.settings.size(); ++n) {
         const SettingFigures& f = data.settings[n];
-        all.push_back({.point = axes.pixel(f.times.p99_9, errorPercent(f)), .text = labelOf(f, n)});
+        all.push_back({.point = axes.pixel(f.times.p99_9, errorPercent(f)),
+                       .text = isPreset(f) ? f.name : std::to_string(n + 1)});
     }
     layOutLabels(all);
     std::ostringstream text;
@@ -67,7 +76,7 @@ std::string labels(const ReportData& data, const Axes& axes) {
         return place.str();
     };
     for (const PlotLabel& label : all) {
-        text << "set label " << quoted(label.text) << " at " << screen(label.center)
+        text << "set label " << sceneText(label.text) << " at " << screen(label.center)
              << " center noenhanced font \",10\" front\n";
         if (label.needs_line)
             text << "set arrow from " << screen(label.point) << " to " << screen(label.center)
@@ -97,7 +106,7 @@ std::string legend(const ReportData& data) {
     for (size_t n = 0; n < data.settings.size(); ++n) {
         const SettingFigures& f = data.settings[n];
         const std::string number = isPreset(f) ? "" : std::to_string(n + 1) + "  ";
-        text << "set label " << quoted(number + f.name + (f.is_in_force ? "  (in force)" : ""))
+        text << "set label " << sceneText(number + f.name + (f.is_in_force ? "  (in force)" : ""))
              << " at screen 0.665, screen " << 0.92 - double(n) * line << " left noenhanced font \",10\"\n";
     }
     return text.str();
@@ -106,8 +115,8 @@ std::string legend(const ReportData& data) {
 std::string settingsOfPicture(const ReportData& data, const Axes& axes, const std::filesystem::path& png) {
     std::ostringstream script;
     script << "set terminal pngcairo size " << Axes::kWidth << ',' << Axes::kHeight
-           << " font \"DejaVu Sans,11\"\nset output " << quoted(png.string()) << "\nset title "
-           << quoted(data.scene + ": force error against tick time") << " noenhanced font \",14\"\n";
+           << " font \"DejaVu Sans,11\"\nset output " << sceneText(png.string()) << "\nset title "
+           << sceneText(data.scene + ": force error against tick time") << " noenhanced font \",14\"\n";
     script << "set lmargin at screen " << Axes::kLeft << "\nset rmargin at screen " << Axes::kRight
            << "\nset bmargin at screen " << Axes::kBottom << "\nset tmargin at screen " << Axes::kTop << '\n';
     script
@@ -127,6 +136,34 @@ std::string settingsOfPicture(const ReportData& data, const Axes& axes, const st
 }
 
 }  // namespace
+
+Eigen::Vector2d labelHalfSize(const std::string& text) {
+    return {kCharacterWidth * double(text.size()) / 2, kTextHeight / 2};
+}
+
+void layOutLabels(std::vector<PlotLabel>& labels) {
+    std::vector<Rectangle> taken;
+    for (const PlotLabel& label : labels) taken.push_back({label.point, Vector2d::Constant(kPointRadius)});
+    for (PlotLabel& label : labels) {
+        const Vector2d half = labelHalfSize(label.text);
+        const auto isFree = [&](const Vector2d& center) {
+            return std::none_of(taken.begin(), taken.end(), [&](const Rectangle& r) {
+                return r.overlaps({center, half});
+            });
+        };
+        bool is_placed = false;
+        label.center = placeAt(label, 0, kGaps[0]);
+        for (const double gap : kGaps)
+            for (int direction = 0; direction < kDirections && !is_placed; ++direction) {
+                const Vector2d center = placeAt(label, direction, gap);
+                if (!isFree(center)) continue;
+                is_placed = true;
+                label.center = center;
+                label.needs_line = gap > kLongestGapWithoutLine;
+            }
+        taken.push_back({label.center, half});
+    }
+}
 
 std::string paretoScript(const ReportData& data, const std::filesystem::path& png) {
     const Axes axes(data);

@@ -1,10 +1,12 @@
-// Runs every setting along the same paths and measures it.
+// Chooses the accuracy settings that the report compares, runs each along the same paths and measures it.
 #pragma once
 
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "haptic_server/core/accuracy/accuracy_settings.h"
 #include "haptic_server/lab/accuracy_report/analytic_probe.h"
 #include "haptic_server/lab/accuracy_report/milling_probe.h"
 #include "haptic_server/lab/accuracy_report/truth.h"
@@ -53,5 +55,12 @@ struct SweepInput {
 using SweepProgress = std::function<void(const SettingFigures& figures, size_t done)>;
 std::vector<SettingFigures> sweep(const SweepInput& input, const std::vector<AccuracySettings>& settings,
                                   const SweepProgress& progress);
+
+// These are the presets, one knob at a time around balanced and thesis_2012, the cheapest there is, and the
+// scene's own. Without `has_shapes` there are only grids. No two are equal.
+std::vector<AccuracySettings> sweepSettings(const AccuracySettings& of_scene, bool has_shapes);
+
+// This is the scene with every knob of its accuracy message at these settings; normals and switchable stay.
+scene::Scene sceneWith(const scene::Scene& scene, const AccuracySettings& settings);
 
 }  // namespace bonemill

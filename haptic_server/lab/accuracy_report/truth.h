@@ -1,7 +1,8 @@
 // Computes what a stroke should feel like: the same contact law and coupling on the same trilinear surface,
-// as finely as can be waited for.
+// as finely as can be waited for; for that, a part of the bone with denser voxels and the same surface.
 #pragma once
 
+#include "haptic_server/core/volume/voxel_volume.h"
 #include "haptic_server/lab/accuracy_report/measures.h"
 #include "haptic_server/lab/accuracy_report/probing_path.h"
 
@@ -26,5 +27,19 @@ AccuracySettings truthSettings() noexcept;
 // There is one for each stroke. `tick` gives the rest of the configuration. It uses `threads` at a time.
 std::vector<Truth> computeTruth(const std::vector<ProbingStroke>& strokes, const FixedTickConfig& tick,
                                 const BoneModel& bone, const TouchProbe& probe, int threads);
+
+// Holds the voxels of `box` (indices -1 .. dims, both ends included) and `times` - 1 further ones between any
+// two neighbours per axis, with the trilinear density: the trilinear iso-surface stays the same but for
+// rounding, at the same place in W. What leaves the box ends at the new volume's border of air.
+VoxelVolume refinedPart(const VoxelVolume& volume, const IndexBox& box, int times);
+
+// How many voxels refinedPart() would make.
+size_t refinedCount(const IndexBox& box, int times);
+
+// This is the largest refinement 1 .. `most` with at most `room` voxels.
+int affordableRefinement(const IndexBox& box, int most, size_t room);
+
+// These are the voxels around a box of positions in V (m) grown by `margin`, cut to what can be read.
+IndexBox voxelsAround(const VoxelVolume& volume, const Eigen::AlignedBox3d& box_V, double margin);
 
 }  // namespace bonemill

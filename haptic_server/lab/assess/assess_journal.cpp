@@ -1,12 +1,10 @@
 #include "haptic_server/lab/assess/assess_journal.h"
 
-#include <algorithm>
 #include <optional>
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "haptic_server/lab/simulate/task_run.h"
-#include "haptic_server/lab/simulate/write_assessment.h"
 #include "haptic_server/recording/rerun/recorded_attempts.h"
 #include "haptic_server/recording/rerun/recorded_eyes.h"
 #include "haptic_server/recording/rerun/rerun.h"

@@ -1,24 +1,152 @@
 #include "haptic_server/lab/describe/describe_scene.h"
 
+#include <google/protobuf/text_format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <ostream>
 #include <sstream>
 
 #include "common/base/units.h"
 #include "common/config/scene_geometry.h"
 #include "common/config/scene_handle.h"
 #include "common/config/scene_table.h"
-#include "haptic_server/lab/describe/describe_effects.h"
-#include "haptic_server/lab/describe/describe_task.h"
+#include "common/config/viewer_effects.h"
+#include "common/text/printed_text.h"
+#include "haptic_server/assessment/product/zone_tally.h"
 #include "haptic_server/lab/describe/effect_cost.h"
 #include "haptic_server/lab/simulate/run_path.h"
 #include "haptic_server/recording/statistics/tick_times.h"
-#include "haptic_server/scans/find_bone/bone_box.h"
+#include "haptic_server/scans/find_bone/bone_pieces.h"
 #include "haptic_server/scene/setup/coupling_text.h"
 #include "haptic_server/scene/setup/scene_pieces.h"
 #include "haptic_server/scene/setup/scene_setup.h"
+#include "proto/scene.pb.h"
 
 namespace bonemill {
 namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+
+std::string valueText(const Message& message, const FieldDescriptor& field, int index) {
+    google::protobuf::TextFormat::Printer printer;
+    printer.SetSingleLineMode(true);
+    std::string text;
+    printer.PrintFieldValueToString(message, &field, index, &text);
+    return " " + text;
+}
+
+std::string valuesText(const Message& message, const FieldDescriptor& field) {
+    const auto& reflection = *message.GetReflection();
+    if (!field.is_repeated())
+        return reflection.HasField(message, &field) || field.has_default_value()
+                   ? valueText(message, field, -1)
+                   : "";
+    std::string text;
+    for (int n = 0; n < reflection.FieldSize(message, &field); ++n) text += valueText(message, field, n);
+    return text;
+}
+
+// It reads "name value, name value", as given or by default.
+std::string parametersOf(const Message& message) {
+    std::string text;
+    for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
+        const FieldDescriptor& field = *message.GetDescriptor()->field(i);
+        const std::string values = valuesText(message, field);
+        if (!values.empty()) text += (text.empty() ? "" : ", ") + field.name() + values;
+    }
+    return text;
+}
+
+std::string microseconds(double us) {
+    return printed("%.2f us", us);
+}
+
+std::string added(double us, double noise_us) {
+    return std::abs(us) > noise_us ? microseconds(us) : "below the noise of " + microseconds(noise_us);
+}
+
+const EffectCost* costOf(const std::string& name, const EffectCosts* costs) {
+    if (!costs) return nullptr;
+    for (const EffectCost& cost : costs->effects)
+        if (cost.name == name) return &cost;
+    return nullptr;
+}
+
+std::string costText(const std::string& name, const EffectCosts* costs) {
+    const EffectCost* cost = costOf(name, costs);
+    if (!cost) return "";
+    return "; adds p50 " + added(cost->p50_us, costs->noise_p50_us) + ", p99 " +
+           added(cost->p99_us, costs->noise_p99_us);
+}
+
+std::string line(const std::string& name, const std::string& parameters, const std::string& more) {
+    return "  " + name + (parameters.empty() ? "" : ": " + parameters) + more + "\n";
+}
+
+std::string materialsText(const scene::Scene& scene, const EffectCosts* costs) {
+    if (scene.material().empty()) return "";
+    std::string text =
+        line("materials", std::to_string(scene.material_size()), costText("material_stiffness", costs));
+    for (const scene::Material& material : scene.material())
+        text += "  " + line("material", parametersOf(material), "");
+    return text;
+}
+
+// There is one line per effect that is listed: its parameters, and for those of the tick what they add to it,
+// for those of the viewer that they are. `costs` is null if nothing was measured.
+std::string describeEffects(const scene::Scene& scene, const EffectCosts* costs) {
+    std::string text;
+    const Message& effects = scene.effects();
+    std::vector<const FieldDescriptor*> listed;
+    effects.GetReflection()->ListFields(effects, &listed);
+    for (const FieldDescriptor* field : listed) {
+        const std::string parameters = parametersOf(effects.GetReflection()->GetMessage(effects, field));
+        text += isViewerEffect(*field) ? line(field->name(), parameters, "; in the viewer")
+                                       : line(field->name(), parameters, costText(field->name(), costs));
+    }
+    text += materialsText(scene, costs);
+    if (text.empty()) return "effects: none\n";
+    if (costs && !costs->effects.empty())
+        text += "  all of them: p50 " + microseconds(costs->all.p50) + ", p99 " +
+                microseconds(costs->all.p99) + "; without any: p50 " + microseconds(costs->none.p50) +
+                ", p99 " + microseconds(costs->none.p99) + " (whole ticks, " + std::to_string(costs->ticks) +
+                " in contact or with a button)\n";
+    return "effects:\n" + text;
+}
+
+void describeRules(const JudgedTask& task, std::ostream& out) {
+    for (const GateRule& gate : task.gates)
+        out << "  gate: " << gate.figure_id << (gate.is_most ? " at most " : " at least ") << gate.limit
+            << '\n';
+    for (const ScoreRule& score : task.scores)
+        out << "  sub-score: " << score.figure_id << " from 0 at " << score.worst << " to 1 at " << score.best
+            << ", weight " << score.weight << '\n';
+    if (!task.scores.empty())
+        out << "  weights of version " << task.weights_version << ", hash " << task.weights_hash << '\n';
+}
+
+// Nothing for a scene without a task.
+void describeTask(const Simulation& simulation, std::ostream& out) {
+    if (!simulation.task) return;
+    const JudgedTask& task = *simulation.task;
+    const VoxelVolume& volume = simulation.bone->volume;
+    const ProductCounts counts = countProduct(volume, volume, task);
+    const double voxel_mm3 = volume.voxelVolume() * kPerCubicMillimetre;
+    out << "task: feedback " << scene::Task::Feedback_Name(scene::Task::Feedback(task.feedback))
+        << (task.is_exam ? ", an examination" : "");
+    if (task.time_limit_s > 0) out << ", " << task.time_limit_s << " s";
+    if (task.most_attempts > 0) out << ", " << task.most_attempts << " attempts at most";
+    out << "\n  ideal" << (task.reference ? " (hidden reference): " : ": ")
+        << double(counts.ideal) * voxel_mm3 << " mm3 of bone shall be gone\n";
+    for (size_t n = 0; n < task.zones.size(); ++n)
+        out << "  zone '" << task.zones[n].name << "', "
+            << scene::Task::Role_Name(scene::Task::Role(task.zones[n].role)) << ": "
+            << double(counts.zones[n + 1].bone) * voxel_mm3 << " mm3 of bone\n";
+    for (const Structure& structure : task.structures) out << "  protected: '" << structure.name << "'\n";
+    describeRules(task, out);
+}
 
 constexpr int kMeasuredTicks = 4000;
 constexpr int kRounds = 5;
@@ -44,9 +172,7 @@ std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario, double
 
 std::string percentilesUs(std::vector<int64_t> durations_ns) {
     const TickTimes times = timesOf(std::move(durations_ns));
-    std::ostringstream text;
-    text << "p50 " << times.p50 << " us, p99 " << times.p99 << " us";
-    return text.str();
+    return printed("p50 %g us, p99 %g us", times.p50, times.p99);
 }
 
 std::string describeLevels(const PointShell& shell) {

@@ -16,7 +16,6 @@
 #include "haptic_server/core/tick/haptic_tick.h"
 #include "haptic_server/lab/simulate/run_path.h"
 #include "haptic_server/lab/simulate/task_run.h"
-#include "haptic_server/lab/simulate/write_assessment.h"
 #include "haptic_server/recording/statistics/final_files.h"
 #include "haptic_server/recording/statistics/run_statistics.h"
 #include "haptic_server/recording/statistics/state_hash.h"

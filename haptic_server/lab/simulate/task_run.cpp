@@ -2,13 +2,44 @@
 
 #include <spdlog/spdlog.h>
 
+#include <chrono>
+#include <exception>
 #include <fstream>
 
 #include "common/base/user_error.h"
+#include "common/text/hex_text.h"
 #include "haptic_server/assessment/product/judge.h"
 #include "haptic_server/scene/setup/make_technique.h"
+#include "haptic_server/teaching/attempt_report/deviation_caption.h"
+#include "haptic_server/teaching/attempt_report/result_folder.h"
 
 namespace bonemill {
+
+std::string writeAssessment(const AssessmentTarget& target, const LoadedScene& loaded,
+                            const TaskRun::Result& result, FinalFiles& files) {
+    AttemptResult attempt;
+    attempt.pseudonym = target.pseudonym;
+    attempt.number = target.number;
+    attempt.journal = target.journal;
+    attempt.scene_id = loaded.file.stem().string();
+    attempt.scene_title = loaded.scene.has_title() ? loaded.scene.title() : loaded.scene.name();
+    attempt.scene_hash = hexText(sceneHashOf(loaded.scene));
+    attempt.start_unix_ns =
+        std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+    if (target.start_unix_ns != 0) attempt.start_unix_ns = target.start_unix_ns;
+    attempt.duration_s = target.duration_s;
+    attempt.is_exam = loaded.scene.assessment().exam();
+    attempt.assessment = result.assessment;
+    std::vector<ReportPicture> pictures;
+    if (!result.picture.png.empty())
+        pictures.push_back({deviationCaption(result.picture.scale), "image/png", result.picture.png});
+    try {
+        ResultFolder(target.folder).write(attempt, std::move(pictures), result.begin_s);
+    } catch (const std::exception& error) {
+        files.note(error.what());
+    }
+    return fileStemOf(attempt);
+}
 
 TaskRun::TaskRun(const scene::Scene& scene, const Simulation& simulation, bool wanted)
     : task_(simulation.task) {

@@ -1,13 +1,16 @@
-// Follows an attempt at a scene's task from tick to tick and judges it in the end, as a live session does. It
-// is for one normal thread.
+// Follows an attempt at a scene's task from tick to tick, judges it in the end, and writes results and
+// report, as a live session does. It is for one normal thread; writing waits for the disk.
 #pragma once
 
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 
+#include "common/config/scene_file.h"
 #include "haptic_server/assessment/measures/technique.h"
 #include "haptic_server/assessment/product/product.h"
+#include "haptic_server/recording/statistics/final_files.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 
 namespace bonemill {
@@ -40,5 +43,18 @@ nlohmann::json assessmentJson(const Assessment& assessment);
 
 // Writes a file. Throws UserError when that fails.
 void writeBytes(const std::string& path, const std::string& bytes);
+
+struct AssessmentTarget {
+    std::string folder;
+    std::string pseudonym;
+    double duration_s = 0;
+    uint32_t number = 1;
+    int64_t start_unix_ns = 0;  // 0: now
+    std::string journal = {};   // the recording's file name; empty: none
+};
+
+// Returns the files' name without endings. What could not be written is noted in `files`.
+std::string writeAssessment(const AssessmentTarget& target, const LoadedScene& loaded,
+                            const TaskRun::Result& result, FinalFiles& files);
 
 }  // namespace bonemill

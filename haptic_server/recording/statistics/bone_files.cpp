@@ -77,7 +77,7 @@ void saveMesh(const std::string& path, const VoxelVolume& volume, const LeafLatt
 
 void saveDifference(const std::string& path, const VoxelVolume& before, const VoxelVolume& after) {
     const Eigen::Vector3i& n = before.dims();
-    NrrdStream<int16_t> file(path, before.geometry(), NrrdEncoding::kGzip);
+    NrrdStream<int16_t> file(path, before.geometry());
     std::vector<int16_t> row(size_t(n.x()));
     for (int k = 0; k < n.z(); ++k)
         for (int j = 0; j < n.y(); ++j) {

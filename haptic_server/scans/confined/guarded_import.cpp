@@ -16,18 +16,17 @@
 #include <ctime>
 #include <new>
 #include <span>
+#include <sstream>
 #include <stdexcept>
 #include <type_traits>
 #include <variant>
 
 #include "common/base/user_error.h"
 #include "common/text/printed_text.h"
-#include "haptic_server/scans/confined/confine_reader.h"
 #include "haptic_server/scans/confined/import_limits.h"
-#include "haptic_server/scans/confined/memory_cap.h"
 #include "haptic_server/scans/confined/reader_pipe.h"
 #include "haptic_server/scans/confined/shared_name.h"
-#include "haptic_server/scans/labels/segment_text.h"
+#include "haptic_server/scans/labels/labels.h"
 
 namespace bonemill {
 namespace {
@@ -116,16 +115,11 @@ bool receiveValues(Incoming& from, size_t count, RawValues& values) {
 }
 
 bool receiveValues(Incoming& from, const Head& head, RawValues& values) {
-    switch (head.type) {  // order of RawValues::Samples
-        case 0:
-            return receiveValues<uint8_t>(from, head.values, values);
-        case 1:
-            return receiveValues<int16_t>(from, head.values, values);
-        case 2:
-            return receiveValues<uint16_t>(from, head.values, values);
-        default:
-            return receiveValues<float>(from, head.values, values);
-    }
+    constexpr bool (*kReceive[])(Incoming&, size_t, RawValues&) = {
+        // order of RawValues::Samples
+        receiveValues<uint8_t>, receiveValues<int16_t>, receiveValues<uint16_t>, receiveValues<float>};
+    static_assert(std::size(kReceive) == std::variant_size_v<RawValues::Samples>);
+    return kReceive[head.type](from, head.values, values);
 }
 
 void sendVolume(int file, RawVolume raw) {
@@ -155,10 +149,6 @@ void sendText(int file, uint8_t kind, const std::string& text) {
     writeAll(file, &head, sizeof head) && writeAll(file, text.data(), text.size());
 }
 
-void sendError(int file, const std::string& message) {
-    sendText(file, kError, message);
-}
-
 void sendLines(int file, const Lines& lines) {
     std::string text;
     for (const std::string& line : lines) text += line + '\n';
@@ -167,11 +157,8 @@ void sendLines(int file, const Lines& lines) {
 
 Lines linesOf(const std::string& text) {
     Lines lines;
-    for (size_t begin = 0; begin < text.size();) {
-        const size_t end = std::min(text.find('\n', begin), text.size());
-        lines.push_back(printable(text.substr(begin, end - begin)));
-        begin = end + 1;
-    }
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) lines.push_back(printable(line));
     return lines;
 }
 
@@ -241,19 +228,14 @@ void handleSignals() {
         confineReader();
         send();
     } catch (const std::bad_alloc&) {
-        sendError(file, path.string() + ": there is not enough memory to read it; crop or resample it");
+        sendText(file, kError,
+                 path.string() + ": there is not enough memory to read it; crop or resample it");
     } catch (const UserError& error) {
-        sendError(file, error.what());
+        sendText(file, kError, error.what());
     } catch (const std::exception& error) {
-        sendError(file, path.string() + ": cannot be read: " + error.what());
+        sendText(file, kError, path.string() + ": cannot be read: " + error.what());
     }
     _exit(0);  // no destructor of the parent's objects may run twice
-}
-
-std::string secondsText(std::chrono::milliseconds time) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", std::chrono::duration<double>(time).count());
-    return text;
 }
 
 // Whoever waits for a disk that is gone cannot be ended, so it is not waited for long. Returns how it ended.
@@ -296,7 +278,8 @@ Received receiveFrom(const std::filesystem::path& path, const StartReader& start
         kill(child, SIGKILL);
         // Whoever waits for a disk that is gone cannot be ended, so its end is not waited for either.
         waitpid(child, nullptr, WNOHANG);
-        throw UserError(nameOfFileBeingRead(path) + ": could not be read within " + secondsText(most) +
+        throw UserError(nameOfFileBeingRead(path) + ": could not be read within " +
+                        printed("%g", std::chrono::duration<double>(most).count()) +
                         " s; is its disk or network slow or gone, or does it lead to a pipe?");
     }
     const int status = endOf(child);
@@ -310,7 +293,7 @@ Received receiveFrom(const std::filesystem::path& path, const StartReader& start
 
 // The child is `read` in a copy of this process.
 StartReader forkOf(const std::function<void(int pipe)>& read) {
-    return [&read](int pipe, int) {
+    return [read](int pipe, int) {
         std::fflush(nullptr);  // or the child might write what is still buffered a second time
         const pid_t child = fork();
         if (child == 0) read(pipe);
@@ -339,14 +322,12 @@ Lines linesFrom(const std::filesystem::path& path, const StartReader& start, std
 
 RawVolume importGuarded(const std::filesystem::path& path, const std::function<RawVolume()>& read,
                         std::chrono::milliseconds most) {
-    const std::function<void(int)> as_child = [&](int pipe) { readAsChild(pipe, path, read); };
-    return importFrom(path, forkOf(as_child), most);
+    return importFrom(path, forkOf([&](int pipe) { readAsChild(pipe, path, read); }), most);
 }
 
 Lines linesGuarded(const std::filesystem::path& path, const std::function<Lines()>& read,
                    std::chrono::milliseconds most) {
-    const std::function<void(int)> as_child = [&](int pipe) { readLinesAsChild(pipe, path, read); };
-    return linesFrom(path, forkOf(as_child), most);
+    return linesFrom(path, forkOf([&](int pipe) { readLinesAsChild(pipe, path, read); }), most);
 }
 
 }  // namespace bonemill

@@ -3,9 +3,9 @@
 // Debian builds GDCM with its assertions on, and ITK's linear algebra aborts on numbers that are not finite:
 // a damaged file can end the process that reads it. The child hands the volume over through a pipe, giving
 // back the memory of what is through, writes nothing to stderr, and is ended when it hangs, takes more memory
-// than is free, or has said all. It reads files and nothing else (confine_reader.h). It is for one thread at
+// than is free, or has said all. It reads files and nothing else (import_limits.h). It is for one thread at
 // a time. A child that is forked from a process with threads can hang, which is why a program with threads
-// starts a reader of its own instead (import_program.h).
+// starts a reader of its own instead (import_volume.h).
 #pragma once
 
 #include <sys/types.h>
@@ -25,7 +25,7 @@ namespace bonemill {
 inline constexpr std::chrono::milliseconds kMaxImportTime = std::chrono::minutes(10);
 
 // Returns what `read` returns. Throws UserError: the one that `read` threw, or one that names the file it was
-// reading when it died or when `most` had gone by (file_being_read.h; `path`, if it did not say).
+// reading when it died or when `most` had gone by (noteFileBeingRead; `path`, if it did not say).
 RawVolume importGuarded(const std::filesystem::path& path, const std::function<RawVolume()>& read,
                         std::chrono::milliseconds most = kMaxImportTime);
 

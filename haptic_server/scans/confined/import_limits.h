@@ -1,8 +1,10 @@
-// Refuses sizes that cannot be right before anything is allocated for them.
+// Refuses sizes that cannot be right before anything is allocated for them, and keeps a library from
+// allocating whatever a damaged length field says. There is no Eigen in here: ITK's sources include it.
 #pragma once
 
+#include <sys/resource.h>
+
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -28,5 +30,35 @@ void checkAllCanBeBone(const std::vector<uint64_t>& dims, const std::string& fil
 
 // Throws UserError when fewer bytes are stored than the header promises.
 void checkStoredBytes(uint64_t promised_bytes, uint64_t stored_bytes, const std::string& file);
+
+// While it lives, the process may map at most `extra_bytes` more than it does now; beyond that, allocation
+// fails with std::bad_alloc. It has no effect under sanitizers, which map terabytes themselves, and none
+// while another one lives: that of several files (memoryForAll) counts for each of them. It is for start-up
+// only; one that has an effect lives longer than all threads that begin after it.
+class MemoryCap {
+  public:
+    explicit MemoryCap(uint64_t extra_bytes);
+    ~MemoryCap();
+    MemoryCap(const MemoryCap&) = delete;
+    MemoryCap& operator=(const MemoryCap&) = delete;
+
+  private:
+    rlimit before_{};
+    bool is_outermost_ = false, is_set_ = false;
+};
+
+// What reading a folder by several threads (work_ahead.h) may take: so much for one file, and for what comes
+// of all.
+uint64_t memoryForAll(uint64_t bytes_of_one, uint64_t bytes_taken);
+
+// Does the same for all that this process will do, and cannot be taken back.
+void capMemoryForGood(uint64_t extra_bytes) noexcept;
+
+// From now on this process and its threads open files only to read them, and neither start programs nor look
+// into other processes, send them signals, change their limits or type into their terminal; sockets, file
+// systems and the kernel's settings are out of reach (such calls fail with EPERM), and root is root by name
+// only, but for reading. There is no way back. It is called by a process with one thread. Throws UserError
+// when this kernel cannot do it.
+void confineReader();
 
 }  // namespace bonemill

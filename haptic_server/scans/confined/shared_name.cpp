@@ -10,8 +10,6 @@
 #include <memory>
 #include <new>
 
-#include "haptic_server/scans/confined/file_being_read.h"
-
 namespace bonemill {
 namespace {
 

@@ -1,5 +1,5 @@
 // The name of the file that a reader's process is at, in memory that it shares with the process that guards
-// it.
+// it (guarded_import.h). There is no Eigen in here: ITK's sources include it.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ class SharedName {
     int file_;
 };
 
-// Returns what the reader noted (file_being_read.h), or `path`. The reader may have been taken over, so this
+// Returns what the reader noted (noteFileBeingRead), or `path`. The reader may have been taken over, so this
 // is made one line of text, whatever it wrote.
 std::string nameOfFileBeingRead(const std::filesystem::path& path);
 
@@ -34,5 +34,9 @@ void nameFileOfEndingThread() noexcept;
 
 // Control characters would end a message's line, or command the terminal that shows it.
 std::string oneLine(std::string text);
+
+// Tells the guarding process which file a reader is at: the message names it when the reader dies. It has no
+// effect outside importGuarded.
+void noteFileBeingRead(const std::filesystem::path& file) noexcept;
 
 }  // namespace bonemill

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <span>
@@ -10,16 +9,49 @@
 #include <vector>
 
 #include "common/base/user_error.h"
-#include "haptic_server/scans/densify/far_air.h"
-#include "haptic_server/scans/find_bone/propose_iso.h"
+#include "common/text/printed_text.h"
 
 namespace bonemill {
 namespace {
 
+using Bricks = std::vector<uint8_t>;  // yes or no, by BrickId
+
+Bricks bricksWithBone(const VoxelVolume& volume) {
+    const BrickStore& bricks = volume.bricks();
+    Bricks has_bone(bricks.brickCount());
+    for (BrickId id = 0; id < bricks.brickCount(); ++id) {
+        if (const auto shared = bricks.sharedDensity(id)) {
+            has_bone[id] = *shared >= volume.iso();
+            continue;
+        }
+        const Density* held = bricks.contents(id);
+        has_bone[id] =
+            std::any_of(held, held + kBrickSize, [&](Density density) { return density >= volume.iso(); });
+    }
+    return has_bone;
+}
+
+// Those that no other brick owns.
+IndexBox voxelsOf(const VoxelVolume& volume, const Eigen::Vector3i& brick) {
+    const Eigen::Vector3i first = brick.array() * kBrickCells - 1;
+    return IndexBox{first, first.array() + (kBrickCells - 1)}.clamped(Eigen::Vector3i::Zero(),
+                                                                      volume.dims().array() - 1);
+}
+
+// Clears them in every brick that holds them.
+void clearVoxels(VoxelVolume& volume, const Eigen::Vector3i& brick) {
+    if (volume.bricks().sharedDensity(volume.bricks().brickAt(brick.x(), brick.y(), brick.z())) == 0) return;
+    const IndexBox owned = voxelsOf(volume, brick);
+    if (owned.isEmpty()) return;
+    const Density air[kBrickCells] = {};
+    const IndexBox rows{owned.min, {owned.min.x(), owned.max.y(), owned.max.z()}};
+    forEachIndex(rows, [&](const Eigen::Vector3i& row) {
+        volume.writeRow(row, owned.max.x() - owned.min.x() + 1, air);
+    });
+}
+
 std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", value);
-    return text;
+    return printed("%g", value);
 }
 
 // Of integers all densities there can be are in a table, and ascend.
@@ -143,6 +175,28 @@ VoxelVolume nearBone(const RawVolume& raw, const DensityMapping& mapping,
 
 }  // namespace
 
+bool ownsAny(const VoxelVolume& volume, const Eigen::Vector3i& brick,
+             const std::function<bool(size_t)>& is_kept) {
+    if (!is_kept) return false;
+    const Eigen::Vector3i& dims = volume.dims();
+    bool owns = false;
+    forEachIndex(voxelsOf(volume, brick), [&](const Eigen::Vector3i& v) {
+        owns = owns ||
+               is_kept(size_t(v.x()) + size_t(dims.x()) * (size_t(v.y()) + size_t(dims.y()) * size_t(v.z())));
+    });
+    return owns;
+}
+
+void clearFarFromBone(VoxelVolume& volume, const std::function<bool(size_t)>& is_kept) {
+    const Bricks has_bone = bricksWithBone(volume);
+    forEachIndex(volume.bricks().allBricks(), [&](const Eigen::Vector3i& brick) {
+        const bool is_near =
+            anyBrickAround(volume.bricks(), brick, [&](BrickId near) { return has_bone[near] != 0; });
+        if (!is_near && !ownsAny(volume, brick, is_kept)) clearVoxels(volume, brick);
+    });
+    volume.shareUniformBricks();
+}
+
 Density DensityMapping::density(double raw) const noexcept {
     const double counts = (raw - low) / (high - low) * kMaxDensity;
     if (!(counts > 0)) return 0;  // NaN too
@@ -170,18 +224,6 @@ DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window) 
     return mapping;
 }
 
-VoxelVolume densify(const RawVolume& raw, const DensityMapping& mapping) {
-    VoxelVolume volume(raw.geometry, mapping.iso);
-    const size_t row = size_t(volume.dims().x()), slice = row * size_t(volume.dims().y());
-    raw.values.visit([&]<class T>(std::span<const T> samples) {
-        const DensityOf<T> density(mapping);
-        volume.fill([&](int i, int j, int k) {
-            return density(samples[size_t(i) + row * size_t(j) + slice * size_t(k)]);
-        });
-    });
-    return volume;
-}
-
 VoxelVolume densifyNearBone(const RawVolume& raw, const DensityMapping& mapping,
                             const std::function<bool(size_t)>& is_kept) {
     return nearBone(raw, mapping, is_kept, [](int) {});
@@ -195,10 +237,6 @@ VoxelVolume densifyNearBone(RawVolume&& raw, const DensityMapping& mapping,
         // Bricks are filled layer by layer, so what lies a brick below is not asked for again.
         for (; kept + kBrickEdge <= size_t(k); ++kept) raw.values.forget(slice * kept, slice * (kept + 1));
     });
-}
-
-VoxelVolume densify(const RawVolume& raw, const DensityWindow& window) {
-    return densify(raw, chooseMapping(raw, window));
 }
 
 }  // namespace bonemill

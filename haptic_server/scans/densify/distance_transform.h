@@ -1,14 +1,16 @@
-// Computes how far each voxel of a box is from the nearest marked one: exact Euclidean distances between the
+// Computes how far each voxel of a box is from the nearest marked one, and by that the distance field of the
+// protected structures of a scan: exact Euclidean distances between the
 // voxels' centres, by one pass of lower envelopes of parabolas per axis (Felzenszwalb and Huttenlocher 2012).
 //
 // It is not for the tick: it allocates 7 bytes per voxel of the box. One thread at a time may use an object.
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <vector>
 
-#include "haptic_server/core/volume/index_box.h"
-#include "haptic_server/core/volume/material_properties.h"
+#include "haptic_server/core/volume/bone_properties.h"
+#include "haptic_server/core/volume/distance_field.h"
 
 namespace bonemill {
 
@@ -58,5 +60,17 @@ class DistanceTransform {
     std::vector<int> hull_;
     std::vector<double> from_;
 };
+
+// The work goes on in slabs of N voxels, with what lies within reach of them.
+inline constexpr int64_t kVoxelsAtOnce = 20 << 20;
+
+// The distances are those of DistanceTransform. It is for start-up only, and allocates at most some 300 MB at
+// a time, or for a long reach what lies within it of a slab as thick. The field is null if no voxel is of a
+// protected material. `reach` is in m and > 0. Throws UserError if it has more voxels than that: neither time
+// nor memory would be bounded by the scan's.
+std::unique_ptr<DistanceField> protectedDistance(const BoneProperties& properties,
+                                                 const MaterialTable& materials,
+                                                 const Eigen::Vector3d& spacing, double reach,
+                                                 int64_t voxels_at_once = kVoxelsAtOnce);
 
 }  // namespace bonemill

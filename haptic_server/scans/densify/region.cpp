@@ -1,16 +1,71 @@
 #include "haptic_server/scans/densify/region.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <type_traits>
 #include <vector>
 
 #include "common/process/work_ahead.h"
-#include "haptic_server/scans/densify/cubic_spline.h"
-#include "haptic_server/scans/densify/index_map.h"
 
 namespace bonemill {
 namespace {
+
+// The means of `factor` slices, of which there are fewer at the end.
+template <class T>
+class SliceMeans {
+  public:
+    SliceMeans(const Eigen::Vector3i& from, const Eigen::Vector3i& to, int factor)
+        : from_(from),
+          to_(to),
+          factor_(factor),
+          sums_(size_t(to.x()) * size_t(to.y())),
+          means_(sums_.size()) {}
+
+    std::span<const T> of(std::span<const T> samples, int k) {
+        const int last = std::min(from_.z(), (k + 1) * factor_);
+        std::ranges::fill(sums_, Sum(0));
+        for (int z = k * factor_; z < last; ++z)
+            for (int y = 0; y < from_.y(); ++y)
+                addRow(samples.data() + size_t(from_.x()) * (size_t(y) + size_t(from_.y()) * size_t(z)),
+                       sums_.data() + size_t(to_.x()) * size_t(y / factor_));
+        size_t at = 0;
+        for (int y = 0; y < to_.y(); ++y)
+            for (int x = 0; x < to_.x(); ++x, ++at)
+                means_[at] =
+                    mean(sums_[at], (last - k * factor_) * count(x, from_.x()) * count(y, from_.y()));
+        return means_;
+    }
+
+  private:
+    using Sum = std::conditional_t<std::is_integral_v<T>, int64_t, double>;
+
+    int count(int index, int all) const { return std::min(factor_, all - index * factor_); }
+    void addRow(const T* row, Sum* sums) const {
+        for (int x = 0; x < from_.x(); x += factor_, ++sums)
+            for (int n = 0; n < std::min(factor_, from_.x() - x); ++n) *sums += row[x + n];
+    }
+    static T mean(Sum sum, int voxels) {
+        if constexpr (std::is_integral_v<T>)
+            return T(std::lround(double(sum) / voxels));
+        else
+            return T(sum / voxels);
+    }
+
+    Eigen::Vector3i from_, to_;
+    int factor_;
+    std::vector<Sum> sums_;
+    std::vector<T> means_;
+};
+
+constexpr double kPole = -0.26794919243112270647;  // sqrt(3) - 2
+constexpr double kGain = 6;                        // (1 - pole) (1 - 1 / pole)
+
+int mirrored(int index, int count) noexcept {
+    if (count == 1) return 0;
+    const int period = 2 * (count - 1);
+    index = std::abs(index) % period;
+    return index < count ? index : period - index;
+}
 
 // The scan's voxels around the region, as coefficients of the spline.
 class SplineCoefficients {
@@ -165,6 +220,49 @@ std::vector<Layers> layersOf(int slices) {
 }
 
 }  // namespace
+
+RawVolume coarser(const RawVolume& scan, int factor) {
+    RawVolume out;
+    out.geometry.dims = (scan.geometry.dims.array() + factor - 1) / factor;
+    out.geometry.spacing = factor * scan.geometry.spacing;
+    out.geometry.X_WV = {scan.geometry.X_WV * Eigen::Vector3d((factor - 1) / 2.0 * scan.geometry.spacing),
+                         scan.geometry.X_WV.rotation};
+    out.description = scan.description;
+    out.is_hounsfield = scan.is_hounsfield;
+    out.lacks_patient_axes = scan.lacks_patient_axes;
+    out.values.reserve(out.geometry.voxelCount());
+    scan.values.visit([&]<class T>(std::span<const T> samples) {
+        SliceMeans<T> means(scan.geometry.dims, out.geometry.dims, factor);
+        for (int k = 0; k < out.geometry.dims.z(); ++k) out.values.append(means.of(samples, k));
+    });
+    return out;
+}
+
+void toSplineCoefficients(std::span<double> line) noexcept {
+    const int count = int(line.size());
+    if (count < 2) return;
+    double first = 0, power = 1;
+    for (int n = 0; n < 3 * kSplineReach; ++n, power *= kPole)
+        first += power * line[size_t(mirrored(n, count))];
+    line[0] = first;
+    for (size_t n = 1; n < line.size(); ++n) line[n] += kPole * line[n - 1];
+    const size_t last = line.size() - 1;
+    line[last] = kPole / (kPole * kPole - 1) * (line[last] + kPole * line[last - 1]);
+    for (size_t n = last; n-- > 0;) line[n] = kPole * (line[n + 1] - line[n]);
+    for (double& coefficient : line) coefficient *= kGain;
+}
+
+SplineWeights splineWeightsAt(double at, int count) noexcept {
+    const double low = std::floor(at), t = at - low, s = 1 - t;
+    const double weights[] = {s * s * s / 6, 2.0 / 3 - t * t * (2 - t) / 2, 2.0 / 3 - s * s * (2 - s) / 2,
+                              t * t * t / 6};
+    SplineWeights result{};
+    for (int n = 0; n < 4; ++n) {
+        result.index[size_t(n)] = mirrored(int(low) - 1 + n, count);
+        result.weight[size_t(n)] = float(weights[n]);
+    }
+    return result;
+}
 
 VolumeGeometry regionGeometry(const VolumeGeometry& scan, const Eigen::AlignedBox3d& box_W, double voxel) {
     Eigen::AlignedBox3d box_V;

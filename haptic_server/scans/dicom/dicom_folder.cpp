@@ -7,7 +7,6 @@
 #include "common/base/user_error.h"
 #include "common/process/work_ahead.h"
 #include "haptic_server/scans/confined/import_limits.h"
-#include "haptic_server/scans/confined/memory_cap.h"
 #include "haptic_server/scans/dicom/dicom_headers.h"
 #include "haptic_server/scans/dicom/dicom_scan.h"
 #include "haptic_server/scans/dicom/dicom_segments.h"
@@ -74,11 +73,6 @@ void readSlices(const std::vector<DicomSlice>& slices, RawValues& values) {
     });
 }
 
-// Air is negative on no other scale.
-bool reachesAir(const RawValues& values) {
-    return values.range().low <= -500;
-}
-
 bool isSamePicture(const DicomSlice& a, const DicomSlice& b) {
     if (a.frame != 0 || b.frame != 0) return false;
     RawValues of_a, of_b;
@@ -128,7 +122,7 @@ RawVolume readChoice(const DicomChoice& choice, const std::string& name) {
             first.row_direction * grid.aside_mm.x() + first.column_direction * grid.aside_mm.y();
     }
     makeRightHanded(frame, name, raw.geometry, raw.values);
-    raw.is_hounsfield = first.isCt() && reachesAir(raw.values);
+    raw.is_hounsfield = first.isCt() && raw.values.range().low <= -500;  // air is negative on no other scale
     raw.description = describe(choice);
     return raw;
 }

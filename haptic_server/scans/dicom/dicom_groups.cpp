@@ -2,7 +2,7 @@
 
 #include <gdcmByteValue.h>
 
-#include "haptic_server/scans/pixels/decimal_numbers.h"
+#include "haptic_server/scans/pixels/dicom_rescale.h"
 
 namespace bonemill {
 namespace {

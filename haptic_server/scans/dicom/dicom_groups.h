@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "haptic_server/scans/dicom/dicom_place.h"
+#include "haptic_server/scans/dicom/dicom_slice.h"
 
 namespace bonemill {
 

@@ -1,33 +1,97 @@
 #include "haptic_server/scans/dicom/dicom_headers.h"
 
+#include <gdcmReader.h>
+
 #include <algorithm>
-#include <string>
-#include <vector>
+#include <cstdint>
+#include <optional>
 
 #include "common/base/user_error.h"
 #include "common/process/work_ahead.h"
-#include "haptic_server/scans/confined/memory_cap.h"
-#include "haptic_server/scans/dicom/dicom_frames.h"
+#include "common/text/printed_text.h"
+#include "haptic_server/scans/confined/import_limits.h"
+#include "haptic_server/scans/dicom/dicom_groups.h"
 #include "haptic_server/scans/dicom/dicom_scan.h"
-#include "haptic_server/scans/pixels/decimal_numbers.h"
+#include "haptic_server/scans/dicom/dicom_slice.h"
+#include "haptic_server/scans/pixels/dicom_rescale.h"
 #include "haptic_server/scans/pixels/itk_image_file.h"
 
 namespace bonemill {
 namespace {
 
+struct DicomFrame {
+    DicomPlace place;
+    std::optional<DicomRescale> rescale;  // nothing: its functional groups do not say it
+    DicomTraits traits;                   // what its functional groups say of it
+};
+
+const gdcm::Tag kPixelDataElement(0x7fe0, 0x0010);
+const gdcm::Tag kValueTransformation(0x0028, 0x9145);
+const gdcm::Tag kFrameContent(0x0020, 0x9111);
+const gdcm::Tag kMrDiffusion(0x0018, 0x9117);
+const gdcm::Tag kCtReconstruction(0x0018, 0x9314);
+const gdcm::Tag kCtFrameType(0x0018, 0x9329);
+const gdcm::Tag kMrFrameType(0x0018, 0x9226);
+
+// Of an element whose value is one number of this type, as text.
+template <class Number>
+std::string numberText(const FunctionalGroups& groups, size_t frame, const gdcm::Tag& group,
+                       const gdcm::Tag& element) {
+    const auto number = groups.number<Number>(frame, group, element);
+    return number ? printed("%.10g", double(*number)) : std::string();
+}
+
+DicomTraits readTraits(const FunctionalGroups& groups, size_t frame) {
+    DicomTraits traits;
+    traits.acquisition_number = numberText<uint16_t>(groups, frame, kFrameContent, gdcm::Tag(0x0020, 0x9156));
+    traits.temporal_position = numberText<uint32_t>(groups, frame, kFrameContent, gdcm::Tag(0x0020, 0x9128));
+    traits.b_value = numberText<double>(groups, frame, kMrDiffusion, gdcm::Tag(0x0018, 0x9087));
+    traits.kernel = groups.text(frame, kCtReconstruction, gdcm::Tag(0x0018, 0x1210));
+    for (const gdcm::Tag& frame_type : {kCtFrameType, kMrFrameType})
+        if (traits.image_type.empty())
+            traits.image_type = groups.text(frame, frame_type, gdcm::Tag(0x0008, 0x9007));
+    traits.acquisition_time = groups.text(frame, kFrameContent, gdcm::Tag(0x0018, 0x9074));
+    return traits;
+}
+
+std::optional<DicomFrame> readFrame(const FunctionalGroups& groups, size_t frame, const std::string& name) {
+    const DicomPlaceTexts texts = groups.placeTexts(frame);
+    if (!texts.areComplete()) return std::nullopt;
+    return DicomFrame{
+        placeFromTexts(texts, kThreeDigits, name),
+        rescaleFromTexts(groups.text(frame, kValueTransformation, gdcm::Tag(0x0028, 0x1053)),
+                         groups.text(frame, kValueTransformation, gdcm::Tag(0x0028, 0x1052)), name),
+        readTraits(groups, frame)};
+}
+
+// There is one of every frame, from the functional groups of an enhanced image (per frame, else shared), and
+// none when the file does not say for each frame where it lies. Throws UserError naming file and frame when
+// what it says is no place or no scale.
+std::vector<DicomFrame> readFrames(const std::filesystem::path& path) {
+    gdcm::Reader reader;
+    reader.SetFileName(path.c_str());
+    if (!reader.ReadUpToTag(kPixelDataElement)) return {};
+    const FunctionalGroups groups(reader.GetFile().GetDataSet());
+    std::vector<DicomFrame> frames;
+    for (size_t f = 0; f < groups.frameCount(); ++f) {
+        const auto frame = readFrame(groups, f, path.string() + " frame " + std::to_string(f + 1));
+        if (!frame) return {};
+        frames.push_back(*frame);
+    }
+    return frames;
+}
+
 constexpr size_t kMaxEdge = 16384;  // detectors of today have 4096; more is a damaged header
 
 DicomTraits traitsOf(const ItkImageFile& image) {
     const auto text = [&](const char* tag) { return withoutPadding(image.dicomTag(tag)); };
-    DicomTraits traits;
-    traits.acquisition_number = text("0020|0012");
-    traits.temporal_position = text("0020|0100");
-    traits.b_value = text("0018|9087");
-    traits.kernel = text("0018|1210");
-    traits.image_type = text("0008|0008");
-    traits.acquisition_time = text("0008|0032");
-    traits.content_time = text("0008|0033");
-    return traits;
+    return {.acquisition_number = text("0020|0012"),
+            .temporal_position = text("0020|0100"),
+            .b_value = text("0018|9087"),
+            .kernel = text("0018|1210"),
+            .image_type = text("0008|0008"),
+            .acquisition_time = text("0008|0032"),
+            .content_time = text("0008|0033")};
 }
 
 // All images of one file have this in common.
@@ -46,14 +110,6 @@ DicomSlice headerOf(const ItkImageFile& image, const std::filesystem::path& path
     slice.rows = int(header.dims[1]);
     slice.rescale = rescaleFromTexts(image.dicomTag("0028|1053"), image.dicomTag("0028|1052"), path.string());
     return slice;
-}
-
-void putAt(const DicomPlace& place, DicomSlice& slice) {
-    slice.position_mm = place.position_mm;
-    slice.row_direction = place.row_direction;
-    slice.column_direction = place.column_direction;
-    slice.pixel_spacing_mm = place.pixel_spacing_mm;
-    slice.axes_rounding = place.rounding;
 }
 
 // What a frame says goes before what its file does.
@@ -79,7 +135,7 @@ std::vector<DicomSlice> slicesOf(const std::vector<DicomFrame>& frames, const Di
     std::vector<DicomSlice> slices(frames.size(), common);
     for (size_t f = 0; f < frames.size(); ++f) {
         slices[f].frame = int(f);
-        putAt(frames[f].place, slices[f]);
+        static_cast<DicomPlace&>(slices[f]) = frames[f].place;
         if (frames[f].rescale) slices[f].rescale = frames[f].rescale;
         takeTraits(frames[f].traits, slices[f].traits);
     }
@@ -100,10 +156,9 @@ std::vector<DicomSlice> readHeader(const std::filesystem::path& path, LeftOut& l
     }
     DicomSlice slice = headerOf(image, path);
     if (frames == 1) {
-        putAt(placeFromTexts(
-                  {image.dicomTag("0020|0032"), image.dicomTag("0020|0037"), image.dicomTag("0028|0030")},
-                  kTwoDigits, path.string()),
-              slice);
+        static_cast<DicomPlace&>(slice) = placeFromTexts(
+            {image.dicomTag("0020|0032"), image.dicomTag("0020|0037"), image.dicomTag("0028|0030")},
+            kTwoDigits, path.string());
         return {slice};
     }
     const std::vector<DicomFrame> places = readFrames(path);
@@ -114,22 +169,30 @@ std::vector<DicomSlice> readHeader(const std::filesystem::path& path, LeftOut& l
     return slicesOf(places, slice);
 }
 
+std::string reasonToLeaveOut(const DicomScan& scan) {
+    if (scan.kind == DicomKind::kNotDicom) return "files that are not DICOM";
+    if (scan.drawing == DicomDrawing::kNone) return "DICOM files without an image";
+    if (scan.drawing == DicomDrawing::kSegmentation)
+        return "DICOM segmentations (SEG), each of which is a label map: give its file by name "
+               "(volume.label_path, make-case --labels)";
+    return "DICOM contours, surfaces or label maps (RTSTRUCT and others), which 3D Slicer loads and exports "
+           "as .seg.nrrd or NIfTI";
+}
+
 }  // namespace
 
 void LeftOut::add(const std::string& reason, const std::filesystem::path& file) {
-    for (Entry& entry : entries_)
-        if (entry.reason == reason) return void(++entry.count);
-    entries_.push_back({reason, file.filename().string(), 1});
+    add({reason, file.filename().string(), 1});
 }
 
 void LeftOut::add(const LeftOut& more) {
-    for (const Entry& entry : more.entries_) {
-        const auto same = std::ranges::find(entries_, entry.reason, &Entry::reason);
-        if (same != entries_.end())
-            same->count += entry.count;
-        else
-            entries_.push_back(entry);
-    }
+    for (const Entry& entry : more.entries_) add(entry);
+}
+
+void LeftOut::add(const Entry& entry) {
+    const auto same = std::ranges::find(entries_, entry.reason, &Entry::reason);
+    if (same == entries_.end()) return entries_.push_back(entry);
+    same->count += entry.count;
 }
 
 std::string LeftOut::text() const {
@@ -140,38 +203,14 @@ std::string LeftOut::text() const {
     return text;
 }
 
-namespace {
-
-std::vector<DicomSlice> leaveDrawingOut(DicomDrawing drawing, const std::filesystem::path& path,
-                                        LeftOut& left_out) {
-    left_out.add(drawing == DicomDrawing::kSegmentation
-                     ? "DICOM segmentations (SEG), each of which is a label map: give its file by name "
-                       "(volume.label_path, make-case --labels)"
-                     : "DICOM contours, surfaces or label maps (RTSTRUCT and others), which 3D Slicer loads "
-                       "and exports as .seg.nrrd or NIfTI",
-                 path);
-    return {};
-}
-
-}  // namespace
-
 std::vector<DicomSlice> slicesOfFile(const std::filesystem::path& path, LeftOut& left_out) {
     const DicomScan scan = scanDicomFile(path);
-    switch (scan.kind) {
-        case DicomKind::kNotDicom:
-            left_out.add("files that are not DICOM", path);
-            return {};
-        case DicomKind::kNoImage:
-            if (scan.drawing != DicomDrawing::kNone) return leaveDrawingOut(scan.drawing, path, left_out);
-            left_out.add("DICOM files without an image", path);
-            return {};
-        case DicomKind::kCutShort:
-            throw UserError(path.string() + ": the DICOM file is cut short or damaged: " + scan.problem);
-        case DicomKind::kImage:
-            if (scan.drawing != DicomDrawing::kNone) return leaveDrawingOut(scan.drawing, path, left_out);
-            break;
-    }
-    return readHeader(path, left_out);
+    if (scan.kind == DicomKind::kCutShort)
+        throw UserError(path.string() + ": the DICOM file is cut short or damaged: " + scan.problem);
+    if (scan.kind == DicomKind::kImage && scan.drawing == DicomDrawing::kNone)
+        return readHeader(path, left_out);
+    left_out.add(reasonToLeaveOut(scan), path);
+    return {};
 }
 
 std::vector<DicomSlice> slicesOfFiles(const std::vector<std::filesystem::path>& files, LeftOut& left_out,

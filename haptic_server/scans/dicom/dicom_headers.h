@@ -21,6 +21,8 @@ class LeftOut {
         std::string reason, example;
         int count;
     };
+    void add(const Entry& entry);
+
     std::vector<Entry> entries_;
 };
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/text/printed_text.h"
-#include "haptic_server/scans/pixels/decimal_numbers.h"
+#include "haptic_server/scans/pixels/dicom_rescale.h"
 
 namespace bonemill {
 namespace {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "haptic_server/scans/dicom/dicom_stack.h"
@@ -10,7 +9,7 @@
 namespace bonemill {
 
 // The slices of one series, of the same orientation, size and pixel spacing, as one stack, or as those that
-// they are of. Where pictures at one place differ, one of their traits (dicom_traits.h) or two tell them
+// they are of. Where pictures at one place differ, one of their traits (dicom_slice.h) or two tell them
 // apart, the first that leave proper stacks only, else those that leave most slices in proper ones; where
 // nothing does, there is one stack with a problem. Stacks that overlap without a common place are told apart,
 // too, where one volume never mixes them (kernels, phases, b-values), or where they are even and what they

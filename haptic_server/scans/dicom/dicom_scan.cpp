@@ -4,11 +4,11 @@
 #include <array>
 #include <cctype>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 
 #include "common/base/user_error.h"
+#include "common/text/printed_text.h"
 
 namespace bonemill {
 namespace {
@@ -163,11 +163,9 @@ class Scanner {
 
     void checkFits(const Element& element) const {
         if (element.length == kUndefinedLength || std::streamoff(element.length) <= size_ - position_) return;
-        char problem[128];
-        std::snprintf(problem, sizeof problem, "element (%04x,%04x) claims %u bytes, %lld are left",
-                      element.tag >> 16, element.tag & 0xffff, element.length,
-                      static_cast<long long>(size_ - position_));
-        throw CutShort{problem};
+        throw CutShort{printed("element (%04x,%04x) claims %u bytes, %lld are left", element.tag >> 16,
+                               element.tag & 0xffff, element.length,
+                               static_cast<long long>(size_ - position_))};
     }
 
     void skipElement(int depth) {

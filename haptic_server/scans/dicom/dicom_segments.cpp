@@ -3,9 +3,6 @@
 #include <gdcmReader.h>
 #include <gdcmTransferSyntax.h>
 
-#include <algorithm>
-#include <array>
-#include <cstring>
 #include <map>
 #include <set>
 #include <span>
@@ -13,14 +10,12 @@
 #include <vector>
 
 #include "common/base/user_error.h"
-#include "haptic_server/scans/confined/file_being_read.h"
 #include "haptic_server/scans/confined/import_limits.h"
+#include "haptic_server/scans/confined/shared_name.h"
 #include "haptic_server/scans/dicom/dicom_groups.h"
-#include "haptic_server/scans/dicom/lab_color.h"
 #include "haptic_server/scans/dicom/segment_grid.h"
-#include "haptic_server/scans/labels/segment_codes.h"
-#include "haptic_server/scans/labels/segment_text.h"
-#include "haptic_server/scans/pixels/decimal_numbers.h"
+#include "haptic_server/scans/labels/labels.h"
+#include "haptic_server/scans/pixels/dicom_rescale.h"
 
 namespace bonemill {
 namespace {

@@ -1,4 +1,5 @@
-// Chooses the files of a folder that make one volume, and their order: from headers, never from file names.
+// Chooses the files of a folder that make one volume, and their order: from headers, never from file names;
+// and says which of them show bone best.
 //
 // There is no DICOM library in here: tests feed it headers. Positions and spacings are in mm and LPS, as
 // in the files.
@@ -38,9 +39,22 @@ bool isScout(const DicomStack& stack);  // it is no scan: a localizer, or of too
 
 // Of the stacks that are wished for, proper parts of a series go before others, then CT before all else, then
 // the one with the most slices, then the lowest number of acquisition, originals before what was derived of
-// them, and bone kernels (bone_series.h). Throws UserError, naming `folder` and the files and positions at
+// them, and bone kernels. Throws UserError, naming `folder` and the files and positions at
 // fault.
 DicomChoice chooseStack(const std::vector<DicomSlice>& slices, const DicomWish& wish,
                         const std::string& folder, const IsSamePicture& is_same_picture);
+
+// Is it the name of a sharp reconstruction kernel, as makers give for bone? dicom_series.cpp has the table.
+bool isBoneKernel(const std::string& kernel);
+
+struct BoneRecommendation {
+    const DicomStack* stack = nullptr;  // nothing: none can be used
+    std::string why;                    // for people
+};
+
+// Scouts and what cannot be used are left out. CT goes before all else, bone kernels before others unless
+// their slices are more than twice as far apart as the thinnest, then the thinnest slices, then the most,
+// then originals.
+BoneRecommendation recommendForBone(const std::vector<DicomStack>& stacks);
 
 }  // namespace bonemill

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "haptic_server/scans/dicom/dicom_place.h"
+#include "haptic_server/scans/dicom/dicom_slice.h"
 #include "haptic_server/scans/frame/physical_frame.h"
 
 namespace bonemill {

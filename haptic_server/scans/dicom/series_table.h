@@ -1,12 +1,27 @@
-// What a folder of DICOM files holds, for people.
+// What a folder of DICOM files holds, as a table for people; and that table read again: which stacks there
+// are to choose from.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
-#include "haptic_server/scans/dicom/dicom_stack.h"
-
 namespace bonemill {
+
+struct DicomStack;
+
+inline constexpr std::array<const char*, 10> kSeriesColumns = {
+    "series",   "acquisition", "modality", "description", "kernel",
+    "contrast", "slices",      "size",     "voxel mm",    "remark"};
+
+// Each text is that of its column, "-" where the table has none.
+struct SeriesRow {
+    std::string uid, acquisition, modality, description, kernel, contrast, slices, size, voxel_mm, remark;
+    bool is_recommended = false;  // for bone
+};
+
+// The rows of listSeries()' lines, in their order. What seriesTable() has not written has no rows.
+std::vector<SeriesRow> rowsOfTable(const std::vector<std::string>& lines);
 
 struct SeriesTableNotes {
     std::string left_out;               // files that belong to no stack; empty: none

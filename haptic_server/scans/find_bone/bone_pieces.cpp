@@ -5,7 +5,6 @@
 
 #include "common/base/units.h"
 #include "common/text/printed_text.h"
-#include "haptic_server/scans/find_bone/volume_text.h"
 
 namespace bonemill {
 namespace {
@@ -13,6 +12,32 @@ namespace {
 using RunId = uint32_t;  // no volume has 2^32 runs: kMaxVoxels is 2^31
 
 }  // namespace
+
+std::string volumeText(double cubic_metres) {
+    const double cubic_mm = cubic_metres * kPerCubicMillimetre;
+    return printed(cubic_mm < 100 ? "%.3g mm^3" : "%.0f mm^3", cubic_mm);
+}
+
+std::string edgesText(const Eigen::Vector3d& edges) {
+    return printed("%.4g x %.4g x %.4g", edges.x(), edges.y(), edges.z());
+}
+
+IndexBox boneBox(const VoxelVolume& volume) {
+    IndexBox box;
+    volume.forEachOwnedPart({Eigen::Vector3i::Zero(), volume.dims().array() - 1},
+                            [&](const IndexBox& part, size_t) {
+                                if (volume.uniformDensity(part.min) == 0) return;
+                                forEachIndex(part, [&](const Eigen::Vector3i& v) {
+                                    if (volume.at(v.x(), v.y(), v.z()) >= volume.iso()) box.include(v);
+                                });
+                            });
+    return box;
+}
+
+Eigen::AlignedBox3d placesOf(const IndexBox& voxels, const Eigen::Vector3d& spacing) {
+    if (voxels.isEmpty()) return {};
+    return {spacing.cwiseProduct(voxels.min.cast<double>()), spacing.cwiseProduct(voxels.max.cast<double>())};
+}
 
 // Holds all bone of a volume as runs, row by row.
 class BonePieces::Runs {
@@ -184,16 +209,12 @@ std::string textOf(const BonePiece& piece, size_t number, const VolumeGeometry& 
                    size.z(), at.x(), at.y(), at.z());
 }
 
-PieceCount removeSmallPieces(VoxelVolume& volume, uint32_t smallest_piece_voxels) {
-    if (smallest_piece_voxels <= 1) return {};
+uint64_t removeSmallPieces(VoxelVolume& volume, uint32_t smallest_piece_voxels) {
+    if (smallest_piece_voxels <= 1) return 0;
     const BonePieces pieces(volume);
     std::vector<bool> is_small;
     for (const BonePiece& piece : pieces.list()) is_small.push_back(piece.voxels < smallest_piece_voxels);
-    PieceCount count;
-    count.pieces_removed = uint64_t(std::ranges::count(is_small, true));
-    count.pieces_kept = is_small.size() - count.pieces_removed;
-    count.voxels_removed = pieces.drop(volume, is_small);
-    return count;
+    return pieces.drop(volume, is_small);
 }
 
 }  // namespace bonemill

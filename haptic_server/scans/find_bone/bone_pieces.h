@@ -1,9 +1,12 @@
-// Finds what floats beside the bone, and takes it away: noise, pieces of the headrest, wires.
+// Finds where the bone lies and what floats beside it, and takes that away: noise, pieces of the headrest,
+// wires.
 //
 // A piece is what is connected through voxel faces (6 neighbours) at or above the iso-value. For start-up
 // only: not RT-safe, allocates 16 bytes per run of such voxels along x, and BonePiece per piece.
 #pragma once
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -11,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "haptic_server/core/volume/index_box.h"
 #include "haptic_server/core/volume/voxel_volume.h"
 
 namespace bonemill {
@@ -52,13 +54,19 @@ class BonePieces {
 // For people: number, size and place in W. Numbers begin at 1.
 std::string textOf(const BonePiece& piece, size_t number, const VolumeGeometry& geometry);
 
-struct PieceCount {
-    uint64_t pieces_kept = 0;
-    uint64_t pieces_removed = 0;
-    uint64_t voxels_removed = 0;
-};
+// Drops the pieces with fewer voxels than that; returns how many voxels that were.
+uint64_t removeSmallPieces(VoxelVolume& volume, uint32_t smallest_piece_voxels);
 
-// Drops the pieces with fewer voxels than that.
-PieceCount removeSmallPieces(VoxelVolume& volume, uint32_t smallest_piece_voxels);
+// The voxels that bone reaches to; empty without bone. Looks at every voxel that is not air all around.
+IndexBox boneBox(const VoxelVolume& volume);
+
+// Its middle voxels' places in V, m.
+Eigen::AlignedBox3d placesOf(const IndexBox& voxels, const Eigen::Vector3d& spacing);
+
+// Volumes in what people read: m³ as mm^3: three digits, or all that are before the point.
+std::string volumeText(double cubic_metres);
+
+// Edges as "0.957 x 0.957 x 1.5", numbers of voxels as "256 x 256 x 108".
+std::string edgesText(const Eigen::Vector3d& edges);
 
 }  // namespace bonemill

@@ -7,14 +7,28 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "haptic_server/core/volume/index_box.h"
 #include "haptic_server/core/volume/raw_volume.h"
-#include "haptic_server/scans/find_bone/streaks.h"
 
 namespace bonemill {
+
+// How far the streaks of metal spoil the slices that it lies in. They make soft tissue uneven: values that
+// differ by little without metal differ by much. The measure is the artefact index of the literature, the
+// standard deviation in a slice with metal over that in one without, made robust: of neighbours 3 mm apart
+// that are both soft tissue (-300
+// .. 300 HU) the median difference counts, in rings of 5 mm around the metal, and the same places of the
+// slices next to the metal are what it is compared with, the worse of both sides. Streaks lie in the plane of
+// the slices (the third axis is across).
+struct Streaks {
+    int first_slice = 0, last_slice = 0;  // with metal
+    double spread = 0, usual_spread = 0;  // HU, standard deviation beside the metal, and where there is none
+    double reach = 0;                     // m, in the slice, from the metal; 0: as even as other slices
+    bool goes_further = false;            // than anyone looked
+};
 
 inline constexpr double kMetalHu = 3050;
 

@@ -1,15 +1,55 @@
 #include "haptic_server/scans/find_bone/propose_iso.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdio>
+#include <limits>
 #include <numeric>
+#include <span>
+#include <vector>
 
 #include "common/base/user_error.h"
+#include "common/text/printed_text.h"
 #include "haptic_server/scans/find_bone/value_histogram.h"
 
 namespace bonemill {
 namespace {
+
+constexpr double kMinRise = 0.5;  // of the way from the higher end to the iso-value: noise rises less
+
+double meanAbove(std::span<const float> samples, double iso) {
+    double sum = 0, count = 0;
+    for (const auto sample : samples)
+        if (const auto value = double(sample); std::isfinite(value) && value >= iso) sum += value, ++count;
+    return count > 0 ? sum / count : iso;
+}
+
+// Whole numbers are added without rounding, in any order.
+template <class Integer>
+double meanAbove(std::span<const Integer> samples, double iso) {
+    const double least = std::ceil(iso);
+    if (!(least <= double(std::numeric_limits<Integer>::max()))) return iso;
+    const int first = int(std::max(least, double(std::numeric_limits<Integer>::lowest())));
+    int64_t sum = 0, count = 0;
+    for (const Integer sample : samples) {
+        const bool is_above = sample >= first;
+        sum += is_above ? sample : 0;
+        count += is_above;
+    }
+    return count > 0 ? double(sum) / double(count) : iso;
+}
+
+// In voxels along the axis; 0: it is none.
+template <class Samples>
+double wallAt(Samples samples, size_t at, size_t stride, double iso, double bone) {
+    std::array<double, 5> v{};
+    for (size_t n = 0; n < 5; ++n) v[n] = double(samples[at + n * stride - 2 * stride]);
+    const double base = std::max(v[0], v[4]);
+    if (!(v[2] > v[1] && v[2] > v[3] && v[2] < iso && v[2] - base >= kMinRise * (iso - base))) return 0;
+    double sum = 0;
+    for (const double value : v) sum += std::max(0.0, value - base);
+    return sum / (bone - base);
+}
 
 // Only CT in Hounsfield units has such values: air is at -1000.
 constexpr double kSurelyAirHu = -500;
@@ -182,6 +222,33 @@ double shareAbove(const ValueCounts& values, double iso) {
 
 }  // namespace
 
+ThinWalls findThinWalls(const RawVolume& scan, const IndexBox& within, double iso_value) {
+    const Eigen::Vector3i& dims = scan.geometry.dims;
+    const std::array<size_t, 3> stride = {1, size_t(dims.x()), size_t(dims.x()) * size_t(dims.y())};
+    std::vector<float> found;
+    scan.values.visit([&](auto samples) {
+        const double bone = meanAbove(samples, iso_value);
+        forEachIndex(within, [&](const Eigen::Vector3i& v) {
+            const size_t at = size_t(v.x()) + stride[1] * size_t(v.y()) + stride[2] * size_t(v.z());
+            if (!(double(samples[at]) < iso_value)) return;
+            double thinnest = 0;
+            for (int axis = 0; axis < 3; ++axis) {
+                if (v[axis] < 2 || v[axis] + 2 >= dims[axis]) continue;
+                const double wall =
+                    scan.geometry.spacing[axis] * wallAt(samples, at, stride[size_t(axis)], iso_value, bone);
+                if (wall > 0 && (thinnest == 0 || wall < thinnest)) thinnest = wall;
+            }
+            if (thinnest > 0) found.push_back(float(thinnest));
+        });
+    });
+    ThinWalls walls{.voxels = found.size()};
+    if (found.empty()) return walls;
+    const auto middle = found.begin() + ptrdiff_t(found.size() / 2);
+    std::nth_element(found.begin(), middle, found.end());
+    walls.median_thickness = double(*middle);
+    return walls;
+}
+
 std::optional<double> waterValue(const RawVolume& raw) {
     if (isSurelyHounsfield(raw)) return 0.0;
     const Histogram h = histogramOf(ValueCounts(raw.values), raw.values.range());
@@ -195,16 +262,16 @@ IsoProposal proposeIso(const RawVolume& raw) {
     return proposed;
 }
 
+const char* wordOf(IsoDoubt doubt) {
+    const char* const words[] = {"sure", "not quite sure", "a guess"};
+    return words[size_t(doubt)];
+}
+
 std::string textOf(const IsoProposal& proposed) {
-    const char* const doubts[] = {"sure", "not quite sure", "a guess"};
-    char text[96];
-    std::snprintf(text, sizeof text, "%.6g proposed (%s; %.3g %% of the voxels lie above; ", proposed.value,
-                  doubts[size_t(proposed.doubt)], 100 * proposed.bone_share);
-    std::string all = text + proposed.why + ")";
-    if (proposed.runner_up) {
-        std::snprintf(text, sizeof text, "; the next best is %.6g", *proposed.runner_up);
-        all += text;
-    }
+    std::string all = printed("%.6g proposed (%s; %.3g %% of the voxels lie above; ", proposed.value,
+                              wordOf(proposed.doubt), 100 * proposed.bone_share) +
+                      proposed.why + ")";
+    if (proposed.runner_up) all += printed("; the next best is %.6g", *proposed.runner_up);
     if (proposed.bone_share < kMinBone) all += "; that is hardly any: there may be no bone in this scan";
     if (proposed.bone_share > kMaxBone)
         all += "; that is so much that it may not be bone: look at it, and set volume.iso_value";

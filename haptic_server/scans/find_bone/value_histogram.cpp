@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <type_traits>
 
 #include "common/math/pinned_math.h"
@@ -94,14 +93,9 @@ std::vector<double> smoothed(const std::vector<double>& count, double sigma_bins
     return out;
 }
 
-namespace {
-
-constexpr double kValleyRatio = 0.6;  // a valley must fall below this share of the lower of its two peaks
-constexpr double kMinMass = 0.005;    // and a material must hold this share of the voxels
-
-}  // namespace
-
 std::vector<Mode> modesOf(const Histogram& h) {
+    constexpr double kValleyRatio = 0.6;  // a valley must fall below this share of the lower of its two peaks
+    constexpr double kMinMass = 0.005;    // and a material must hold this share of the voxels
     const std::vector<double> s = smoothed(h.count, kSmoothingBins);
     std::vector<size_t> peaks;
     size_t valley = 0;  // lowest bin since the last accepted peak

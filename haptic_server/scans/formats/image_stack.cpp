@@ -1,5 +1,3 @@
-#include "haptic_server/scans/formats/image_stack.h"
-
 #include <algorithm>
 #include <cctype>
 #include <string>
@@ -9,7 +7,7 @@
 #include "common/base/user_error.h"
 #include "common/process/work_ahead.h"
 #include "haptic_server/scans/confined/import_limits.h"
-#include "haptic_server/scans/confined/memory_cap.h"
+#include "haptic_server/scans/formats/volume_file.h"
 #include "haptic_server/scans/frame/physical_frame.h"
 #include "haptic_server/scans/pixels/itk_image_file.h"
 

@@ -1,5 +1,3 @@
-#include "haptic_server/scans/formats/inv3_project.h"
-
 #include <archive.h>
 #include <archive_entry.h>
 
@@ -12,7 +10,9 @@
 #include <utility>
 
 #include "common/base/user_error.h"
+#include "common/text/printed_text.h"
 #include "haptic_server/scans/confined/import_limits.h"
+#include "haptic_server/scans/formats/volume_file.h"
 #include "haptic_server/scans/frame/physical_frame.h"
 
 namespace bonemill {
@@ -108,10 +108,9 @@ void checkProject(const Project& project, const std::string& file) {
 }
 
 std::string describe(const Project& project) {
-    char window[96];
-    std::snprintf(window, sizeof window, ", display window level %g width %g", project.window_level,
-                  project.window_width);
-    return "InVesalius project \"" + project.name + "\"" + window + ", rows reversed to run front to back";
+    return "InVesalius project \"" + project.name + "\"" +
+           printed(", display window level %g width %g", project.window_level, project.window_width) +
+           ", rows reversed to run front to back";
 }
 
 }  // namespace

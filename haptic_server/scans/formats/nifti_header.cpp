@@ -7,12 +7,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <memory>
 
 #include "common/base/user_error.h"
+#include "common/text/printed_text.h"
 
 namespace bonemill {
 namespace {
@@ -152,12 +151,9 @@ void takeFrame(const Header& header, NiftiHeader& out) {
     if (!has_sform || !has_qform) return;
     const double apart_mm = distanceMm(*out.frame, qformOf(header));
     if (apart_mm <= kSameFormMm) return;
-    char text[160];
-    std::snprintf(
-        text, sizeof text,
+    out.remark = printed(
         "its sform and qform place voxels up to %.1f mm apart: the sform is taken, as the standard says",
         apart_mm);
-    out.remark = text;
 }
 
 // A slope of 0 means that nothing is scaled, but the library adds the intercept even so; a slope that it
@@ -210,11 +206,7 @@ NiftiHeader readNiftiHeader(const std::filesystem::path& path) {
     if (bits <= 0 || bits % 8 != 0)
         throw UserError(file + ": its NIfTI header states " + std::to_string(bits) +
                         " bits per voxel; whole bytes are needed");
-    NiftiHeader out{.data_offset = uint64_t(data_offset),
-                    .bytes_per_voxel = uint64_t(bits / 8),
-                    .has_patient_space = false,
-                    .frame = {},
-                    .remark = {}};
+    NiftiHeader out{.data_offset = uint64_t(data_offset), .bytes_per_voxel = uint64_t(bits / 8)};
     takeFrame(header, out);
     return out;
 }

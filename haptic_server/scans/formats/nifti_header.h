@@ -16,8 +16,8 @@ struct NiftiHeader {
     bool has_patient_space = false;  // qform or sform are set: they name the patient's sides
     // Of the sform where it is set, else of the qform, as the standard says; nothing: neither is set. Its
     // axes may be sheared.
-    std::optional<FileFrame> frame;
-    std::string remark;  // for people, where both are set and disagree; else empty
+    std::optional<FileFrame> frame = {};
+    std::string remark = {};  // for people, where both are set and disagree; else empty
 };
 
 // Throws UserError naming the file when it is no single-file NIfTI-1 (.nii, .nii.gz) or its header cannot be

@@ -1,16 +1,15 @@
-#include "haptic_server/scans/formats/surface_volume.h"
-
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
+#include "common/text/printed_text.h"
 #include "haptic_server/core/volume/surface_ramp.h"
-#include "haptic_server/scans/confined/file_being_read.h"
 #include "haptic_server/scans/confined/import_limits.h"
-#include "haptic_server/scans/nrrd/header_text.h"
+#include "haptic_server/scans/confined/shared_name.h"
+#include "haptic_server/scans/formats/volume_file.h"
+#include "haptic_server/scans/nrrd/nrrd_header.h"
 #include "haptic_server/scans/solid_mesh/mesh_distance.h"
 #include "haptic_server/scans/solid_mesh/mesh_file.h"
 
@@ -27,9 +26,7 @@ constexpr double kLipschitzSlack = 1.001;  // float rounding
 constexpr size_t kHeadBytes = 1024;        // of a file: an STL's or PLY's comments stand there
 
 std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
+    return printed("%.3g", value);
 }
 
 VolumeGeometry gridAround(const Eigen::AlignedBox3d& box, std::optional<double> voxel_mm,

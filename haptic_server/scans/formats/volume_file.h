@@ -1,6 +1,9 @@
-// Reads NRRD, NIfTI and MetaImage through ITK.
+// Reads what is no DICOM: NRRD, NIfTI and MetaImage through ITK, InVesalius projects, bone that is given as
+// its closed surface, and folders of pictures, one of each slice, as micro-CT scanners and ImageJ write them.
+// All throw UserError with one message that names the file.
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 
@@ -8,12 +11,40 @@
 
 namespace bonemill {
 
-// All throw UserError with one message that names the file. `spacing_mm` is the voxels' size, for files that
-// do not say it; others are refused with it.
+// `spacing_mm` is the voxels' size, for files that do not say it; others are refused with it.
 RawVolume importNrrd(const std::filesystem::path& path,
                      const std::optional<Eigen::Vector3d>& spacing_mm = {});
 RawVolume importNifti(const std::filesystem::path& path);
 RawVolume importMetaImage(const std::filesystem::path& path,
                           const std::optional<Eigen::Vector3d>& spacing_mm = {});
+
+// An InVesalius 3 project (.inv3) is a compressed tar archive of main.plist and the matrix file it names.
+//
+// The plist's shape counts slices, rows, columns (docs/teach/volumes.md); spacing is given column, row, slice
+// in mm; columns run to the patient's left, slices upwards, and InVesalius stores the rows from back to front
+// (it flips the rows of each DICOM slice), so they are reversed here. The project keeps no origin: W has its
+// origin at the centre of voxel (0, 0, 0).
+RawVolume importInv3(const std::filesystem::path& path);
+
+// A closed surface, such as a segmented bone that was saved as STL or PLY, in mm, LPS unless its head says
+// SPACE=RAS as 3D Slicer writes it. Voxels are cubes of `voxel_mm`, by default 1/128 of the longest edge;
+// they have `inside` in the bone and 0 outside, and surface_ramp.h between. A mesh is refused that is not
+// closed or contradicts itself, and one of too many voxels.
+RawVolume importSurface(const std::filesystem::path& path, std::optional<double> voxel_mm, double inside);
+
+// Are most of the folder's files PNG or TIFF? Hidden ones do not count.
+bool isImageStack(const std::filesystem::path& folder);
+
+// Grey pictures of 8 or 16 bit, all of one size, in the natural order of their names: columns go along x,
+// rows along y, slices along z. `spacing_mm` is the voxels' size, which pictures do not say. Throws
+// UserError.
+RawVolume importImageStack(const std::filesystem::path& folder,
+                           const std::optional<Eigen::Vector3d>& spacing_mm);
+
+// Orders "a2" before "a10": numbers in names count as numbers.
+bool isBeforeNaturally(const std::string& a, const std::string& b);
+
+// Throws UserError unless all three are lengths above 0 that voxels can have.
+void checkSpacing(const Eigen::Vector3d& spacing_mm, const std::string& file);
 
 }  // namespace bonemill

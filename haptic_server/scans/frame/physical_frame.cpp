@@ -51,6 +51,16 @@ void reverseAxis(RawValues& values, const Eigen::Vector3i& dims, int axis) {
     values.reverseBlocks(stride, size_t(dims[axis]));
 }
 
+void requireOneSpacing(bool is_said, bool is_given, const std::string& fields, const std::string& file) {
+    if (is_said && is_given)
+        throw UserError(file + ": says the voxels' size itself; leave volume.spacing_mm out");
+    if (!is_said && !is_given)
+        throw UserError(file +
+                        ": says nothing of the voxels' size; write volume.spacing_mm, or write it into the "
+                        "header in mm (" +
+                        fields + ")");
+}
+
 void checkFrame(const FileFrame& frame, const std::string& file) {
     checkNumbers(frame, file);
     checkPerpendicular(frame.directions.colwise().normalized(), file);

@@ -27,6 +27,10 @@ void checkFrame(const FileFrame& frame, const std::string& file);
 bool makeRightHanded(const FileFrame& frame, const std::string& file, VolumeGeometry& geometry,
                      RawValues& values);
 
+// Throws UserError naming `file` unless its header says the voxels' size or the scene gives it, and not both.
+// `fields` are those of the header that would say it.
+void requireOneSpacing(bool is_said, bool is_given, const std::string& fields, const std::string& file);
+
 // Reverses the order of the samples along one index axis.
 void reverseAxis(RawValues& values, const Eigen::Vector3i& dims, int axis);
 

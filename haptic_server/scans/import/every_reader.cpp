@@ -7,11 +7,8 @@
 #include "common/base/user_error.h"
 #include "common/text/printed_text.h"
 #include "haptic_server/scans/dicom/dicom_folder.h"
-#include "haptic_server/scans/formats/image_stack.h"
-#include "haptic_server/scans/formats/inv3_project.h"
-#include "haptic_server/scans/formats/surface_volume.h"
 #include "haptic_server/scans/formats/volume_file.h"
-#include "haptic_server/scans/import/readers.h"
+#include "haptic_server/scans/import/import_volume.h"
 
 namespace bonemill {
 namespace {
@@ -20,15 +17,6 @@ std::string lowerCase(std::string text) {
     std::transform(text.begin(), text.end(), text.begin(),
                    [](unsigned char c) { return char(std::tolower(c)); });
     return text;
-}
-
-bool endsWith(const std::string& text, const std::string& ending) {
-    return text.size() >= ending.size() &&
-           text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
-}
-
-bool isSurface(const std::string& name) {
-    return endsWith(name, ".stl") || endsWith(name, ".ply");
 }
 
 bool isFolder(const std::filesystem::path& path) {
@@ -43,7 +31,7 @@ bool isZip(const std::filesystem::path& path) {
 }
 
 void refuseZip(const std::filesystem::path& path, const std::string& name) {
-    if (endsWith(name, ".zip") || isZip(path))
+    if (name.ends_with(".zip") || isZip(path))
         throw UserError(path.string() + ": is a zip archive; unpack it first: unzip " +
                         quoted(path.string()) + " -d DIR, and give DIR");
 }
@@ -55,20 +43,21 @@ RawVolume readVolume(const std::filesystem::path& path, const ImportOptions& opt
     const bool is_folder = isFolder(path);
     if (is_folder && isImageStack(path)) return importImageStack(path, options.spacing_mm);
     const std::string name = lowerCase(path.filename().string());
-    if (!is_folder && (endsWith(name, ".nrrd") || endsWith(name, ".nhdr")))
+    if (!is_folder && (name.ends_with(".nrrd") || name.ends_with(".nhdr")))
         return importNrrd(path, options.spacing_mm);
-    if (!is_folder && (endsWith(name, ".mha") || endsWith(name, ".mhd")))
+    if (!is_folder && (name.ends_with(".mha") || name.ends_with(".mhd")))
         return importMetaImage(path, options.spacing_mm);
     if (options.spacing_mm)
         throw UserError(path.string() +
                         ": says the voxels' size itself, or has none; leave volume.spacing_mm out");
     if (is_folder) return importDicomFolder(path, wish);
-    if (endsWith(name, ".nii") || endsWith(name, ".nii.gz")) return importNifti(path);
-    if (endsWith(name, ".inv3")) return importInv3(path);
+    if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return importNifti(path);
+    if (name.ends_with(".inv3")) return importInv3(path);
     refuseZip(path, name);
     if (isDicomDirectory(path)) return importDicomDirectory(path, wish);
-    if (endsWith(name, ".dcm") || isDicom(path)) return importDicomFile(path, wish);
-    if (isSurface(name)) return importSurface(path, options.surface_voxel_mm, options.surface_value);
+    if (name.ends_with(".dcm") || isDicom(path)) return importDicomFile(path, wish);
+    if (name.ends_with(".stl") || name.ends_with(".ply"))
+        return importSurface(path, options.surface_voxel_mm, options.surface_value);
     throw UserError(
         path.string() +
         ": is of no known type; give a folder with a DICOM series or PNG or TIFF images, or a file "

@@ -10,8 +10,13 @@
 //   .stl .ply             closed surface
 //
 // Lengths in m, world frame W = LPS of the file (x to the patient's left, y back, z up). Start-up
-// only: allocates, and starts a process that reads (guarded_import.h, import_program.h); not RT-safe, not for
-// two threads at once.
+// only: allocates, and starts a process that reads (guarded_import.h); not RT-safe, not for two threads at
+// once.
+//
+// The reader may be a program of its own: haptic_server starts itself once more for it. A child that is
+// forked while other threads run may only call what is safe in a signal handler: a lock that another thread
+// held stays locked in it for ever. A process that is spawned begins anew, and the kernel copies no page
+// table of locked memory for it, which the tick would feel.
 #pragma once
 
 #include <filesystem>
@@ -41,5 +46,22 @@ RawVolume importVolumeHere(const std::filesystem::path& path, const ImportOption
 // UserError.
 std::vector<std::string> listSeries(const std::filesystem::path& path);
 std::vector<std::string> listSeriesHere(const std::filesystem::path& path);
+
+// Runs the reader's own end if the words of the command line call it, and does not return then.
+void runReaderIfCalled(int argc, char** argv);
+
+// From now on importVolume() and listSeries() start this program as a reader: `haptic_server`'s main says it
+// first of all.
+void setReaderProgram(const std::string& program);
+
+// What reads volumes in this build, for the reader's process: every_reader.cpp, or nrrd_reader.cpp where it
+// has no readers of scans. The file or folder is there. Both throw UserError with one message that names it.
+RawVolume readVolume(const std::filesystem::path& path, const ImportOptions& options);
+std::vector<std::string> readSeries(const std::filesystem::path& path);
+
+// NRRD without ITK, for builds that have none: attached, three axes, one number per voxel, raw or gzip.
+// `spacing_mm` is the voxels' size, for a file that does not say it; others are refused with it. Throws
+// UserError with one message that names the file: it is damaged, or of a kind that needs ITK.
+RawVolume readPlainNrrd(const std::filesystem::path& path, const std::optional<Eigen::Vector3d>& spacing_mm);
 
 }  // namespace bonemill

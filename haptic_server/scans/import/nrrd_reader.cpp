@@ -3,8 +3,7 @@
 #include <string>
 
 #include "common/base/user_error.h"
-#include "haptic_server/scans/import/plain_nrrd.h"
-#include "haptic_server/scans/import/readers.h"
+#include "haptic_server/scans/import/import_volume.h"
 
 namespace bonemill {
 

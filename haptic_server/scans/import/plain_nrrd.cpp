@@ -1,35 +1,21 @@
-#include "haptic_server/scans/import/plain_nrrd.h"
-
 #include <fcntl.h>
 #include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <functional>
-#include <memory>
-#include <sstream>
 #include <vector>
 
 #include "common/base/user_error.h"
 #include "haptic_server/scans/confined/import_limits.h"
 #include "haptic_server/scans/frame/physical_frame.h"
+#include "haptic_server/scans/import/import_volume.h"
 #include "haptic_server/scans/nrrd/nrrd_header.h"
 
 namespace bonemill {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "bytes are swapped for files that are big endian");
-
-std::vector<double> numbersIn(std::string text) {
-    for (char& c : text)
-        if (c == '(' || c == ',' || c == ')') c = ' ';
-    std::istringstream words(text);
-    std::vector<double> numbers;
-    for (std::string word; words >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
-    return numbers;
-}
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
     throw UserError(path.string() + ": " + why +
@@ -174,15 +160,6 @@ void requirePlain(const NrrdHeader& header, const std::filesystem::path& path) {
     if (numbersIn(header.fields.sizes).size() != 3) refuse(path, "it has other than three axes");
 }
 
-void requireSpacing(const NrrdHeader& header, bool is_given, const std::string& file) {
-    if (header.has_spacing && is_given)
-        throw UserError(file + ": says the voxels' size itself; leave volume.spacing_mm out");
-    if (!header.has_spacing && !is_given)
-        throw UserError(file +
-                        ": says nothing of the voxels' size; write volume.spacing_mm, or write it into the "
-                        "header in mm (spacings or space directions)");
-}
-
 }  // namespace
 
 RawVolume readPlainNrrd(const std::filesystem::path& path, const std::optional<Eigen::Vector3d>& spacing_mm) {
@@ -191,7 +168,8 @@ RawVolume readPlainNrrd(const std::filesystem::path& path, const std::optional<E
     const VoxelType& type = typeOf(header, path);
     const std::vector<uint64_t> dims = dimsOf(header.fields);
     checkVolumeSize(dims, type.bytes + sizeof(float), path.string());
-    requireSpacing(header, spacing_mm.has_value(), path.string());
+    requireOneSpacing(header.has_spacing, spacing_mm.has_value(), "spacings or space directions",
+                      path.string());
     FileFrame frame = frameOf(header, dims, path);
     if (spacing_mm) frame.spacing_mm = *spacing_mm;
     RawVolume raw;

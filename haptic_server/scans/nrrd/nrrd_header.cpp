@@ -4,11 +4,10 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <sstream>
-#include <vector>
 
 #include "common/base/user_error.h"
-#include "haptic_server/scans/nrrd/header_text.h"
 
 namespace bonemill {
 namespace {
@@ -77,22 +76,18 @@ bool isPatientSpace(const std::string& space) {
 }
 
 // The library takes vectors whose length is no number for 1 mm.
-void checkDirections(std::string text, const std::filesystem::path& path) {
+void checkDirections(const std::string& text, const std::filesystem::path& path) {
     constexpr double kFarTooLong = 1e100;
-    for (char& c : text)
-        if (c == '(' || c == ',' || c == ')') c = ' ';
-    std::istringstream words(text);
-    for (std::string word; words >> word;)
-        if (!(std::abs(std::strtod(word.c_str(), nullptr)) <= kFarTooLong))
+    for (const double n : numbersIn(text))
+        if (!(std::abs(n) <= kFarTooLong))
             throw UserError(path.string() +
                             ": the voxel spacing is not a sensible length; the header is damaged");
 }
 
 // For "nan", which stands where nothing is known, the library takes 1 mm, too.
 void checkSpacings(const std::string& text, const std::filesystem::path& path) {
-    std::istringstream words(text);
-    for (std::string word; words >> word;)
-        if (!std::isfinite(std::strtod(word.c_str(), nullptr)))
+    for (const double n : numbersIn(text))
+        if (!std::isfinite(n))
             throw UserError(path.string() + ": its spacings (" + text +
                             ") are no lengths; write the voxels' size into the NRRD header");
 }
@@ -100,15 +95,10 @@ void checkSpacings(const std::string& text, const std::filesystem::path& path) {
 // The library counts some of them with 32 bit, and would take 2^32 + 1 for 1.
 void checkSizes(const std::string& text, const std::filesystem::path& path) {
     constexpr double kMostSize = double(uint64_t(1) << 31);
-    std::istringstream words(text);
-    for (std::string word; words >> word;)
-        if (!(std::strtod(word.c_str(), nullptr) <= kMostSize))
+    for (const double n : numbersIn(text))
+        if (!(n <= kMostSize))
             throw UserError(path.string() + ": its sizes (" + text + ") are absurd; the header is damaged");
 }
-
-struct Units {
-    std::string of_space, of_axes;
-};
 
 void keepField(const std::string& name, const std::string& value, NrrdFields& fields) {
     if (name == "type") fields.type = value;
@@ -118,11 +108,13 @@ void keepField(const std::string& name, const std::string& value, NrrdFields& fi
     if (name == "spacedirections") fields.space_directions = value;
     if (name == "spaceorigin") fields.space_origin = value;
     if (name == "spacings") fields.spacings = value;
+    if (name == "spaceunits") fields.space_units = value;
+    if (name == "units") fields.axis_units = value;
     if (name == "lineskip" || name == "byteskip") fields.has_skip = fields.has_skip || value != "0";
 }
 
 void takeField(const std::string& name, const std::string& value, const std::filesystem::path& path,
-               NrrdHeader& header, Units& units) {
+               NrrdHeader& header) {
     keepField(name, value, header.fields);
     if (name == "space") header.has_patient_space = isPatientSpace(value);
     if (name == "encoding") header.encoding = fieldName(value);
@@ -131,16 +123,13 @@ void takeField(const std::string& name, const std::string& value, const std::fil
     if (name == "spacings") checkSpacings(value, path);
     if (name == "sizes") checkSizes(value, path);
     header.has_spacing = header.has_spacing || name == "spacedirections" || name == "spacings";
-    if (name == "spaceunits") units.of_space = value;
-    if (name == "units") units.of_axes = value;
 }
 
-void takeLine(const std::string& line, const std::filesystem::path& path, NrrdHeader& header, Units& units) {
+void takeLine(const std::string& line, const std::filesystem::path& path, NrrdHeader& header) {
     const auto colon = line.find(':');
     if (line[0] == '#' || colon == std::string::npos) return;
     if (line.compare(colon, 2, ":=") != 0)
-        return takeField(fieldName(line.substr(0, colon)), trimmed(line.substr(colon + 1)), path, header,
-                         units);
+        return takeField(fieldName(line.substr(0, colon)), trimmed(line.substr(colon + 1)), path, header);
     if (line.substr(0, colon) == kNrrdGeometryKey)
         header.exact_geometry = geometryFromText(line.substr(colon + 2));
     takeSegmentLine(line.substr(0, colon), line.substr(colon + 2), path, header.segments);
@@ -148,22 +137,46 @@ void takeLine(const std::string& line, const std::filesystem::path& path, NrrdHe
 
 }  // namespace
 
+std::vector<double> numbersIn(std::string text) {
+    for (char& c : text)
+        if (c == '(' || c == ',' || c == ')') c = ' ';
+    std::istringstream words(text);
+    std::vector<double> numbers;
+    for (std::string word; words >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
+    return numbers;
+}
+
+std::string firstBytes(const std::filesystem::path& path, size_t most) {
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes(most, '\0');
+    file.read(bytes.data(), std::streamsize(most));
+    bytes.resize(size_t(file.gcount()));
+    return bytes;
+}
+
+std::string trimmed(const std::string& text) {
+    const auto first = text.find_first_not_of(" \t\r");
+    if (first == std::string::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
 NrrdHeader readNrrdHeader(const std::filesystem::path& path) {
     std::istringstream text(firstBytes(path, kMaxHeaderBytes));
     std::string line;
     if (!std::getline(text, line) || line.rfind("NRRD000", 0) != 0)
         throw UserError(path.string() + ": is not a NRRD file (it does not start with NRRD000)");
     NrrdHeader header;
-    Units units;
     header.bytes = line.size() + 1;
     while (std::getline(text, line)) {
         header.bytes += line.size() + 1;
         if (trimmed(line).empty()) break;
-        takeLine(line, path, header, units);
+        takeLine(line, path, header);
     }
     if (header.bytes >= kMaxHeaderBytes)
         throw UserError(path.string() + ": the NRRD header does not end; the file is damaged");
-    header.mm_per_unit = mmPerUnitOfAll(units.of_space.empty() ? units.of_axes : units.of_space, path);
+    const NrrdFields& fields = header.fields;
+    header.mm_per_unit =
+        mmPerUnitOfAll(fields.space_units.empty() ? fields.axis_units : fields.space_units, path);
     return header;
 }
 

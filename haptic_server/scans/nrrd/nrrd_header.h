@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "haptic_server/core/volume/raw_volume.h"
 #include "haptic_server/scans/nrrd/nrrd_segments.h"
@@ -14,7 +15,7 @@ namespace bonemill {
 
 // As the file says it, unchecked; absent fields are empty.
 struct NrrdFields {
-    std::string type, endian, space;
+    std::string type, endian, space, space_units, axis_units;
     std::string sizes, space_directions, space_origin, spacings;
     bool has_skip = false;  // data begin later than right behind the header
 };
@@ -44,5 +45,16 @@ std::optional<VolumeGeometry> geometryFromText(const std::string& text);
 
 // Are these the same voxels at the same places, within the rounding of decimal text?
 bool isSameGeometry(const VolumeGeometry& a, const VolumeGeometry& b);
+
+// The numbers of a field; the brackets and commas of vectors part them, too, and what is no number counts as
+// 0.
+std::vector<double> numbersIn(std::string text);
+
+// For any header of text at the start of a file that may be endless: one line of it could fill the memory.
+// These are the file's first bytes, `most` of them where it has as many; none when it cannot be read.
+std::string firstBytes(const std::filesystem::path& path, size_t most);
+
+// The text without blanks and the carriage return of a line around it.
+std::string trimmed(const std::string& text);
 
 }  // namespace bonemill

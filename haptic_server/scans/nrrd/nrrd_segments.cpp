@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
-#include <cstdlib>
 #include <sstream>
 #include <unordered_map>
 
 #include "common/base/user_error.h"
-#include "haptic_server/scans/labels/material_ids.h"
-#include "haptic_server/scans/labels/segment_codes.h"
-#include "haptic_server/scans/labels/segment_text.h"
-#include "haptic_server/scans/nrrd/header_text.h"
+#include "haptic_server/scans/labels/labels.h"
+#include "haptic_server/scans/nrrd/nrrd_header.h"
 
 namespace bonemill {
 namespace {

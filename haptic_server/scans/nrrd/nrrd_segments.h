@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "haptic_server/core/volume/raw_values.h"
 #include "haptic_server/core/volume/segments.h"

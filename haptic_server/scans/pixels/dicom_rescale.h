@@ -1,12 +1,13 @@
-// How a DICOM image's stored values become what they mean (HU for CT): slope * stored + intercept.
+// The decimal numbers of a DICOM text (VR DS, "0.5\0.5"), which libraries read as 0 or as 1 where there is no
+// number; and how stored values become what they mean (HU for CT): slope * stored + intercept.
 //
 // There is no Eigen in here: ITK's sources include it.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "haptic_server/core/volume/raw_values.h"
 
@@ -28,5 +29,11 @@ std::optional<DicomRescale> rescaleFromTexts(const std::string& slope, const std
 template <class T>
 bool appendRescaled(std::span<const T> samples, const DicomRescale& applied, const DicomRescale& wanted,
                     RawValues& values);
+
+// Nothing when any of them is no finite number.
+std::optional<std::vector<double>> decimalNumbers(const std::string& text);
+
+// DICOM pads texts with blanks on both sides and with a zero byte at the end.
+std::string withoutPadding(const std::string& text);
 
 }  // namespace bonemill

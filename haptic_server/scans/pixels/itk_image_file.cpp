@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <map>
 #include <mutex>
 #include <span>
 #include <sstream>
@@ -17,31 +18,26 @@
 
 #include "common/base/user_error.h"
 #include "haptic_server/core/volume/forget_memory.h"
-#include "haptic_server/scans/confined/file_being_read.h"
-#include "haptic_server/scans/confined/memory_cap.h"
+#include "haptic_server/scans/confined/import_limits.h"
+#include "haptic_server/scans/confined/shared_name.h"
 
 namespace bonemill {
 namespace {
+
+template <class Io>
+itk::ImageIOBase::Pointer makeIo() {
+    return Io::New().GetPointer();
+}
 
 // The library's list of what it can make is made when it is first asked, by one thread at a time here.
 itk::ImageIOBase::Pointer makeReader(ItkFormat format) {
     static std::mutex only_one;
     const std::lock_guard lock(only_one);
-    switch (format) {
-        case ItkFormat::kNrrd:
-            return itk::NrrdImageIO::New().GetPointer();
-        case ItkFormat::kNifti:
-            return itk::NiftiImageIO::New().GetPointer();
-        case ItkFormat::kMetaImage:
-            return itk::MetaImageIO::New().GetPointer();
-        case ItkFormat::kPng:
-            return itk::PNGImageIO::New().GetPointer();
-        case ItkFormat::kTiff:
-            return itk::TIFFImageIO::New().GetPointer();
-        case ItkFormat::kDicom:
-            break;
-    }
-    return itk::GDCMImageIO::New().GetPointer();
+    static const std::map<ItkFormat, itk::ImageIOBase::Pointer (*)()> kMakers{
+        {ItkFormat::kNrrd, makeIo<itk::NrrdImageIO>},      {ItkFormat::kNifti, makeIo<itk::NiftiImageIO>},
+        {ItkFormat::kMetaImage, makeIo<itk::MetaImageIO>}, {ItkFormat::kPng, makeIo<itk::PNGImageIO>},
+        {ItkFormat::kTiff, makeIo<itk::TIFFImageIO>},      {ItkFormat::kDicom, makeIo<itk::GDCMImageIO>}};
+    return kMakers.at(format)();
 }
 
 // Puts the library's message on one line, without "ITK ERROR: NrrdImageIO(0x55...): ".
@@ -110,46 +106,22 @@ void readSamples(itk::ImageIOBase& io, RawValues& values) {
 // It is false for a sample type that is no plain number.
 bool readAs(itk::IOComponentEnum type, itk::ImageIOBase& io, RawValues& values) {
     using Type = itk::IOComponentEnum;
-    switch (type) {
-        case Type::UCHAR:
-            readSamples<unsigned char>(io, values);
-            break;
-        case Type::CHAR:
-            readSamples<signed char>(io, values);
-            break;
-        case Type::USHORT:
-            readSamples<unsigned short>(io, values);
-            break;
-        case Type::SHORT:
-            readSamples<short>(io, values);
-            break;
-        case Type::UINT:
-            readSamples<unsigned int>(io, values);
-            break;
-        case Type::INT:
-            readSamples<int>(io, values);
-            break;
-        case Type::ULONG:
-            readSamples<unsigned long>(io, values);
-            break;
-        case Type::LONG:
-            readSamples<long>(io, values);
-            break;
-        case Type::ULONGLONG:
-            readSamples<unsigned long long>(io, values);
-            break;
-        case Type::LONGLONG:
-            readSamples<long long>(io, values);
-            break;
-        case Type::FLOAT:
-            readSamples<float>(io, values);
-            break;
-        case Type::DOUBLE:
-            readSamples<double>(io, values);
-            break;
-        default:
-            return false;
-    }
+    using Read = void (*)(itk::ImageIOBase&, RawValues&);
+    static const std::map<Type, Read> kReads{{Type::UCHAR, readSamples<unsigned char>},
+                                             {Type::CHAR, readSamples<signed char>},
+                                             {Type::USHORT, readSamples<unsigned short>},
+                                             {Type::SHORT, readSamples<short>},
+                                             {Type::UINT, readSamples<unsigned int>},
+                                             {Type::INT, readSamples<int>},
+                                             {Type::ULONG, readSamples<unsigned long>},
+                                             {Type::LONG, readSamples<long>},
+                                             {Type::ULONGLONG, readSamples<unsigned long long>},
+                                             {Type::LONGLONG, readSamples<long long>},
+                                             {Type::FLOAT, readSamples<float>},
+                                             {Type::DOUBLE, readSamples<double>}};
+    const auto read = kReads.find(type);
+    if (read == kReads.end()) return false;
+    read->second(io, values);
     return true;
 }
 

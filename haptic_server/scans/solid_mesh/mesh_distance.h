@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "haptic_server/scans/solid_mesh/triangle_mesh.h"
+#include "haptic_server/scans/solid_mesh/mesh_file.h"
 
 namespace bonemill {
 

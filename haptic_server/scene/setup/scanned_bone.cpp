@@ -6,8 +6,8 @@
 
 #include "common/rt/clock.h"
 #include "haptic_server/scans/confined/import_limits.h"
-#include "haptic_server/scans/densify/far_air.h"
-#include "haptic_server/scans/densify/inner_values.h"
+#include "haptic_server/scans/densify/densify.h"
+#include "haptic_server/scans/densify/voxel_materials.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "haptic_server/scene/setup/kept_tissue.h"
 #include "haptic_server/scene/setup/refuse_field.h"

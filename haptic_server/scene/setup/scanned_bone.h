@@ -17,7 +17,7 @@ struct ScannedBone {
     VoxelVolume volume;
     DensityMapping mapping;
     ScannedMaterials materials;
-    // What each voxel of bone is made of (inner_values.h), x fastest; empty: what its density says, or no
+    // What each voxel of bone is made of (voxel_materials.h), x fastest; empty: what its density says, or no
     // effect asks.
     RawValues inner_values;
     std::shared_ptr<const Surroundings> surroundings;  // null: all of the scan is in the volume

@@ -8,12 +8,11 @@
 #include "common/base/user_error.h"
 #include "common/config/scene_tools.h"
 #include "haptic_server/assessment/measures/force_meter.h"
-#include "haptic_server/scans/densify/protected_distance.h"
-#include "haptic_server/scans/densify/resample_labels.h"
-#include "haptic_server/scans/find_bone/volume_text.h"
+#include "haptic_server/scans/densify/distance_transform.h"
+#include "haptic_server/scans/densify/voxel_materials.h"
+#include "haptic_server/scans/find_bone/bone_pieces.h"
 #include "haptic_server/scans/import/import_volume.h"
-#include "haptic_server/scans/labels/material_ids.h"
-#include "haptic_server/scans/labels/segment_text.h"
+#include "haptic_server/scans/labels/labels.h"
 #include "haptic_server/scene/setup/refuse_field.h"
 
 namespace bonemill {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "haptic_server/core/tool/tool_shape.h"
-#include "haptic_server/scans/solid_mesh/triangle_mesh.h"
+#include "haptic_server/scans/solid_mesh/mesh_file.h"
 
 namespace bonemill {
 

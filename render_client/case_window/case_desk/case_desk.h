@@ -14,7 +14,7 @@
 
 #include "common/geometry/node_mesh.h"
 #include "haptic_server/cases/casework/case_plan.h"
-#include "haptic_server/scans/dicom/series_rows.h"
+#include "haptic_server/scans/dicom/series_table.h"
 #include "haptic_server/scans/find_bone/value_histogram.h"
 #include "render_client/case_window/case_desk/scan_pane.h"
 #include "render_client/case_window/case_desk/structure_list.h"

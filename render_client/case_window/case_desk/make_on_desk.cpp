@@ -1,8 +1,7 @@
 // The last step of the desk: the case is made.
 #include <sstream>
 
-#include "haptic_server/cases/casework/case_options.h"
-#include "haptic_server/cases/casework/make_case.h"
+#include "haptic_server/cases/casework/case_request.h"
 #include "render_client/case_window/case_desk/case_desk.h"
 
 namespace bonemill {

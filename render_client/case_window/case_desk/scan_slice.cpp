@@ -5,7 +5,7 @@
 #include <limits>
 #include <span>
 
-#include "haptic_server/scans/densify/index_map.h"
+#include "haptic_server/scans/densify/region.h"
 #include "render_client/look/slices/grey_window.h"
 
 namespace bonemill {

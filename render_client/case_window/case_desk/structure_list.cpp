@@ -6,7 +6,7 @@
 
 #include "common/base/user_error.h"
 #include "haptic_server/cases/casework/case_request.h"
-#include "haptic_server/scans/labels/material_ids.h"
+#include "haptic_server/scans/labels/labels.h"
 
 namespace bonemill {
 namespace {

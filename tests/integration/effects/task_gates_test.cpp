@@ -8,10 +8,10 @@
 #include "common/base/units.h"
 #include "haptic_server/lab/simulate/run_path.h"
 #include "haptic_server/lab/simulate/task_run.h"
-#include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/scene_path.h"
+#include "tests/support/write_nrrd.h"
 
 namespace bonemill {
 namespace {

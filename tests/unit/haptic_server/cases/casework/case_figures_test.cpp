@@ -6,8 +6,6 @@
 #include <cmath>
 #include <fstream>
 
-#include "haptic_server/cases/casework/histogram_figure.h"
-#include "haptic_server/cases/casework/piece_view.h"
 #include "haptic_server/cases/casework/pieces_figure.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/haptic_server/scans/import/grid_scan.h"

@@ -1,6 +1,8 @@
-#include "haptic_server/cases/casework/case_options.h"
-
 #include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+
+#include "haptic_server/cases/casework/case_request.h"
 
 namespace bonemill {
 namespace {

@@ -1,6 +1,4 @@
 // A case as a whole: made of a scan that names a patient everywhere, read back as a session would.
-#include "haptic_server/cases/casework/make_case.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -8,8 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "haptic_server/cases/casework/case_request.h"
 #include "haptic_server/scans/import/import_volume.h"
-#include "haptic_server/scans/nrrd/nrrd_stream.h"
+#include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/support/planted_patient.h"
 #include "tests/support/temporary_folder.h"
@@ -165,7 +164,7 @@ TEST(PlantedPatient, IsFoundInPackedBytes) {
     geometry.dims = {24, 24, 24};
     std::vector<uint8_t> values(geometry.voxelCount(), 0);
     std::ranges::copy(std::string("QvPlanted"), values.begin() + 5000);
-    NrrdStream<uint8_t> stream(folder / "a.nrrd", geometry, NrrdEncoding::kGzip);
+    NrrdStream<uint8_t> stream(folder / "a.nrrd", geometry);
     stream.append(std::span<const uint8_t>(values));
     stream.close();
     EXPECT_TRUE(test::plantedIn(textOfFile(folder / "a.nrrd")).empty());

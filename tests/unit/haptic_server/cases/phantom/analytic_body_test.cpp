@@ -4,6 +4,8 @@
 
 #include <random>
 
+#include "tests/support/sampled_body.h"
+
 namespace bonemill {
 namespace {
 

@@ -5,10 +5,10 @@
 #include <cstdio>
 
 #include "common/base/units.h"
-#include "haptic_server/cases/phantom/analytic_body.h"
 #include "haptic_server/cases/phantom/vertebra_phantom.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "tests/support/places.h"
+#include "tests/support/sampled_body.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bonemill {

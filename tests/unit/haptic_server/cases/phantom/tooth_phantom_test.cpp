@@ -5,7 +5,6 @@
 #include <cmath>
 #include <set>
 
-#include "haptic_server/cases/phantom/dicom_uid.h"
 #include "haptic_server/cases/phantom_dicom/dicom_series_writer.h"
 #include "haptic_server/scans/find_bone/propose_iso.h"
 #include "haptic_server/scans/import/import_volume.h"

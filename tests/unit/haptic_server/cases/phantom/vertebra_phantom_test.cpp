@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
-#include "haptic_server/scans/densify/densify.h"
 #include "haptic_server/surface/mesh/mesh_check.h"
 #include "tests/support/voxel_fields.h"
+#include "tests/support/whole_densities.h"
 
 namespace bonemill {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "haptic_server/core/tick/fixed_tick.h"
-#include "haptic_server/scans/densify/protected_distance.h"
+#include "haptic_server/scans/densify/distance_transform.h"
 #include "tests/support/led_tick.h"
 #include "tests/support/test_bodies.h"
 

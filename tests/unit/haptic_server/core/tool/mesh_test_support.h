@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "haptic_server/scans/solid_mesh/triangle_mesh.h"
+#include "haptic_server/scans/solid_mesh/mesh_file.h"
 #include "tests/support/stl_writer.h"
 
 namespace bonemill::test {

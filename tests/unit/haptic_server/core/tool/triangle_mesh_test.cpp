@@ -1,10 +1,9 @@
-#include "haptic_server/scans/solid_mesh/triangle_mesh.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "common/base/user_error.h"
+#include "haptic_server/scans/solid_mesh/mesh_file.h"
 #include "tests/unit/haptic_server/core/tool/mesh_test_support.h"
 
 namespace bonemill {

@@ -1,9 +1,8 @@
-#include "haptic_server/lab/accuracy_report/fine_bone.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
+#include "haptic_server/lab/accuracy_report/truth.h"
 #include "tests/support/test_bodies.h"
 
 namespace bonemill {

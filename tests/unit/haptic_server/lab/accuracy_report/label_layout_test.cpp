@@ -1,6 +1,6 @@
-#include "haptic_server/lab/accuracy_report/label_layout.h"
-
 #include <gtest/gtest.h>
+
+#include "haptic_server/lab/accuracy_report/report_files.h"
 
 namespace bonemill {
 namespace {

@@ -1,5 +1,3 @@
-#include "haptic_server/lab/accuracy_report/plot.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -9,6 +7,7 @@
 
 #include "common/base/user_error.h"
 #include "common/process/gnuplot.h"
+#include "haptic_server/lab/accuracy_report/report_files.h"
 #include "tests/unit/haptic_server/lab/accuracy_report/report_data.h"
 
 namespace bonemill {

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "haptic_server/lab/accuracy_report/smooth_path.h"
 #include "tests/unit/haptic_server/lab/accuracy_report/probe_scene.h"
 
 namespace bonemill {

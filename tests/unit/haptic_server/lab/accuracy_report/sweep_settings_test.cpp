@@ -1,10 +1,9 @@
-#include "haptic_server/lab/accuracy_report/sweep_settings.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
+#include "haptic_server/lab/accuracy_report/sweep.h"
 #include "haptic_server/scene/setup/scene_accuracy.h"
 
 namespace bonemill {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "haptic_server/lab/accuracy_report/analytic_probe.h"
-#include "haptic_server/lab/accuracy_report/fine_bone.h"
 #include "haptic_server/lab/simulate/run_path.h"
 #include "tests/unit/haptic_server/lab/accuracy_report/probe_scene.h"
 

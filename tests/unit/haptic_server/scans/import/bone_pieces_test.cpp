@@ -16,6 +16,19 @@ VoxelVolume airOf(const Eigen::Vector3i& dims) {
     return VoxelVolume(geometry, kPiecesIso);
 }
 
+struct PieceCount {
+    uint64_t pieces_kept = 0;
+    uint64_t pieces_removed = 0;
+    uint64_t voxels_removed = 0;
+};
+
+PieceCount countRemoved(VoxelVolume& volume, uint32_t smallest) {
+    const size_t before = BonePieces(volume).list().size();
+    const uint64_t voxels = removeSmallPieces(volume, smallest);
+    const size_t kept = BonePieces(volume).list().size();
+    return {kept, before - kept, voxels};
+}
+
 // The pieces have 1, 2 and 3 voxels; the last touches another only across an edge, which does not connect.
 TEST(SmallPieces, goBelowTheSurface) {
     VoxelVolume volume = airOf({6, 5, 4});
@@ -24,7 +37,7 @@ TEST(SmallPieces, goBelowTheSurface) {
     set(2, 2, 1), set(2, 2, 2);
     set(4, 0, 3), set(5, 0, 3), set(5, 1, 3);
     set(4, 2, 3);  // edge neighbour of (5, 1, 3)
-    const PieceCount count = removeSmallPieces(volume, 3);
+    const PieceCount count = countRemoved(volume, 3);
     EXPECT_EQ(count.pieces_kept, 1u);
     EXPECT_EQ(count.pieces_removed, 3u);
     EXPECT_EQ(count.voxels_removed, 4u);
@@ -65,7 +78,7 @@ TEST(BonePieces, AreListedTheLargestFirstWithTheirPlaces) {
 TEST(SmallPieces, nothingIsTooSmallForSizesOfZeroAndOne) {
     VoxelVolume volume = airOf({3, 3, 3});
     volume.set(1, 1, 1, kPiecesIso);
-    for (const uint32_t size : {0u, 1u}) EXPECT_EQ(removeSmallPieces(volume, size).pieces_removed, 0u);
+    for (const uint32_t size : {0u, 1u}) EXPECT_EQ(countRemoved(volume, size).pieces_removed, 0u);
     EXPECT_EQ(volume.at(1, 1, 1), kPiecesIso);
 }
 
@@ -134,7 +147,7 @@ TEST(SmallPieces, areThoseOfAFloodFill) {
                 SCOPED_TRACE(testing::Message()
                              << dims.transpose() << ", share " << share << ", " << smallest);
                 VoxelVolume volume = noise(dims, share, ++seed), expected = noise(dims, share, seed);
-                const PieceCount count = removeSmallPieces(volume, smallest);
+                const PieceCount count = countRemoved(volume, smallest);
                 const PieceCount oracle = FloodFill(expected, smallest).count;
                 EXPECT_EQ(count.pieces_kept, oracle.pieces_kept);
                 EXPECT_EQ(count.pieces_removed, oracle.pieces_removed);

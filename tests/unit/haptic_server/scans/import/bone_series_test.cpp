@@ -1,4 +1,3 @@
-#include "haptic_server/scans/dicom/bone_series.h"
 
 #include <gtest/gtest.h>
 

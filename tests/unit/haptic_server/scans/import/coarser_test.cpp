@@ -1,9 +1,9 @@
-#include "haptic_server/scans/densify/coarser.h"
-
 #include <gtest/gtest.h>
 
 #include <span>
 #include <vector>
+
+#include "haptic_server/scans/densify/region.h"
 
 namespace bonemill {
 namespace {

@@ -1,10 +1,10 @@
-#include "haptic_server/scans/densify/cubic_spline.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 #include <vector>
+
+#include "haptic_server/scans/densify/region.h"
 
 namespace bonemill {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "haptic_server/scans/densify/far_air.h"
+#include "tests/support/whole_densities.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"
 
 namespace bonemill {

@@ -6,9 +6,9 @@
 #include <functional>
 
 #include "haptic_server/core/volume/index_box.h"
-#include "haptic_server/scans/dicom/lab_color.h"
+#include "haptic_server/scans/dicom/dicom_segments.h"
 #include "haptic_server/scans/import/import_volume.h"
-#include "haptic_server/scans/labels/segment_text.h"
+#include "haptic_server/scans/labels/labels.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/haptic_server/scans/import/dicom_seg_bytes.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"

@@ -1,9 +1,8 @@
-#include "haptic_server/scans/densify/far_air.h"
-
 #include <gtest/gtest.h>
 
 #include <cstring>
 
+#include "haptic_server/scans/densify/densify.h"
 #include "tests/support/voxel_fields.h"
 
 namespace bonemill {

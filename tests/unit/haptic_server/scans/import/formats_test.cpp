@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "haptic_server/scans/import/import_volume.h"
-#include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/write_nrrd.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"
 #include "tests/unit/haptic_server/scans/import/volume_files.h"
 

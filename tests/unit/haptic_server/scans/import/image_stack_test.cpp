@@ -1,10 +1,9 @@
 // Folders of pictures, written byte by byte, as volumes.
-#include "haptic_server/scans/formats/image_stack.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 
+#include "haptic_server/scans/formats/volume_file.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"

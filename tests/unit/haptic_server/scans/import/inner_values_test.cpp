@@ -1,6 +1,4 @@
 // Bone is made of what lies half a scan voxel under its surface.
-#include "haptic_server/scans/densify/inner_values.h"
-
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "haptic_server/core/volume/index_box.h"
+#include "haptic_server/scans/densify/voxel_materials.h"
 
 namespace bonemill {
 namespace {

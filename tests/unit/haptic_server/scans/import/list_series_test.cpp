@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include "haptic_server/scans/confined/guarded_import.h"
-#include "haptic_server/scans/dicom/series_rows.h"
+#include "haptic_server/scans/dicom/series_table.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/haptic_server/scans/import/dicom_bytes.h"

@@ -1,8 +1,8 @@
-#include "haptic_server/scans/labels/material_ids.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "haptic_server/scans/labels/labels.h"
 
 namespace bonemill {
 namespace {

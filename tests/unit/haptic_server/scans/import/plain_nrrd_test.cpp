@@ -1,11 +1,10 @@
 // The reader without ITK comes to what ITK's comes to, for all files that it takes.
-#include "haptic_server/scans/import/plain_nrrd.h"
-
 #include <gtest/gtest.h>
 
 #include "haptic_server/scans/formats/volume_file.h"
-#include "haptic_server/scans/nrrd/nrrd_writer.h"
+#include "haptic_server/scans/import/import_volume.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/write_nrrd.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"
 #include "tests/unit/haptic_server/scans/import/seg_nrrd.h"
 #include "tests/unit/haptic_server/scans/import/volume_files.h"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "haptic_server/cases/phantom/analytic_body.h"
+#include "tests/support/sampled_body.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"
 
 namespace bonemill {

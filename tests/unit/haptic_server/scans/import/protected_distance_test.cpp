@@ -1,10 +1,9 @@
-#include "haptic_server/scans/densify/protected_distance.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "common/base/user_error.h"
+#include "haptic_server/scans/densify/distance_transform.h"
 #include "tests/support/test_bodies.h"
 
 namespace bonemill {

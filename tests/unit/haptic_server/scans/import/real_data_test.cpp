@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <ostream>
 
-#include "haptic_server/scans/densify/densify.h"
 #include "haptic_server/scans/find_bone/propose_iso.h"
 #include "haptic_server/scans/import/import_volume.h"
+#include "tests/support/whole_densities.h"
 
 namespace bonemill {
 namespace {

@@ -1,9 +1,8 @@
-#include "haptic_server/scans/densify/resample_labels.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "haptic_server/scans/densify/voxel_materials.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"
 #include "tests/unit/haptic_server/scans/import/grid_scan.h"
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "haptic_server/scans/import/import_volume.h"
-#include "haptic_server/scans/labels/segment_text.h"
+#include "haptic_server/scans/labels/labels.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"
 #include "tests/unit/haptic_server/scans/import/seg_nrrd.h"

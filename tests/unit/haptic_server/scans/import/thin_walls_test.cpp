@@ -1,12 +1,12 @@
 // Walls as a scanner sees them: the mean over each voxel of what is in it.
-#include "haptic_server/scans/find_bone/thin_walls.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 #include <span>
 #include <vector>
+
+#include "haptic_server/scans/find_bone/propose_iso.h"
 
 namespace bonemill {
 namespace {

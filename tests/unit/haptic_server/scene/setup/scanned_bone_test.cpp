@@ -7,9 +7,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/write_nrrd.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"
 
 namespace bonemill {

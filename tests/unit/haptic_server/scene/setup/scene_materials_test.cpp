@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <fstream>
 
-#include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/write_nrrd.h"
 #include "tests/unit/haptic_server/scans/import/dicom_seg_bytes.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"
 #include "tests/unit/haptic_server/scans/import/seg_nrrd.h"

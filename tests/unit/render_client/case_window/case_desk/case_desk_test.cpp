@@ -2,9 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
 #include <fstream>
 
-#include "haptic_server/cases/casework/case_options.h"
+#include "haptic_server/cases/casework/case_request.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/render_client/case_window/case_desk/desk_scan.h"
 

@@ -7,7 +7,7 @@
 
 #include "common/geometry/pose_step.h"
 #include "haptic_server/core/effects/burr_probes.h"
-#include "haptic_server/scans/densify/protected_distance.h"
+#include "haptic_server/scans/densify/distance_transform.h"
 #include "haptic_server/surface/mesh/structure_mesher.h"
 #include "render_client/look/structures/thickness_field.h"
 #include "tests/support/structure_shapes.h"

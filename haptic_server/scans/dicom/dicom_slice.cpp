@@ -1,12 +1,10 @@
-#include "haptic_server/scans/dicom/dicom_place.h"
+#include "haptic_server/scans/dicom/dicom_slice.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "common/base/user_error.h"
-#include "haptic_server/scans/pixels/decimal_numbers.h"
 
 namespace bonemill {
 namespace {

@@ -1,14 +1,23 @@
-#include "haptic_server/scans/labels/segment_text.h"
+#include "haptic_server/scans/labels/labels.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "common/base/user_error.h"
-#include "haptic_server/scans/labels/material_ids.h"
 
 namespace bonemill {
 namespace {
+
+bool isInRange(const MaterialRule& rule, double value) {
+    return rule.has_range && std::isfinite(value) && (!rule.from || value >= *rule.from) &&
+           (!rule.below || value < *rule.below);
+}
+
+// Of a few structures there are dozens.
+constexpr size_t kMaxCombinations = 4096, kMaxMemberships = 100'000;
 
 constexpr const char* kLayered = "layered";
 constexpr const char* kSingle = "single";
@@ -43,6 +52,47 @@ std::string namesOf(const Segments& segments) {
 }
 
 }  // namespace
+
+std::vector<MaterialId> materialIds(const RawVolume& raw, std::span<const MaterialRule> rules,
+                                    std::vector<MaterialId> of_labels) {
+    std::vector<MaterialId> ids = std::move(of_labels);
+    ids.resize(raw.values.size(), kNoMaterial);
+    if (std::ranges::none_of(rules, &MaterialRule::has_range)) return ids;
+    raw.values.visit([&](auto samples) {
+        for (size_t n = 0; n < samples.size(); ++n)
+            for (size_t rule = rules.size(); rule > ids[n]; --rule)  // the later one wins
+                if (isInRange(rules[rule - 1], double(samples[n]))) ids[n] = MaterialId(rule);
+    });
+    return ids;
+}
+
+SegmentCodes::SegmentCodes(std::string file) : file_(std::move(file)) {
+    codes_[{}] = 0;
+}
+
+uint16_t SegmentCodes::codeOf(const SegmentMembers& members) {
+    const auto [found, is_new] = codes_.try_emplace(members, uint16_t(codes_.size()));
+    if (is_new && found->second > kMaxCombinations) refuse();
+    return found->second;
+}
+
+bool SegmentCodes::anyOverlap() const {
+    return std::ranges::any_of(codes_, [](const auto& code) { return code.first.count() > 1; });
+}
+
+void SegmentCodes::listIn(Segments& segments) const {
+    for (const auto& [members, code] : codes_)
+        for (size_t n = 0; n < segments.list.size(); ++n)
+            if (members[n]) segments.list[n].labels.push_back(uint32_t(code));
+    size_t memberships = 0;
+    for (const Segment& segment : segments.list) memberships += segment.labels.size();
+    if (memberships > kMaxMemberships) refuse();
+    for (Segment& segment : segments.list) std::ranges::sort(segment.labels);
+}
+
+void SegmentCodes::refuse() const {
+    throw UserError(file_ + ": its segments overlap in too many ways; export fewer of them");
+}
 
 bool isSegmentName(const std::string& name) {
     return !name.empty() && name.size() <= kLongestSegmentName &&
