@@ -1,4 +1,4 @@
-#include "device_daemon/ares/wire/codec.h"
+#include "device_daemon/ares/wire/packets.h"
 
 #include <zlib.h>
 
