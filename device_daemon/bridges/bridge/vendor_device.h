@@ -1,15 +1,17 @@
-// Loads a vendor's library at run time, and says what is wrong in words that tell one reason from another.
-//
-// It is for start-up only. The library stays loaded until the process ends: drivers that are unloaded while
-// their threads run crash, and some fail when they are loaded again.
+// Finds a vendor's library and devices on this PC, and says what is wrong in words that tell one reason from
+// another. It is for start-up only.
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace bonemill::bridge {
 
+// Loads a vendor's library at run time. It stays loaded until the process ends: drivers that are unloaded
+// while their threads run crash, and some fail when they are loaded again.
 struct LibrarySearch {
     std::string file;                                 // "libdrd.so.3", as the dynamic linker finds it
     std::string product;                              // whose it is, for people: "the Force Dimension SDK"
@@ -35,9 +37,8 @@ class SharedLibrary {
     void allow(Function*& function, const char* name) {
         function = reinterpret_cast<Function*>(find(name, missing_optional_));
     }
-    const std::vector<std::string>& missingOptional() const { return missing_optional_; }
-    // Throws UserError if a required function is missing.
-    void checkRequired() const;
+    // Tells which of those that are allowed to be missing are. Throws UserError if a required one is.
+    void checkFunctions(const std::function<void(const std::string&)>& tell) const;
 
   private:
     void* find(const char* name, std::vector<std::string>& missing);
@@ -48,7 +49,23 @@ class SharedLibrary {
     std::vector<std::string> missing_optional_;
 };
 
-// Returns "a, b, c".
-std::string joined(const std::vector<std::string>& words);
+// Looks for devices on USB, so that "no device" becomes "not plugged in", "no permission" or "another user
+// has it". It reads /sys, and opens nothing.
+struct UsbId {
+    const char* vendor;   // "1451", as /sys writes it
+    const char* product;  // "" for all of the vendor's
+};
+
+struct UsbDevice {
+    std::string id;                                // "1451:0402"
+    std::vector<std::filesystem::path> nodes;      // /dev/bus/usb/001/004, /dev/ttyACM0, /dev/hidraw1
+    std::vector<std::filesystem::path> forbidden;  // those of them that this user may not read and write
+};
+
+// `root` has sys and dev; tests have one of their own.
+std::vector<UsbDevice> findUsb(std::span<const UsbId> ids, const std::filesystem::path& root = "/");
+
+// Says in a sentence why a library that works sees no device.
+std::string whyNoDevice(const std::vector<UsbDevice>& found, const std::string& what);
 
 }  // namespace bonemill::bridge

@@ -1,3 +1,15 @@
+// Finds and opens spacenavd's socket, and understands what it says. It makes system calls and is not for the
+// loop.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace bonemill {
+
 // Reads what spacenavd writes on its socket: messages of eight 32-bit integers in the machine's own order,
 // in whatever pieces they arrive.
 //
@@ -5,15 +17,6 @@
 // takes a truncated message for a whole one, falls back to another socket when the named one is silent, and
 // brings X11 along. Protocol 1 tells when the device is unplugged; protocol 0 (spacenavd up to 0.8) does not.
 // It is a plain value for one thread, and no bytes break it.
-#pragma once
-
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
-namespace bonemill {
-
 class SpnavStream {
   public:
     static constexpr size_t kMessageSize = 32;
@@ -52,5 +55,26 @@ class SpnavStream {
     std::array<int32_t, 6> counts_{};
     uint32_t buttons_ = 0;
 };
+
+// Returns what the environment variable SPNAV_SOCKET says, or else spacenavd's own place.
+std::string spnavSocketPath();
+
+// Returns a connected socket that never blocks, or -1 with errno.
+int connectSpnav(const std::string& path);
+
+// They return false when the socket takes nothing.
+bool askForProtocol(int socket);
+bool askForDevice(int socket);
+
+// What --list wants to know.
+enum class SpnavState {
+    kNoSocket,   // spacenavd is not installed, or does not run
+    kForbidden,  // the socket may not be opened
+    kSilent,     // no daemon listens behind the socket
+    kNoDevice,   // it runs, and has no device
+    kReady,
+};
+// Waits for spacenavd's answers, half a second at most. One that speaks protocol 0 counts as ready.
+SpnavState probeSpnav(const std::string& path);
 
 }  // namespace bonemill
