@@ -1,6 +1,7 @@
-#include "common/digest/sha256.h"
+#include "common/digest/digest.h"
 
 #include <openssl/evp.h>
+#include <openssl/sha.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -12,30 +13,19 @@
 
 namespace bonemill {
 
-struct Sha256::Context {
-    Context() : digest(EVP_MD_CTX_new()) {
-        if (!digest) throw std::bad_alloc();
-    }
-    ~Context() { EVP_MD_CTX_free(digest); }
-    Context(const Context&) = delete;
-    Context& operator=(const Context&) = delete;
-
-    EVP_MD_CTX* const digest;
-};
-
-Sha256::Sha256() : context_(std::make_unique<Context>()) {
-    EVP_DigestInit_ex(context_->digest, EVP_sha256(), nullptr);
+Sha256::Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
+    if (!context_) throw std::bad_alloc();
+    EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr);
 }
-Sha256::~Sha256() = default;
 
 void Sha256::add(std::string_view bytes) {
-    EVP_DigestUpdate(context_->digest, bytes.data(), bytes.size());
+    EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size());
 }
 
 std::string Sha256::take() {
     std::string digest(kBytes, '\0');
-    EVP_DigestFinal_ex(context_->digest, reinterpret_cast<unsigned char*>(digest.data()), nullptr);
-    EVP_DigestInit_ex(context_->digest, EVP_sha256(), nullptr);
+    EVP_DigestFinal_ex(context_.get(), reinterpret_cast<unsigned char*>(digest.data()), nullptr);
+    EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr);
     return digest;
 }
 
@@ -66,6 +56,18 @@ std::string sha256OfFile(const std::filesystem::path& path) {
         hash.add(std::string_view(bytes).substr(0, count));
     if (std::ferror(file.get())) throw UserError(path.string() + ": cannot be read to its end");
     return hexOf(hash.take());
+}
+
+std::string uuidOfName(const UuidBytes& name_space, std::string_view name) {
+    std::string bytes(name_space.begin(), name_space.end());
+    bytes += name;
+    unsigned char hash[SHA_DIGEST_LENGTH];
+    SHA1(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), hash);
+    hash[6] = (hash[6] & 0x0f) | 0x50;  // the version
+    hash[8] = (hash[8] & 0x3f) | 0x80;  // the variant
+    std::string text = hexOf({reinterpret_cast<const char*>(hash), sizeof(UuidBytes)});
+    for (const size_t at : {20, 16, 12, 8}) text.insert(at, 1, '-');
+    return text;
 }
 
 }  // namespace bonemill
