@@ -5,7 +5,7 @@
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
-#include "common/cli/number_range.h"
+#include "common/cli/command_line.h"
 #include "common/files/require_apart.h"
 #include "haptic_server/cases/phantom/skull_labels.h"
 #include "haptic_server/cases/phantom/vertebra_phantom.h"

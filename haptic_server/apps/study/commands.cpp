@@ -8,8 +8,8 @@
 
 #include "common/base/user_error.h"
 #include "common/cli/version.h"
-#include "common/digest/sha256.h"
-#include "common/files/private_file.h"
+#include "common/digest/digest.h"
+#include "common/files/whole_file.h"
 #include "haptic_server/teaching/study/form_page.h"
 #include "haptic_server/teaching/study/study_folder.h"
 #include "haptic_server/teaching/study/terminal_form.h"

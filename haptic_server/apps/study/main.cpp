@@ -2,7 +2,6 @@
 #include <sys/stat.h>
 
 #include "common/cli/command_line.h"
-#include "common/cli/number_range.h"
 #include "common/process/run_program.h"
 #include "haptic_server/apps/study/commands.h"
 

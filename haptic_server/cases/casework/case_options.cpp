@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-#include "common/cli/number_range.h"
+#include "common/cli/command_line.h"
 #include "common/text/printed_text.h"
 
 namespace bonemill {

@@ -5,7 +5,6 @@
 
 #include "common/base/units.h"
 #include "common/config/scene_geometry.h"
-#include "common/config/scene_handle.h"
 #include "common/config/scene_table.h"
 #include "haptic_server/lab/describe/describe_effects.h"
 #include "haptic_server/lab/describe/describe_task.h"

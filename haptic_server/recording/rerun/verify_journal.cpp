@@ -11,7 +11,7 @@
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/rt/clock.h"
-#include "common/text/printable_line.h"
+#include "common/text/foreign_text.h"
 #include "haptic_server/core/bone/leaf_rows.h"
 #include "haptic_server/recording/journal/bone_states.h"
 #include "haptic_server/recording/journal/build_facts.h"
