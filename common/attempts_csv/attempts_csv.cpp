@@ -3,19 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdio>
 #include <ctime>
 
 #include "common/text/csv_text.h"
+#include "common/text/printed_text.h"
 
 namespace bonemill {
 namespace {
-
-std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
-}
 
 std::string utcText(int64_t stamp_ns) {
     const std::time_t seconds = std::time_t(stamp_ns / 1'000'000'000);
@@ -60,14 +54,16 @@ std::string attemptLine(const topics::Attempt& attempt, const std::string& scene
     const auto orNone = [](bool is_measured, const std::string& text) {
         return text.empty() && is_measured ? std::string("none") : text;
     };
-    const auto ifAny = [](bool is_there, double value) { return is_there ? number(value) : std::string(); };
+    const auto ifAny = [](bool is_there, double value) {
+        return is_there ? printed("%.6g", value) : std::string();
+    };
     const topics::Verdict& verdict = attempt.verdict();
     const std::array<std::string, kAttemptColumns> cells = {
         std::to_string(attempt.number()),
         utcText(attempt.start_stamp_ns()),
         csvText(attempt.trainee()),
         csvText(scene),
-        number(attempt.time_s()),
+        printed("%.6g", attempt.time_s()),
         ifAny(!attempt.is_exam(), attempt.removed_mm3()),
         ifAny(!attempt.is_exam(), attempt.max_force_n()),
         ifAny(training.has_damaged_mm3(), training.damaged_mm3()),

@@ -1,8 +1,11 @@
 #include "common/commands/command_text.h"
 
-#include <cstdio>
+#include <algorithm>
 
 #include "common/commands/command_rows.h"
+#include "common/text/foreign_text.h"
+#include "common/text/hex_text.h"
+#include "common/text/printed_text.h"
 
 namespace bonemill {
 namespace {
@@ -34,12 +37,6 @@ Value valueOf(const Message& message, const FieldDescriptor& field) {
         default:
             return {};
     }
-}
-
-std::string printed(const char* format, double number) {
-    char text[64];
-    std::snprintf(text, sizeof text, format, number);
-    return text;
 }
 
 std::string argumentText(const CommandForm& form, const Value& value) {
@@ -90,6 +87,25 @@ std::string doneText(const topics::Command& command, const std::string& trainee)
     const std::string text = wordsOf(command, &CommandForm::done);
     if (text.empty()) return CommandForm().done();
     return withInstead(text, "{trainee's}", trainee.empty() ? "The" : trainee + "'s");
+}
+
+std::string orderText(const topics::Command& command) {
+    const FieldDescriptor* field = fieldOf(command.action_case());
+    if (!field) return "nothing";
+    const auto* reflection = command.GetReflection();
+    if (field->type() == FieldDescriptor::TYPE_STRING)
+        return field->name() + " " + repeatedText(reflection->GetString(command, field));
+    if (field->type() == FieldDescriptor::TYPE_UINT32)
+        return field->name() + " " + std::to_string(reflection->GetUInt32(command, field));
+    if (field->type() == FieldDescriptor::TYPE_MESSAGE) return field->name();
+    return reflection->GetBool(command, field) ? field->name() : field->name() + " false";
+}
+
+std::string senderText(const topics::Command& command, const std::string& proof) {
+    std::string role = topics::Viewer::Role_Name(command.role());
+    std::transform(role.begin(), role.end(), role.begin(), [](char c) { return char(c | 0x20); });
+    const std::string who = command.name().empty() ? hexText(command.sender()) : repeatedText(command.name());
+    return who + " (" + role + ", " + proof + ")";
 }
 
 }  // namespace bonemill

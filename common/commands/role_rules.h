@@ -1,10 +1,13 @@
-// Says which role may order what of the server, by the rows of command_rows.h: the only place that decides it
-// (docs/lab/security.md has the same table). It is thread-safe.
+// Says which role may order what of the server, and how often, by the rows of command_rows.h: the only place
+// that decides it (docs/lab/security.md has the same table). It is thread-safe.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <string>
 
 #include "common/commands/command_rows.h"
+#include "common/log/log.h"
 
 namespace bonemill {
 
@@ -27,5 +30,18 @@ inline bool mayHoldTool(topics::Viewer::Role role) {
 inline bool mayPoint(topics::Viewer::Role role) {
     return role == topics::Viewer::INSTRUCTOR;
 }
+
+// Bounds how often a server does what costs its tick, its disk or everyone's network, whoever asks: the limit
+// of each row. It lives as long as the process; the publisher thread asks.
+class OrderLimits {
+  public:
+    OrderLimits();
+
+    // Says why the order may not be carried out now; empty if it may.
+    std::string whyNotNow(CommandAction action, int64_t now_ns);
+
+  private:
+    std::map<CommandAction, LogLimit> limits_;  // of those that have one of their own
+};
 
 }  // namespace bonemill

@@ -1,9 +1,8 @@
-#include "common/config/effect_check.h"
-
 #include <algorithm>
 
 #include "common/base/units.h"
 #include "common/config/field_unit.h"
+#include "common/config/scene_check.h"
 
 namespace bonemill {
 namespace {

@@ -1,8 +1,7 @@
-#include "common/config/material_check.h"
-
 #include <algorithm>
 
 #include "common/config/field_unit.h"
+#include "common/config/scene_check.h"
 
 namespace bonemill {
 namespace {

@@ -5,11 +5,8 @@
 
 #include "common/base/user_error.h"
 #include "common/bounds/message_bounds.h"
-#include "common/config/effect_check.h"
 #include "common/config/field_unit.h"
-#include "common/config/material_check.h"
 #include "common/config/scene_tools.h"
-#include "common/config/task_check.h"
 
 namespace bonemill {
 namespace {

@@ -1,9 +1,8 @@
-#include "common/config/task_check.h"
-
 #include <algorithm>
 #include <string_view>
 
 #include "common/config/field_unit.h"
+#include "common/config/scene_check.h"
 #include "common/config/scene_geometry.h"
 
 namespace bonemill {

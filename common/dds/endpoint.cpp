@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <functional>
 #include <memory>
 #include <utility>
 
@@ -24,25 +23,20 @@ Entity createTopic(int32_t participant, const TopicDescription& description) {
 }
 
 // A hostile peer that makes endpoints without end must not fill the log.
-bool mayNameMismatch() {
+void logMismatch(const char* peer, const void* topic, const char* own, uint32_t policy) {
     static std::atomic<uint64_t> named = 0;
-    return named.fetch_add(1, std::memory_order_relaxed) < kMaxNamedMismatches;
+    if (named.fetch_add(1, std::memory_order_relaxed) >= kMaxNamedMismatches) return;
+    spdlog::warn(
+        "DDS: a {} of {} does not match this program's {} (QoS policy {}): another version of bonemill?",
+        peer, static_cast<const char*>(topic), own, policy);
 }
 
 void logOffered(dds_entity_t, const dds_offered_incompatible_qos_status_t status, void* topic) {
-    if (!mayNameMismatch()) return;
-    spdlog::warn(
-        "DDS: a reader of {} does not match this program's writer (QoS policy {}): another version of "
-        "bonemill?",
-        static_cast<const char*>(topic), status.last_policy_id);
+    logMismatch("reader", topic, "writer", status.last_policy_id);
 }
 
 void logRequested(dds_entity_t, const dds_requested_incompatible_qos_status_t status, void* topic) {
-    if (!mayNameMismatch()) return;
-    spdlog::warn(
-        "DDS: a writer of {} does not match this program's reader (QoS policy {}): another version of "
-        "bonemill?",
-        static_cast<const char*>(topic), status.last_policy_id);
+    logMismatch("writer", topic, "reader", status.last_policy_id);
 }
 
 struct DeleteListener {
@@ -61,6 +55,16 @@ Entity createReader(int32_t participant, const Entity& topic, const TopicDescrip
     return requireEntity(dds_create_reader(participant, topic.handle(), description.qos.get(),
                                            mismatchListener(description.name).get()),
                          std::string("reader of ") + description.name);
+}
+
+struct FreeEndpoint {
+    void operator()(dds_builtintopic_endpoint_t* endpoint) const { dds_builtintopic_free_endpoint(endpoint); }
+};
+
+// Null if the writer is not matched.
+std::unique_ptr<dds_builtintopic_endpoint_t, FreeEndpoint> endpointOf(const Entity& reader, uint64_t writer) {
+    return std::unique_ptr<dds_builtintopic_endpoint_t, FreeEndpoint>(
+        dds_get_matched_publication_data(reader.handle(), writer));
 }
 
 }  // namespace
@@ -123,30 +127,25 @@ bool AnyReader::isMatched(uint64_t writer) const {
 }
 
 uint64_t AnyReader::participantOf(uint64_t writer) const {
-    dds_builtintopic_endpoint_t* const endpoint = dds_get_matched_publication_data(reader_.handle(), writer);
+    const auto endpoint = endpointOf(reader_, writer);
     if (!endpoint) return 0;
     const auto& guid = endpoint->participant_key.v;
     const std::string_view bytes(reinterpret_cast<const char*>(guid), sizeof guid);
-    const uint64_t number = std::max<uint64_t>(std::hash<std::string_view>()(bytes), 1);
-    dds_builtintopic_free_endpoint(endpoint);
-    return number;
+    return std::max<uint64_t>(std::hash<std::string_view>()(bytes), 1);
 }
 
 std::optional<GuidPrefix> AnyReader::ownerOf(uint64_t writer) const {
-    dds_builtintopic_endpoint_t* const endpoint = dds_get_matched_publication_data(reader_.handle(), writer);
+    const auto endpoint = endpointOf(reader_, writer);
     if (!endpoint) return std::nullopt;
     GuidPrefix prefix;
     std::copy_n(std::begin(endpoint->participant_key.v), prefix.size(), prefix.begin());
-    dds_builtintopic_free_endpoint(endpoint);
     return prefix;
 }
 
 // Cyclone tells it of each participant, in the properties of its QoS.
 std::string AnyReader::hostOf(uint64_t writer) const {
-    dds_builtintopic_endpoint_t* const endpoint = dds_get_matched_publication_data(reader_.handle(), writer);
+    const auto endpoint = endpointOf(reader_, writer);
     if (!endpoint) return "";
-    const dds_instance_handle_t owner = endpoint->participant_instance_handle;
-    dds_builtintopic_free_endpoint(endpoint);
     const int32_t participant = dds_get_participant(reader_.handle());
     const Entity people(
         requireEntity(dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr),
@@ -154,7 +153,7 @@ std::string AnyReader::hostOf(uint64_t writer) const {
     void* sample = nullptr;
     dds_sample_info_t info;
     std::string host;
-    if (dds_read_instance(people.handle(), &sample, &info, 1, 1, owner) > 0) {
+    if (dds_read_instance(people.handle(), &sample, &info, 1, 1, endpoint->participant_instance_handle) > 0) {
         char* name = nullptr;
         if (info.valid_data && dds_qget_prop(static_cast<const dds_builtintopic_participant_t*>(sample)->qos,
                                              "__Hostname", &name))
@@ -179,6 +178,30 @@ AnyReader::Batch::Batch(int32_t reader, size_t max_samples) : reader_(reader) {
 
 AnyReader::Batch::~Batch() {
     if (size_ > 0) dds_return_loan(reader_, samples_.data(), static_cast<int32_t>(size_));
+}
+
+WaitSet::WaitSet(const Participant& participant)
+    : set_(requireEntity(dds_create_waitset(participant.handle()), "DDS wait set")) {}
+
+void WaitSet::add(std::function<int32_t()> handle) {
+    watched_.push_back({std::move(handle), 0, Entity()});
+    watch(watched_.back());
+}
+
+// The condition of a reader that is gone went with it.
+void WaitSet::watch(Watched& watched) {
+    const int32_t reader = watched.handle();
+    if (reader == watched.reader) return;
+    watched.reader = reader;
+    watched.condition = Entity();
+    if (reader == 0) return;
+    watched.condition = requireEntity(dds_create_readcondition(reader, DDS_ANY_STATE), "DDS read condition");
+    dds_waitset_attach(set_.handle(), watched.condition.handle(), watched.condition.handle());
+}
+
+bool WaitSet::wait(std::chrono::nanoseconds timeout) {
+    for (Watched& watched : watched_) watch(watched);
+    return dds_waitset_wait(set_.handle(), nullptr, 0, timeout.count()) > 0;
 }
 
 }  // namespace bonemill::dds

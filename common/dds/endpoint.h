@@ -3,11 +3,14 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "common/dds/participant.h"
 #include "common/dds/topic_traits.h"
@@ -31,8 +34,11 @@ class AnyWriter {
     // It is false when DDS refused; the first refusal is logged, but not that this program may not write
     // there (isAllowed()).
     bool write(const void* sample);
+    // Only the key fields of the sample count. The instance stays registered, so that a reader that was away
+    // learns it.
     bool dispose(const void* sample);
     int matchedReaders() const;
+    // It is false when this program's identity (--secure) may not write there: then nothing is ever written.
     bool isAllowed() const noexcept { return writer_.handle() > 0; }
 
   private:
@@ -73,9 +79,15 @@ class AnyReader {
     void beginAnew(const TopicDescription& description);
     int32_t handle() const noexcept { return reader_.handle(); }
     int matchedWriters() const;
+    // Takes a SampleInfo::writer; it is matched until it leaves, or is silent for longer than the lease.
     bool isMatched(uint64_t writer) const;
+    // Returns the name of the PC that a matched writer runs on; empty if it is not told.
     std::string hostOf(uint64_t writer) const;
+    // Returns a number that all writers of a participant share and those of no other one do, also when it is
+    // matched anew; 0 if the writer is not matched.
     uint64_t participantOf(uint64_t writer) const;
+    // Returns what the GUID of a matched writer's participant begins with. With --secure it proves who that
+    // is.
     std::optional<GuidPrefix> ownerOf(uint64_t writer) const;
 
   private:
@@ -85,73 +97,51 @@ class AnyReader {
 };
 
 template <class Sample>
-class Writer {
+class Writer : public AnyWriter {
   public:
-    explicit Writer(const Participant& participant) : writer_(participant, describeTopic<Sample>()) {}
+    explicit Writer(const Participant& participant) : AnyWriter(participant, describeTopic<Sample>()) {}
 
-    bool write(const Sample& sample) { return writer_.write(&sample); }
-    // Only the key fields of `sample` count. The instance stays registered, so that a reader that was away
-    // learns it.
-    bool dispose(const Sample& sample) { return writer_.dispose(&sample); }
-    int matchedReaders() const { return writer_.matchedReaders(); }
-    // It is false when this program's identity (--secure) may not write there: then nothing is ever written.
-    bool isAllowed() const noexcept { return writer_.isAllowed(); }
-
-  private:
-    AnyWriter writer_;
+    bool write(const Sample& sample) { return AnyWriter::write(&sample); }
+    bool dispose(const Sample& sample) { return AnyWriter::dispose(&sample); }
 };
 
 template <class Sample>
-class Reader {
+class Reader : public AnyReader {
   public:
     explicit Reader(const Participant& participant) : Reader(participant, describeTopic<Sample>()) {}
 
-    // Calls handle(const Sample&, const SampleInfo&) for at most `max_samples` new samples; returns how many.
-    // The sample lives only during the call.
+    // Calls take_sample(const Sample&, const SampleInfo&) for at most `max_samples` new samples; returns how
+    // many. The sample lives only during the call.
     //
     // Cyclone keeps every key that a writer ever used for as long as that writer lives. A reader that has
     // heard of too many (TopicDescription::most_keys) begins anew, its handle changes, and strangers who fill
     // it keep out no other sender.
     template <class Handler>
-    size_t take(size_t max_samples, Handler&& handle) {
+    size_t take(size_t max_samples, Handler&& take_sample) {
         forgetTooMany();
         size_t taken = 0;
         while (taken < max_samples) {
-            const AnyReader::Batch batch(reader_.handle(), max_samples - taken);
+            const Batch batch(handle(), max_samples - taken);
             if (batch.size() == 0) break;
             for (size_t i = 0; i < batch.size(); ++i) {
                 new_keys_ += batch.info(i).is_new_key;
-                handle(*static_cast<const Sample*>(batch.sample(i)), batch.info(i));
+                take_sample(*static_cast<const Sample*>(batch.sample(i)), batch.info(i));
             }
             taken += batch.size();
         }
         return taken;
     }
 
-    int32_t handle() const noexcept { return reader_.handle(); }
-    int matchedWriters() const { return reader_.matchedWriters(); }
-    // Takes a SampleInfo::writer; it is matched until it leaves, or is silent for longer than the lease.
-    bool isMatched(uint64_t writer) const { return reader_.isMatched(writer); }
-    // Returns the name of the PC that a matched writer runs on; empty if it is not told.
-    std::string hostOf(uint64_t writer) const { return reader_.hostOf(writer); }
-    // Returns a number that all writers of a participant share and those of no other one do, also when it is
-    // matched anew; 0 if the writer is not matched.
-    uint64_t participantOf(uint64_t writer) const { return reader_.participantOf(writer); }
-    // Returns what the GUID of a matched writer's participant begins with. With --secure it proves who that
-    // is.
-    std::optional<GuidPrefix> ownerOf(uint64_t writer) const { return reader_.ownerOf(writer); }
-
   private:
     Reader(const Participant& participant, const TopicDescription& description)
-        : reader_(participant, description), most_keys_(description.most_keys) {}
+        : AnyReader(participant, description), most_keys_(description.most_keys) {}
 
     void forgetTooMany() {
         if (most_keys_ == 0 || new_keys_ < most_keys_) return;
         new_keys_ = 0;
-        reader_.beginAnew(describeTopic<Sample>());
+        beginAnew(describeTopic<Sample>());
     }
 
-    AnyReader reader_;
     size_t most_keys_;
     size_t new_keys_ = 0;
 };
@@ -170,5 +160,27 @@ template <class Sample>
 std::span<const uint8_t> payloadOf(const Sample& sample) {
     return {sample.payload._buffer, sample.payload._length};
 }
+
+// Sleeps until one of several readers has samples.
+class WaitSet {
+  public:
+    explicit WaitSet(const Participant& participant);
+
+    // `handle` is asked before each wait, for a reader may begin anew; 0: there is none.
+    void add(std::function<int32_t()> handle);
+    // Returns true when a reader has samples to take, false when `timeout` passed before.
+    bool wait(std::chrono::nanoseconds timeout);
+
+  private:
+    struct Watched {
+        std::function<int32_t()> handle;
+        int32_t reader;
+        Entity condition;
+    };
+    void watch(Watched& watched);
+
+    Entity set_;
+    std::vector<Watched> watched_;
+};
 
 }  // namespace bonemill::dds

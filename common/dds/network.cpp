@@ -1,6 +1,8 @@
 #include "common/dds/network.h"
 
 #include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 #include <netdb.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@
 #include <sstream>
 
 #include "common/base/user_error.h"
-#include "common/dds/network_interfaces.h"
 #include "common/dds/participant.h"
 #include "common/files/require_file.h"
 #include "common/security/security_folder.h"
@@ -17,6 +18,12 @@
 
 namespace bonemill::dds {
 namespace {
+
+std::string addressOf(const ifaddrs& entry) {
+    char text[INET_ADDRSTRLEN] = "";
+    inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(entry.ifa_addr)->sin_addr, text, sizeof text);
+    return text;
+}
 
 // These are places in a profile, in Cyclone's notation: a profile also works with CYCLONEDDS_URI
 // and these variables.
@@ -113,6 +120,28 @@ void requirePart(const SecurityFolder& security, NetworkPart part) {
 }
 
 }  // namespace
+
+std::vector<NetworkInterface> networkInterfaces() {
+    std::vector<NetworkInterface> interfaces;
+    ifaddrs* first = nullptr;
+    if (getifaddrs(&first) != 0) return interfaces;
+    for (const ifaddrs* entry = first; entry != nullptr; entry = entry->ifa_next) {
+        const bool is_ipv4 = entry->ifa_addr != nullptr && entry->ifa_addr->sa_family == AF_INET;
+        if (!is_ipv4 || (entry->ifa_flags & IFF_LOOPBACK)) continue;
+        interfaces.push_back({entry->ifa_name, addressOf(*entry), (entry->ifa_flags & IFF_UP) != 0});
+    }
+    freeifaddrs(first);
+    return interfaces;
+}
+
+std::string textOf(const std::vector<NetworkInterface>& interfaces) {
+    std::string text;
+    for (const NetworkInterface& interface : interfaces) {
+        if (!text.empty()) text += ", ";
+        text += interface.name + " (" + interface.address + (interface.is_up ? ")" : ", down)");
+    }
+    return text.empty() ? "none with an IPv4 address" : text;
+}
 
 bool isLanProfile(const std::string& profile) {
     return profile == "lab" || profile == "classroom";

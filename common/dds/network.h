@@ -10,6 +10,18 @@
 
 namespace bonemill::dds {
 
+struct NetworkInterface {
+    std::string name;
+    std::string address;  // IPv4, dotted
+    bool is_up = false;
+};
+
+// Lists those of this PC with an IPv4 address, without the loopback; there is one entry per address.
+std::vector<NetworkInterface> networkInterfaces();
+
+// Writes them as "eth0 (192.168.1.5), wlan0 (10.0.0.3, down)".
+std::string textOf(const std::vector<NetworkInterface>& interfaces);
+
 struct NetworkOptions {
     std::string profile = {};    // one-pc, lab, classroom or a file of Cyclone DDS; empty: the default
     std::string interface = {};  // of this PC, name or IPv4 address: what ${BONEMILL_ADDRESS} stands for

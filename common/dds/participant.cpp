@@ -1,19 +1,28 @@
 #include "common/dds/participant.h"
 
 #include <dds/dds.h>
+#include <dds/ddsrt/log.h>
 #include <dlfcn.h>
+#include <fcntl.h>
+#include <spdlog/spdlog.h>
+#include <sys/socket.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
 #include <map>
 #include <mutex>
-#include <optional>
+#include <set>
+#include <string_view>
 
+#include "common/base/units.h"
 #include "common/base/user_error.h"
-#include "common/dds/log_sink.h"
-#include "common/dds/loopback_only.h"
 #include "common/dds/network.h"
-#include "common/dds/qos.h"
-#include "common/process/process_limits.h"
+#include "common/dds/topic_traits.h"
+#include "common/log/log.h"
+#include "common/process/run_program.h"
+#include "common/rt/clock.h"
 
 #ifdef __SANITIZE_THREAD__
 // Debian's Cyclone is not instrumented and synchronises with atomics of its own, which ThreadSanitizer cannot
@@ -25,6 +34,70 @@ extern "C" const char* __tsan_default_suppressions() {
 #endif
 
 namespace bonemill::dds {
+namespace {
+
+constexpr char kLoopback[] = "lo";
+
+std::set<int> openDescriptors() {
+    std::set<int> descriptors;
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry("/proc/self/fd", error), end; !error && entry != end;
+         entry.increment(error))
+        descriptors.insert(std::stoi(entry->path().filename().string()));
+    // The folder's own is closed again: its number may be the next socket's.
+    std::erase_if(descriptors, [](int descriptor) { return fcntl(descriptor, F_GETFD) < 0; });
+    return descriptors;
+}
+
+int optionOf(int descriptor, int option) {
+    int value = -1;
+    socklen_t size = sizeof value;
+    return getsockopt(descriptor, SOL_SOCKET, option, &value, &size) == 0 ? value : -1;
+}
+
+bool isUdp(int descriptor) {
+    return optionOf(descriptor, SO_DOMAIN) == AF_INET && optionOf(descriptor, SO_TYPE) == SOCK_DGRAM;
+}
+
+// Keeps Cyclone's sockets to this PC: it binds those that receive to all addresses, whatever interface it is
+// told to use, and would hear every host on the LAN. Ties all UDP sockets to the loopback that were opened
+// since these. Throws UserError where the kernel does not let it.
+void tieToLoopback(const std::set<int>& before) {
+    for (const int descriptor : openDescriptors()) {
+        if (before.contains(descriptor) || !isUdp(descriptor)) continue;
+        if (setsockopt(descriptor, SOL_SOCKET, SO_BINDTODEVICE, kLoopback, sizeof kLoopback) != 0)
+            throw UserError(std::string("profile one-pc: a socket cannot be tied to the loopback: ") +
+                            std::strerror(errno));
+    }
+}
+
+// Cyclone's own messages go to the program's log, but not more of them than are read: ten at once, and over a
+// long time one a minute.
+void sayWithinLimit(void*, const dds_log_data_t* data) {
+    static std::mutex mutex;
+    static LogLimit limit(10, 60 * kNsPerSecond);
+    const std::lock_guard lock(mutex);
+    const int64_t left_out = limit.ask(monotonicNowNs());
+    if (left_out < 0) return;
+    std::string_view text(data->message, data->size);
+    text = text.substr(0, std::min(text.find_last_not_of("\r\n") + 1, text.size()));
+    if (left_out > 0) spdlog::warn("Cyclone DDS: {} messages were left out", left_out);
+    spdlog::warn("Cyclone DDS: {}", text);
+}
+
+}  // namespace
+
+Entity::~Entity() {
+    if (handle_ > 0) dds_delete(handle_);
+}
+
+Entity requireEntity(int32_t result, const std::string& what) {
+    if (result < 0) {
+        throw UserError("cannot create " + what + " (" + dds_strretcode(result) +
+                        "): check the network interfaces and the profile (docs/lab/network.md)");
+    }
+    return Entity(result);
+}
 
 // This is the configured domain, shared by every participant of this process: Cyclone creates each domain
 // id only once.
@@ -32,10 +105,10 @@ class Domain {
   public:
     Domain(uint32_t id, const std::string& configuration) {
         if (configuration.empty()) return;  // Cyclone reads CYCLONEDDS_URI itself
-        const LoopbackOnly loopback_only;
+        const std::set<int> before = openDescriptors();
         entity_ =
             requireEntity(dds_create_domain(id, configuration.c_str()), "DDS domain " + std::to_string(id));
-        if (isOnePc(configuration)) loopback_only.tie();
+        if (isOnePc(configuration)) tieToLoopback(before);
     }
 
   private:
@@ -58,7 +131,7 @@ std::shared_ptr<Domain> acquireDomain(uint32_t id) {
     std::shared_ptr<Domain> domain = domains[id].lock();
     if (!domain) {
         requireMemory(kDomainBytes, "the network");
-        limitCycloneLog();
+        dds_set_log_sink(sayWithinLimit, nullptr);
         domain = std::make_shared<Domain>(
             id, chosen_configuration ? *chosen_configuration : networkConfiguration({}));
         domains[id] = domain;
@@ -81,9 +154,9 @@ std::filesystem::path libraryFolder() {
 
 // What a participant says of itself goes before what CYCLONEDDS_URI says of security.
 Qos secured(const SecurityFolder& security) {
-    Qos qos;
+    Qos qos = makeQos();
     for (const auto& [name, value] : security.properties(pluginFolder(libraryFolder())))
-        qos.property(name, value);
+        dds_qset_prop(qos.get(), name.c_str(), value.c_str());
     return qos;
 }
 

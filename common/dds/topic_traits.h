@@ -4,10 +4,19 @@
 #include <topics.h>
 
 #include <cstddef>
+#include <memory>
 
-#include "common/dds/qos.h"
+struct dds_qos;
 
 namespace bonemill::dds {
+
+// A quality of service of Cyclone DDS.
+struct DeleteQos {
+    void operator()(dds_qos* qos) const noexcept;
+};
+using Qos = std::unique_ptr<dds_qos, DeleteQos>;
+// Returns one that says nothing yet.
+Qos makeQos();
 
 using NodeMeshSample = bonemill_dds_NodeMeshSample;
 using SceneInfoSample = bonemill_dds_SceneInfoSample;
@@ -38,33 +47,8 @@ inline constexpr int kMaxStreamKeys = 1024;
 // The same bound for senders of commands: an honest client repeats a command that gets lost.
 inline constexpr int kMaxCommandKeys = 16384;
 
+// There is one for each of the samples above.
 template <class Sample>
 TopicDescription describeTopic();
-template <>
-TopicDescription describeTopic<NodeMeshSample>();
-template <>
-TopicDescription describeTopic<SceneInfoSample>();
-template <>
-TopicDescription describeTopic<StructureMeshSample>();
-template <>
-TopicDescription describeTopic<ToolStateSample>();
-template <>
-TopicDescription describeTopic<StatusSample>();
-template <>
-TopicDescription describeTopic<LessonSample>();
-template <>
-TopicDescription describeTopic<ScenePictureSample>();
-template <>
-TopicDescription describeTopic<RemarkSample>();
-template <>
-TopicDescription describeTopic<ViewerSample>();
-template <>
-TopicDescription describeTopic<HandPointerSample>();
-template <>
-TopicDescription describeTopic<CommandSample>();
-template <>
-TopicDescription describeTopic<DensityBrickSample>();
-template <>
-TopicDescription describeTopic<DensityWishSample>();
 
 }  // namespace bonemill::dds

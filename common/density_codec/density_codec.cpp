@@ -67,21 +67,10 @@ uint16_t numberAt(std::string_view bytes, size_t place) {
 
 }  // namespace
 
-struct DensityEncoder::Zstd {
-    ZSTD_CCtx* const context = ZSTD_createCCtx();
-    ~Zstd() { ZSTD_freeCCtx(context); }
-};
-
-struct DensityDecoder::Zstd {
-    ZSTD_DCtx* const context = ZSTD_createDCtx();
-    ~Zstd() { ZSTD_freeDCtx(context); }
-};
-
-DensityEncoder::DensityEncoder(uint16_t steps) : zstd_(std::make_unique<Zstd>()), steps_(steps) {
+DensityEncoder::DensityEncoder(uint16_t steps) : zstd_(ZSTD_createCCtx(), ZSTD_freeCCtx), steps_(steps) {
     BONEMILL_ASSERT(steps >= 1);
-    if (!zstd_->context) throw std::bad_alloc();
+    if (!zstd_) throw std::bad_alloc();
 }
-DensityEncoder::~DensityEncoder() = default;
 
 int DensityEncoder::standOn(uint16_t steps, std::span<const uint16_t> densities) {
     numbers_.resize(densities.size());
@@ -100,7 +89,7 @@ int DensityEncoder::standOn(uint16_t steps, std::span<const uint16_t> densities)
 void DensityEncoder::compress(std::string& out) {
     const size_t header = out.size();
     out.resize(header + ZSTD_compressBound(plain_.size()));
-    const size_t size = ZSTD_compressCCtx(zstd_->context, out.data() + header, out.size() - header,
+    const size_t size = ZSTD_compressCCtx(zstd_.get(), out.data() + header, out.size() - header,
                                           plain_.data(), plain_.size(), kLevel);
     if (ZSTD_isError(size)) throw std::bad_alloc();  // nothing else can go wrong
     out.resize(header + size);
@@ -159,14 +148,13 @@ std::string DensityEncoder::materials(std::span<const uint8_t> materials) {
     return out;
 }
 
-DensityDecoder::DensityDecoder() : zstd_(std::make_unique<Zstd>()) {
-    if (!zstd_->context) throw std::bad_alloc();
+DensityDecoder::DensityDecoder() : zstd_(ZSTD_createDCtx(), ZSTD_freeDCtx) {
+    if (!zstd_) throw std::bad_alloc();
 }
-DensityDecoder::~DensityDecoder() = default;
 
 bool DensityDecoder::decompress(std::string_view bytes, size_t least, size_t most) {
     plain_.resize(most);
-    const size_t size = ZSTD_decompressDCtx(zstd_->context, plain_.data(), most, bytes.data(), bytes.size());
+    const size_t size = ZSTD_decompressDCtx(zstd_.get(), plain_.data(), most, bytes.data(), bytes.size());
     if (ZSTD_isError(size) || size < least) return false;
     plain_.resize(size);
     return true;

@@ -16,6 +16,9 @@
 #include <string_view>
 #include <vector>
 
+struct ZSTD_CCtx_s;  // zstd's ZSTD_CCtx
+struct ZSTD_DCtx_s;
+
 namespace bonemill {
 
 inline constexpr int kMaxBrickEdge = 64;
@@ -25,7 +28,6 @@ class DensityEncoder {
     // The ladder has this many steps from 0 to 65535, 1 to 65535: for a scan in whole numbers those of its
     // window. A brick that does not stand on it costs more bytes.
     explicit DensityEncoder(uint16_t steps);
-    ~DensityEncoder();
 
     // `densities` has edge³ values; edge is 1 to kMaxBrickEdge.
     std::string scanned(std::span<const uint16_t> densities, int edge);
@@ -39,8 +41,7 @@ class DensityEncoder {
     int standOn(uint16_t steps, std::span<const uint16_t> densities);
     void compress(std::string& out);
 
-    struct Zstd;
-    std::unique_ptr<Zstd> zstd_;
+    std::unique_ptr<ZSTD_CCtx_s, size_t (*)(ZSTD_CCtx_s*)> zstd_;
     uint16_t steps_;
     std::vector<uint16_t> numbers_;  // of the steps, and `steps` + 1 for odd_
     uint16_t odd_ = 0;               // stands beside the ladder
@@ -51,7 +52,6 @@ class DensityEncoder {
 class DensityDecoder {
   public:
     DensityDecoder();
-    ~DensityDecoder();
 
     // Returns nothing for what is no brick of this edge.
     std::optional<std::vector<uint16_t>> scanned(std::string_view bytes, int edge);
@@ -63,8 +63,7 @@ class DensityDecoder {
   private:
     bool decompress(std::string_view bytes, size_t least, size_t most);
 
-    struct Zstd;
-    std::unique_ptr<Zstd> zstd_;
+    std::unique_ptr<ZSTD_DCtx_s, size_t (*)(ZSTD_DCtx_s*)> zstd_;
     std::vector<uint8_t> plain_;
 };
 

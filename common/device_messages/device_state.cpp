@@ -1,96 +1,53 @@
 #include "common/device_messages/device_state.h"
 
 namespace bonemill {
+namespace {
+
+// Both lists are in the order of the numbers.
+constexpr const char* kStates[kSafetyStateCount] = {
+    "disconnected", "connected",       "homing",         "ready", "engaged",
+    "paused",       "protective stop", "emergency stop", "fault",
+};
+
+struct CauseWords {
+    const char* name;
+    const char* what_to_do;
+};
+constexpr CauseWords kCauses[kStopCauseCount] = {
+    {"none", ""},
+    {"device lost", "Check cable and power of the device."},
+    {"implausible pose", "Move the handle to the middle of its workspace and calibrate again."},
+    {"pose jumped", "Check the encoders and their cables, and calibrate again."},
+    {"position sensor stuck", "Move the handle; if its position stands still, check the encoders."},
+    {"too fast", "Hold the handle and reset."},
+    {"too much power", "Hold the handle, move the tool out of the bone and reset."},
+    {"too much energy", "Hold the handle, move the tool out of the bone and reset."},
+    {"force is not what was ordered", "Check motors and amplifiers, then reset."},
+    {"near a singularity", "Move the handle back to the middle of its workspace and reset."},
+    {"motor too hot", "Let the motors cool down, then reset."},
+    {"emergency stop", "Unlock the emergency stop, then reset."},
+    {"device fault", "Look up the device's own fault number in its manual, then reset."},
+    {"packets come late", "Give the device a network of its own and check real time, then reset."},
+};
+static_assert(kCauses[kStopCauseCount - 1].name && kStates[kSafetyStateCount - 1]);
+
+const CauseWords& wordsOf(StopCause cause) noexcept {
+    static constexpr CauseWords kUnknown{"unknown cause", "Restart device_daemon."};
+    return uint32_t(cause) < kStopCauseCount ? kCauses[uint32_t(cause)] : kUnknown;
+}
+
+}  // namespace
 
 const char* nameOf(SafetyState state) noexcept {
-    switch (state) {
-        case SafetyState::kDisconnected:
-            return "disconnected";
-        case SafetyState::kConnected:
-            return "connected";
-        case SafetyState::kHoming:
-            return "homing";
-        case SafetyState::kReady:
-            return "ready";
-        case SafetyState::kEngaged:
-            return "engaged";
-        case SafetyState::kPaused:
-            return "paused";
-        case SafetyState::kProtectiveStop:
-            return "protective stop";
-        case SafetyState::kEmergencyStop:
-            return "emergency stop";
-        case SafetyState::kFault:
-            return "fault";
-    }
-    return "unknown state";
+    return uint32_t(state) < kSafetyStateCount ? kStates[uint32_t(state)] : "unknown state";
 }
 
 const char* nameOf(StopCause cause) noexcept {
-    switch (cause) {
-        case StopCause::kNone:
-            return "none";
-        case StopCause::kDeviceLost:
-            return "device lost";
-        case StopCause::kImplausiblePose:
-            return "implausible pose";
-        case StopCause::kPoseJump:
-            return "pose jumped";
-        case StopCause::kSensorStuck:
-            return "position sensor stuck";
-        case StopCause::kSpeed:
-            return "too fast";
-        case StopCause::kPower:
-            return "too much power";
-        case StopCause::kEnergy:
-            return "too much energy";
-        case StopCause::kForceMismatch:
-            return "force is not what was ordered";
-        case StopCause::kSingularity:
-            return "near a singularity";
-        case StopCause::kOverTemperature:
-            return "motor too hot";
-        case StopCause::kEmergencyStop:
-            return "emergency stop";
-        case StopCause::kDeviceFault:
-            return "device fault";
-        case StopCause::kLatePackets:
-            return "packets come late";
-    }
-    return "unknown cause";
+    return wordsOf(cause).name;
 }
 
 const char* whatToDo(StopCause cause) noexcept {
-    switch (cause) {
-        case StopCause::kNone:
-            return "";
-        case StopCause::kDeviceLost:
-            return "Check cable and power of the device.";
-        case StopCause::kImplausiblePose:
-            return "Move the handle to the middle of its workspace and calibrate again.";
-        case StopCause::kPoseJump:
-            return "Check the encoders and their cables, and calibrate again.";
-        case StopCause::kSensorStuck:
-            return "Move the handle; if its position stands still, check the encoders.";
-        case StopCause::kSpeed:
-            return "Hold the handle and reset.";
-        case StopCause::kPower:
-        case StopCause::kEnergy:
-            return "Hold the handle, move the tool out of the bone and reset.";
-        case StopCause::kForceMismatch:
-            return "Check motors and amplifiers, then reset.";
-        case StopCause::kSingularity:
-            return "Move the handle back to the middle of its workspace and reset.";
-        case StopCause::kOverTemperature:
-            return "Let the motors cool down, then reset.";
-        case StopCause::kEmergencyStop:
-            return "Unlock the emergency stop, then reset.";
-        case StopCause::kDeviceFault:
-            return "Look up the device's own fault number in its manual, then reset.";
-        case StopCause::kLatePackets:
-            return "Give the device a network of its own and check real time, then reset.";
-    }
-    return "Restart device_daemon.";
+    return wordsOf(cause).what_to_do;
 }
 
 }  // namespace bonemill

@@ -14,7 +14,7 @@
 #include <string_view>
 
 #include "common/base/user_error.h"
-#include "common/files/private_file.h"
+#include "common/files/whole_file.h"
 
 namespace bonemill {
 

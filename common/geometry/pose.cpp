@@ -7,9 +7,11 @@
 
 namespace bonemill {
 namespace {
+
 // Below this angle sin and atan2 are replaced by their series, whose error is below 1e-18.
 constexpr double kSmallAngle_rad = 1e-6;
 constexpr double kOpposite = 1e-8;  // of the sum of two unit vectors: its direction is noise
+
 }  // namespace
 
 Eigen::Matrix3d skew(const Eigen::Vector3d& v) noexcept {

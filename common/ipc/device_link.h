@@ -18,9 +18,8 @@
 #include <string>
 
 #include "common/device_messages/device_messages.h"
+#include "common/ipc/link_place.h"
 #include "common/ipc/link_segment.h"
-#include "common/ipc/link_semaphores.h"
-#include "common/ipc/link_side.h"
 
 namespace bonemill {
 

@@ -1,5 +1,5 @@
-// This is where a session's link lies, a key of System V IPC, and how the link refuses what it finds there.
-// It is for the start, not for the tick.
+// This is where a session's link lies, a key of System V IPC, how the link refuses what it finds there, and
+// who lives on it. It is for the start, not for the tick.
 #pragma once
 
 #include <sys/ipc.h>
@@ -8,6 +8,17 @@
 #include <string>
 
 namespace bonemill {
+
+// The two programs at the ends of a device link.
+enum class LinkSide { kServer, kDaemon };
+
+inline LinkSide peerOf(LinkSide side) noexcept {
+    return side == LinkSide::kServer ? LinkSide::kDaemon : LinkSide::kServer;
+}
+
+inline const char* programOf(LinkSide side) noexcept {
+    return side == LinkSide::kServer ? "haptic_server" : "device_daemon";
+}
 
 // The session's key. No two sessions share one, and the constant ("BM") keeps clear of the small numbers that
 // other programs like. It never changes. One session has none: its key would be IPC_PRIVATE.
@@ -32,6 +43,37 @@ class LinkPlace {
   private:
     uint32_t session_;
     key_t key_;
+};
+
+// The kernel keeps book here of who lives on a link: one semaphore per side, and one for the set-up.
+//
+// 0 is free and 1 is held. Each is taken with SEM_UNDO, so that the kernel frees it when its process dies,
+// however it dies: a held one means a living process, and no pid can be mistaken. A stopped process keeps
+// what it holds. The object is a handle and owns nothing.
+class LinkSemaphores {
+  public:
+    // Finds the set or makes it. Throws UserError when it is another user's, open to others or no link's.
+    static LinkSemaphores open(const LinkPlace& place);
+
+    // Keeps others from starting and leaving. False when the deadline (CLOCK_MONOTONIC) has passed, or when
+    // the last to leave has removed the set: open it again.
+    bool beginSetup(int64_t deadline_ns) const noexcept;
+    // Removes the set if no process is on the link any more.
+    void endSetup() const noexcept;
+    // The process that is, or was last, in the set-up.
+    int32_t pidInSetup() const noexcept;
+
+    // False when a living process has this side.
+    bool tryTake(LinkSide side) const noexcept;
+    void giveBack(LinkSide side) const noexcept;
+    bool isTaken(LinkSide side) const noexcept;
+    // The process that has this side, or had it last.
+    int32_t pidOf(LinkSide side) const noexcept;
+
+  private:
+    explicit LinkSemaphores(int id) noexcept : id_(id) {}
+
+    int id_;
 };
 
 }  // namespace bonemill

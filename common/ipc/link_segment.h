@@ -10,7 +10,6 @@
 
 #include "common/ipc/link_layout.h"
 #include "common/ipc/link_place.h"
-#include "common/ipc/link_side.h"
 
 namespace bonemill {
 

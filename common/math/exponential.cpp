@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "common/math/pinned_math.h"
-#include "common/math/special_values.h"
 #include "common/math/tables.h"
 
 #ifdef __FAST_MATH__

@@ -108,12 +108,16 @@ print("""// Written by make_tables.py: values that take more than a line of arit
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 // clang-format off
 namespace bonemill::pinned {
 
 struct Pair { double high, low; };
-struct LogStep { double factor, high, low; };""")
+struct LogStep { double factor, high, low; };
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();""")
 constants("ln 2 / 64, the first so short that 2^17 times it is exact; ln 2 for log, as multiples of 2^-40 and the rest.",
           **dict(zip(("kLn2By64High", "kLn2By64Low"), parts(LN2 / 64, 41))), **dict(zip(("kLn2High", "kLn2Low"), parts(LN2, 40))),
           k64ByLn2=number(64 / LN2))

@@ -3,12 +3,16 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 // clang-format off
 namespace bonemill::pinned {
 
 struct Pair { double high, low; };
 struct LogStep { double factor, high, low; };
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // ln 2 / 64, the first so short that 2^17 times it is exact; ln 2 for log, as multiples of 2^-40 and the rest.
 constexpr double kLn2By64High = 0x1.62e42fefc0000p-7;

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "common/math/pinned_math.h"
-#include "common/math/special_values.h"
 #include "common/math/tables.h"
 
 namespace bonemill::pinned {

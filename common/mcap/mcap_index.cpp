@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "common/mcap/mcap_bytes.h"
-
 namespace bonemill::mcap {
 namespace {
 

@@ -6,7 +6,7 @@
 #include <istream>
 #include <optional>
 
-#include "common/mcap/mcap_bytes.h"
+#include "common/mcap/mcap_index.h"
 #include "common/mcap/mcap_writer.h"
 
 namespace bonemill::mcap {

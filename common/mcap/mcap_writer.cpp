@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/base/assert.h"
-#include "common/mcap/mcap_bytes.h"
+#include "common/mcap/mcap_index.h"
 
 namespace bonemill::mcap {
 namespace {
@@ -16,19 +16,13 @@ constexpr int kLevel = 3;
 
 }  // namespace
 
-struct Writer::Zstd {
-    ZSTD_CCtx* const context = ZSTD_createCCtx();
-    ~Zstd() { ZSTD_freeCCtx(context); }
-};
-
-Writer::Writer(std::string_view profile, std::string_view library) : zstd_(std::make_unique<Zstd>()) {
-    if (!zstd_->context) throw std::bad_alloc();
+Writer::Writer(std::string_view profile, std::string_view library) : zstd_(ZSTD_createCCtx(), ZSTD_freeCCtx) {
+    if (!zstd_) throw std::bad_alloc();
     std::string header, start{kMagic};
     appendText(header, profile), appendText(header, library);
     appendRecord(start, kHeader, header);
     emit(start);
 }
-Writer::~Writer() = default;
 
 void Writer::emit(std::string_view bytes) {
     index_.addBytes(bytes);
@@ -70,8 +64,8 @@ void Writer::addMessage(uint16_t channel, uint64_t time_ns, std::string_view dat
 void Writer::closeChunk() {
     if (chunk_.empty()) return;
     packed_.resize(ZSTD_compressBound(chunk_.size()));
-    const size_t packed = ZSTD_compressCCtx(zstd_->context, packed_.data(), packed_.size(), chunk_.data(),
-                                            chunk_.size(), kLevel);
+    const size_t packed =
+        ZSTD_compressCCtx(zstd_.get(), packed_.data(), packed_.size(), chunk_.data(), chunk_.size(), kLevel);
     if (ZSTD_isError(packed)) throw std::bad_alloc();  // nothing else can go wrong
     std::string content, record;
     append(content, first_ns_), append(content, last_ns_);

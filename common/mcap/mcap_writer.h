@@ -10,6 +10,8 @@
 
 #include "common/mcap/mcap_index.h"
 
+struct ZSTD_CCtx_s;  // zstd's ZSTD_CCtx
+
 namespace bonemill::mcap {
 
 // A chunk holds no more than this many bytes before they are packed, but for a message that is larger by
@@ -21,7 +23,6 @@ class Writer {
   public:
     // Who writes, for people: a name and a version.
     Writer(std::string_view profile, std::string_view library);
-    ~Writer();
 
     // Both come before the messages that need them, each id once; they go into the chunk under way, whose CRC
     // covers them.
@@ -29,8 +30,6 @@ class Writer {
     void addChannel(const Channel& channel);
     // `data` has kMaxMessage bytes at most.
     void addMessage(uint16_t channel, uint64_t time_ns, std::string_view data);
-    // What the chunk under way holds, before it is packed.
-    size_t chunkSize() const { return chunk_.size(); }
     // An empty one is none.
     void closeChunk();
     // Closes the chunk and makes the file's end; nothing may come after.
@@ -42,10 +41,9 @@ class Writer {
     const Index& index() const { return index_; }
 
   private:
-    struct Zstd;
     void emit(std::string_view bytes);
 
-    std::unique_ptr<Zstd> zstd_;
+    std::unique_ptr<ZSTD_CCtx_s, size_t (*)(ZSTD_CCtx_s*)> zstd_;
     Index index_;
     std::string out_;
     std::string chunk_, packed_;  // records

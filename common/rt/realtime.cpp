@@ -13,11 +13,25 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <future>
 #include <sstream>
-#include <thread>
+#include <utility>
+
+#include "common/base/user_error.h"
 
 namespace bonemill {
 namespace {
+
+struct Started {
+    pid_t id;
+    RealtimeReport report;
+};
+
+std::string refusalOf(const std::string& what, const RealtimeReport& report) {
+    std::string message = "this machine does not let " + what + " be real-time:";
+    for (const std::string& missing : report.missing) message += " " + missing;
+    return message + " Type deploy/check-realtime, which says what to do, or leave out --strict-rt.";
+}
 
 std::string firstLineOf(const std::string& path) {
     std::ifstream file(path);
@@ -158,6 +172,47 @@ RealtimeReport lockMemory() {
     volatile char* const pages = static_cast<volatile char*>(alloca(kPrefaultedStackBytes));
     constexpr size_t kMinPage = 4096;
     for (size_t i = 0; i < kPrefaultedStackBytes; i += kMinPage) pages[i] = 0;
+}
+
+RealtimeThread::RealtimeThread(const RealtimeThreadConfig& config, std::function<void()> work,
+                               const std::function<void(const RealtimeReport&)>& tell) {
+    RealtimeReport report = lockMemory();
+    std::promise<Started> has_started;
+    std::promise<bool> permission;
+    std::future<Started> started = has_started.get_future();
+    thread_ =
+        std::jthread([request = config.request, work = std::move(work), has_started = std::move(has_started),
+                      permission = permission.get_future()]() mutable {
+            has_started.set_value({gettid(), makeThreadRealtime(request)});
+            if (permission.get()) work();
+        });
+    Started thread = started.get();
+    id_ = thread.id;
+    report.append(thread.report);
+    const bool is_accepted = report.missing.empty() || !config.is_strict;
+    try {
+        if (is_accepted) tell(report);
+    } catch (...) {
+        permission.set_value(false);  // or no caller could stop the thread that is left
+        throw;
+    }
+    permission.set_value(is_accepted);
+    if (!is_accepted) throw UserError(refusalOf(config.what, report));
+}
+
+std::optional<PageFaults> pageFaultsOf(pid_t thread) {
+    std::ifstream file("/proc/self/task/" + std::to_string(thread) + "/stat");
+    std::string line;
+    if (!std::getline(file, line)) return std::nullopt;
+    // The name stands in parentheses and may hold anything. After it come the state, six numbers, flags,
+    // minflt, cminflt and majflt.
+    std::istringstream rest(line.substr(line.rfind(')') + 1));
+    std::string skipped;
+    for (int n = 0; n < 7; ++n) rest >> skipped;
+    PageFaults faults;
+    uint64_t minor_of_children = 0;
+    rest >> faults.minor >> minor_of_children >> faults.major;
+    return rest ? std::optional(faults) : std::nullopt;
 }
 
 }  // namespace bonemill

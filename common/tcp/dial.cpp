@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <memory>
 
-#include "common/tcp/socket_setup.h"
+#include "common/tcp/descriptor.h"
 
 namespace bonemill {
 namespace {

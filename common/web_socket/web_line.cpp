@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "common/base/user_error.h"
-#include "common/digest/sha256.h"
+#include "common/digest/digest.h"
 #include "common/rt/clock.h"
 #include "common/tcp/dial.h"
 

@@ -2,9 +2,8 @@
 
 #include "common/base/units.h"
 #include "common/config/scene_geometry.h"
-#include "common/config/scene_handle.h"
 #include "common/geometry/view_axes.h"
-#include "device_daemon/ares/ares_device/scene_ares.h"
+#include "device_daemon/ares/ares_device/ares_settings.h"
 
 namespace bonemill {
 namespace {

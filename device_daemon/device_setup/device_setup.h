@@ -4,7 +4,7 @@
 #include "common/geometry/hand_space.h"
 #include "device_daemon/ares/ares_device/ares_device.h"
 #include "device_daemon/control/device_loop/device_loop.h"
-#include "device_daemon/hands/input/rate_control.h"
+#include "device_daemon/hands/input/rate_device.h"
 #include "proto/scene.pb.h"
 
 namespace bonemill {

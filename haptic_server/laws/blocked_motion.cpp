@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/geometry/pose_step.h"
+#include "common/geometry/pose.h"
 
 namespace bonemill {
 namespace {

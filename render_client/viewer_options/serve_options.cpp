@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/cli/number_range.h"
+#include "common/cli/command_line.h"
 #include "render_client/viewer_options/network_place.h"
 
 namespace bonemill {

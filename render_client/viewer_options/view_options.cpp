@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "common/cli/number_range.h"
+#include "common/cli/command_line.h"
 
 namespace bonemill {
 namespace {

@@ -10,7 +10,6 @@
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/cli/command_line.h"
-#include "common/cli/number_range.h"
 #include "common/commands/role_rules.h"
 #include "common/dds/network_cli.h"
 #include "render_client/link/subscribe/command_words.h"

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "common/rt/clock.h"
-#include "common/rt/page_faults.h"
+#include "common/rt/realtime.h"
 #include "haptic_server/core/telemetry/fault_names.h"
 #include "haptic_server/core/tick/fixed_tick.h"
 #include "haptic_server/scene/tool_build/build_tool.h"

@@ -16,9 +16,9 @@
 #include "common/ipc/device_link.h"
 #include "common/rt/clock.h"
 #include "common/rt/periodic_timer.h"
-#include "common/rt/realtime_thread.h"
-#include "device_daemon/ares/driver/udp_joint_device.h"
-#include "device_daemon/ares/wire/controller_link.h"
+#include "common/rt/realtime.h"
+#include "device_daemon/ares/driver/udp_device.h"
+#include "device_daemon/ares/wire/controller_session.h"
 #include "tests/bench/bench_output.h"
 
 namespace bonemill::bench {

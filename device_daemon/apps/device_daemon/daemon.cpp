@@ -11,9 +11,9 @@
 #include "common/log/log.h"
 #include "common/rt/clock.h"
 #include "common/rt/periodic_timer.h"
-#include "common/rt/realtime_thread.h"
+#include "common/rt/realtime.h"
 #include "common/rt/rt_guard.h"
-#include "device_daemon/device_setup/stop_files.h"
+#include "device_daemon/control/device_loop/black_box.h"
 
 namespace bonemill {
 namespace {

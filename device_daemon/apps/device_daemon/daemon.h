@@ -2,17 +2,58 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <optional>
+#include <string>
 
 #include "common/ipc/device_link.h"
+#include "common/rt/clock.h"
+#include "common/rt/latency_histogram.h"
 #include "common/rt/stop_signals.h"
 #include "device_daemon/apps/device_daemon/child_program.h"
-#include "device_daemon/apps/device_daemon/daemon_memory.h"
 #include "device_daemon/apps/device_daemon/daemon_options.h"
 #include "device_daemon/apps/device_daemon/scene_follower.h"
 #include "device_daemon/control/device_loop/device_loop.h"
+#include "device_daemon/control/safety/safety_states.h"
 
 namespace bonemill {
+
+// What the device loop counted.
+struct LoopStatistics {
+    uint64_t ticks = 0;
+    uint64_t missed_periods = 0;      // of the loop's own timer
+    double wall_time = 0;             // s
+    LatencyHistogram period;          // between two starts of the loop's work
+    LatencyHistogram wakeup_latency;  // from the instant that the loop's own timer promised to its work
+    LatencyHistogram compute_time;    // from there to the wrench written
+    int64_t attached_ns = 0;          // CLOCK_MONOTONIC of the first answer of haptic_server; 0 before
+    uint64_t attached_ticks = 0;      // with a haptic_server that answers
+    uint64_t late_answers = 0;   // attached ticks whose newest wrench does not answer the previous sample
+    uint64_t engaged_ticks = 0;  // the hand felt what was computed
+    double max_force = 0;        // N, given to the hand
+    double max_torque = 0;       // N·m
+    uint64_t clamped_ticks = 0;  // engaged, and the wrench reduced to the device's largest
+    uint64_t rate_limited_ticks = 0;
+    uint64_t stops = 0;            // limits that have tripped, and faults
+    uint64_t unheard_periods = 0;  // no believable reading of the device
+    std::string final_state;
+};
+
+// What goes on from one scene's daemon to the next one's.
+struct DaemonMemory {
+    LoopStatistics statistics;
+    SafetyLatch stop;                         // a stop holds until a user resets the device
+    std::optional<DeviceSample> last_sample;  // that went out; nothing before the first and after a goodbye
+};
+
+// Lets haptic_server tell an orderly end from a fault. RT-safe.
+inline void sayGoodbye(DeviceLink& link, DaemonMemory& memory) noexcept {
+    if (!memory.last_sample) return;
+    memory.last_sample->stamp_ns = monotonicNowNs();
+    memory.last_sample->flags |= kDeviceFlagLeaving;
+    link.writeSample(*memory.last_sample);
+    memory.last_sample.reset();
+}
 
 class Daemon {
   public:

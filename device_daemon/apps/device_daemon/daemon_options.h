@@ -1,4 +1,4 @@
-// Reads the command line of device_daemon.
+// The command line of device_daemon, which main.cpp reads.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,5 @@ struct DaemonOptions {
     int core = coreFromLast(1);  // haptic_server's tick has the last
     std::string log_level = "info";
 };
-
-// Returns nothing after --help, which is already printed. Throws UserError.
-std::optional<DaemonOptions> parseOptions(int argc, char** argv);
 
 }  // namespace bonemill

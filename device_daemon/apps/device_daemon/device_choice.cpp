@@ -1,20 +1,74 @@
 #include "device_daemon/apps/device_daemon/device_choice.h"
 
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <utility>
 
 #include "common/base/user_error.h"
-#include "device_daemon/apps/device_daemon/found_devices.h"
-#include "device_daemon/apps/device_daemon/pedalled_device.h"
+#include "common/text/printed_text.h"
 #include "device_daemon/ares/ares_device/wired_ares.h"
 #include "device_daemon/ares/driver/udp_pose_device.h"
 #include "device_daemon/hands/input/gamepad_device.h"
+#include "device_daemon/hands/input/pedal_source.h"
 #include "device_daemon/hands/input/spacemouse_device.h"
 #include "device_daemon/hands/pointer/pointer_device.h"
 
 namespace bonemill {
 namespace {
+
+// A library that hangs must not hold the list.
+constexpr char kProbe[] = "timeout --signal=KILL 5 ";
+
+// Asks a bridge whether its vendor's library is there.
+ArmLibrary libraryOf(const std::string& bridge) {
+    std::string path;
+    try {
+        path = programPath(bridge);
+    } catch (const std::exception& error) {
+        return {.loads = false, .why_not = error.what()};
+    }
+    FILE* const output = popen((kProbe + bonemill::quoted(path) + " --probe 2>&1 >/dev/null").c_str(), "r");
+    if (!output) return {.loads = false, .why_not = "no process for " + bridge};
+    char line[512] = "";
+    std::string first;
+    while (std::fgets(line, sizeof(line), output))
+        if (first.empty()) first = line;
+    const int status = pclose(output);
+    while (!first.empty() && (first.back() == '\n' || first.back() == ' ')) first.pop_back();
+    if (first.rfind("error: ", 0) == 0) first.erase(0, 7);
+    return {.loads = status == 0, .why_not = status == 0 ? "" : first};
+}
+
+// A device with a foot pedal beside it: the pedal's buttons count as the device's own. The path is that of
+// /dev/input; those in by-id stay the same when the pedal is plugged in again.
+class PedalledDevice final : public HapticDevice {
+  public:
+    PedalledDevice(std::unique_ptr<HapticDevice> device, const std::string& pedal_path)
+        : device_(std::move(device)), pedal_([pedal_path] { return openEvdev(pedal_path, true); }) {}
+
+    DeviceCapabilities capabilities() const noexcept override { return device_->capabilities(); }
+    uint32_t capabilitiesVersion() const noexcept override { return device_->capabilitiesVersion(); }
+    const char* refusedFigure() const noexcept override { return device_->refusedFigure(); }
+    bool hasClock() const noexcept override { return device_->hasClock(); }
+    bool waitForSample(int64_t deadline_ns) noexcept override { return device_->waitForSample(deadline_ns); }
+    bool read(double elapsed, DeviceReading& reading) noexcept override {
+        const bool is_heard = device_->read(elapsed, reading);
+        reading.buttons |= pedal_.buttons();
+        return is_heard;
+    }
+    void write(const DeviceOrder& order) noexcept override { device_->write(order); }
+    void beginAttempt() noexcept override { device_->beginAttempt(); }
+    void followRun(uint64_t epoch) noexcept override { device_->followRun(epoch); }
+    std::string refusal() const override { return device_->refusal(); }
+
+  private:
+    std::unique_ptr<HapticDevice> device_;
+    PedalSource pedal_;
+};
 
 constexpr char kThisMachine[] = "127.0.0.1";
 
@@ -100,7 +154,19 @@ ChosenDevice deviceOf(const std::string& word, const FollowedScene& scene, const
     throw UserError("--device " + word + ": there is no such device (see device_daemon --help)");
 }
 
+// Returns the word for --device of the first usable one: arms come before SpaceMouse, gamepad and mouse.
+std::string bestOf(const std::vector<ListedDevice>& devices) {
+    for (const ListedDevice& device : devices)
+        if (device.usable && !device.word.empty()) return device.word;
+    return "pointer";
+}
+
 }  // namespace
+
+std::vector<ListedDevice> foundDevices() {
+    return listDevices(gatherDeviceFacts({.force_dimension = libraryOf("bonemill_bridge_force_dimension"),
+                                          .open_haptics = libraryOf("bonemill_bridge_touch")}));
+}
 
 const char* deviceChoices() {
     return "The hand: auto (the best that is there), simulated (a scripted hand on the emulated ARES), "

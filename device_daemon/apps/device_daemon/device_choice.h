@@ -1,15 +1,21 @@
-// Makes the device that --device names.
+// Finds what could be the hand here, and makes the device that --device names.
 #pragma once
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "device_daemon/apps/device_daemon/child_program.h"
 #include "device_daemon/apps/device_daemon/daemon_options.h"
 #include "device_daemon/apps/device_daemon/scene_follower.h"
 #include "device_daemon/control/haptic_device/haptic_device.h"
+#include "device_daemon/hands/input/device_list.h"
 
 namespace bonemill {
+
+// Looks at what is plugged in, and what the vendors' libraries say. It starts the bridges for a look, which
+// takes seconds when a library hangs. For start-up.
+std::vector<ListedDevice> foundDevices();
 
 // What --device takes, for --help.
 const char* deviceChoices();

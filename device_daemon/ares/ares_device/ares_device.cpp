@@ -2,10 +2,10 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
-#include "device_daemon/ares/ares_device/actuator_limits.h"
-#include "device_daemon/ares/ares_device/workspace_figures.h"
+#include "device_daemon/ares/kinematics/ares_kinematics.h"
 
 namespace bonemill {
 namespace {
@@ -30,6 +30,27 @@ DeviceCapabilities capabilitiesOf(const AresDeviceConfig& config) {
 }
 
 }  // namespace
+
+LimitedForces limitForces(const Vector6d& base, const Vector6d& wanted, double largest) noexcept {
+    if (!base.allFinite() || !wanted.allFinite()) return {.is_finite = false};
+    LimitedForces limited;
+    limited.base_share = std::min(1.0, largest / std::max(largest, base.cwiseAbs().maxCoeff()));
+    const Vector6d kept = limited.base_share * base;
+    limited.wanted_share = 1;
+    for (int i = 0; i < 6; ++i) {
+        const double room = largest - std::copysign(1.0, wanted[i]) * kept[i];
+        const double need = std::abs(wanted[i]);
+        if (need > room) limited.wanted_share = std::min(limited.wanted_share, std::max(0.0, room / need));
+    }
+    // Rounding may leave a force one bit beyond.
+    limited.forces = (kept + limited.wanted_share * wanted).cwiseMax(-largest).cwiseMin(largest);
+    return limited;
+}
+
+Wrench holdingWrench(const MovingWeight& weight, const Pose& X_DT) noexcept {
+    const Eigen::Vector3d force = -weight.mass * kStandardGravity * weight.down_D;
+    return {force, (X_DT.rotation * weight.centre_T).cross(force)};
+}
 
 AresDevice::AresDevice(JointDevice& joints, const AresDeviceConfig& config) noexcept
     : joints_(joints),

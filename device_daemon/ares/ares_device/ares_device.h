@@ -14,15 +14,41 @@
 // as at the last pose that was believed. A number that is not finite makes no force at all, and kDeviceFault
 // with the code kAresNotFinite in the next reading.
 //
-// It is RT-safe after construction, for the loop's thread. Units are m, rad, s, N, N·m.
+// It is RT-safe after construction, for the loop's thread. Units are kg, m, rad, s, N, N·m.
 #pragma once
 
-#include "device_daemon/ares/ares_device/gravity.h"
+#include "common/geometry/pose.h"
 #include "device_daemon/ares/ares_device/position_guard.h"
 #include "device_daemon/ares/ares_device/soft_wall.h"
 #include "device_daemon/control/haptic_device/haptic_device.h"
 
 namespace bonemill {
+
+// The last stop before the motors: what holds the arm and keeps it inside goes first, and the wrench that the
+// hand is to feel gets what is left of every motor. Forces are on the sliders, N.
+struct LimitedForces {
+    Vector6d forces = Vector6d::Zero();
+    double wanted_share =
+        0;  // of `wanted` in them, 0 to 1: one factor for all six, so that it keeps its direction
+    double base_share = 0;  // of `base`, likewise; below 1 only where the base alone is too much
+    bool is_finite = true;  // if not, all forces are zero
+};
+
+// Returns base + share * wanted with no force beyond `largest`, which must be positive.
+LimitedForces limitForces(const Vector6d& base, const Vector6d& wanted, double largest) noexcept;
+
+// The weight of what moves with the handle, for an arm that no counterweight holds. The moving parts count as
+// one rigid body on the platform; what the sliders and links weigh must be balanced, or lumped into it.
+struct MovingWeight {
+    double mass = 0;                                     // kg; 0 for a counterweighted arm
+    Eigen::Vector3d centre_T = Eigen::Vector3d::Zero();  // of the mass
+    Eigen::Vector3d down_D = -Eigen::Vector3d::UnitZ();  // a unit vector: where things fall to
+};
+
+inline constexpr double kStandardGravity = 9.80665;  // m/s²
+
+// Returns the wrench in D, about T's origin, that holds the weight up: the opposite of what gravity does.
+Wrench holdingWrench(const MovingWeight& weight, const Pose& X_DT) noexcept;
 
 inline constexpr uint32_t kAresNotFinite = 0xA0000001;  // a fault code: a force was not a number
 

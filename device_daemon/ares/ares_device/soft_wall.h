@@ -17,7 +17,7 @@ struct SoftWallConfig {
     double stroke_width = 6e-3;  // m, before each end of the stroke
     double lean_width = 8e-3;    // m of link height, before the lean limit
     double turn_width = 0.14;    // rad, before the largest turn
-    // These are smooth indices (singularity.h). Above the first there is no wall; the specified workspace
+    // These are smooth indices (smoothIndex()). Above the first there is no wall; the specified workspace
     // keeps above 0.59. The poses that are refused begin between the two.
     double singular_face = 0.50, singular_end = 0.36;
     // Six sliders in their walls at once are as stiff as 9 N/mm: three times the bone, and still calm at 1

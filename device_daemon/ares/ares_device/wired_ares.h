@@ -12,7 +12,7 @@
 #include <atomic>
 
 #include "device_daemon/ares/ares_device/ares_device.h"
-#include "device_daemon/ares/driver/udp_joint_device.h"
+#include "device_daemon/ares/driver/udp_device.h"
 #include "device_daemon/ares/wire/packets.h"
 
 namespace bonemill {

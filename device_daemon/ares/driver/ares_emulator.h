@@ -10,15 +10,55 @@
 // at 25 kHz or finer (semi-implicit Euler; damping and Coulomb friction implicit, so that the body truly
 // sticks). Leaving the workspace is stopped dead, like running into a mechanical stop.
 //
-// It is deterministic: the same forces give the same motion bit for bit. It is not thread-safe, and
-// RT-safe after construction.
+// It lives in the caller's time, and is deterministic: the same forces give the same motion bit for bit. It
+// is not thread-safe, and RT-safe after construction.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
+#include "common/geometry/pose.h"
 #include "device_daemon/ares/driver/joint_device.h"
-#include "device_daemon/ares/driver/operator_path.h"
 #include "device_daemon/ares/kinematics/ares_kinematics.h"
 
 namespace bonemill {
+
+// Says where the simulated hand wants the handle, as a function of the scenario's time. Waypoints are in D.
+// Each segment runs along a straight line and one rotation axis with a smoothstep in time (3s² - 2s³), which
+// starts and stops at rest. Before the first and after the last waypoint the hand rests there. Tremor, if
+// wanted, is three sines per axis between 8 and 12 Hz with fixed phases, so that a run can be repeated.
+// Building allocates.
+struct Waypoint {
+    double time = 0;       // s, strictly increasing along the path
+    Pose X_DT;             // wanted handle pose
+    uint32_t buttons = 0;  // held from this waypoint on: bit 0 remove, bit 1 add
+};
+
+struct HandTarget {
+    Pose X_DT;
+    Eigen::Vector3d v_DT = Eigen::Vector3d::Zero();  // m/s
+    Eigen::Vector3d w_DT = Eigen::Vector3d::Zero();  // rad/s, in D
+    uint32_t buttons = 0;
+    int waypoint = -1;  // the one last passed, -1 before the first
+};
+
+class OperatorPath {
+  public:
+    // Without a waypoint the hand rests at D's origin for ever. `tremor` is the largest deflection per axis.
+    explicit OperatorPath(std::vector<Waypoint> waypoints = {}, double tremor = 0);
+
+    HandTarget at(double t) const noexcept;
+    // Returns the time of the last waypoint; 0 without waypoints.
+    double duration() const noexcept { return waypoints_.empty() ? 0 : waypoints_.back().time; }
+
+  private:
+    HandTarget withoutTremor(double t) const noexcept;
+    void addTremor(double t, HandTarget& target) const noexcept;
+
+    std::vector<Waypoint> waypoints_;
+    std::vector<Eigen::Vector3d> turns_;  // rotation vector (D) from waypoint i to i + 1
+    double tremor_;
+};
 
 // The defaults lie in the middle of what such devices have.
 struct AresPlant {
@@ -78,9 +118,6 @@ class AresEmulator final : public JointDevice {
     // Advances under the forces applied last, by kLongestElapsed at most, and returns the quantised joints.
     bool readJoints(double elapsed, JointReading& reading) noexcept override;
     void applyForces(const JointOrder& order) noexcept override { held_forces_ = order.forces; }
-    // It lives in the caller's time.
-    bool hasClock() const noexcept override { return false; }
-    bool waitForSample(int64_t) noexcept override { return false; }
 
     // This bounds the work of one call after a long pause of the loop; for the rest the emulated
     // world stands still.

@@ -35,8 +35,8 @@ class JointDevice {
   public:
     virtual ~JointDevice() = default;
     // Both as in HapticDevice.
-    virtual bool hasClock() const noexcept = 0;
-    virtual bool waitForSample(int64_t deadline_ns) noexcept = 0;
+    virtual bool hasClock() const noexcept { return false; }
+    virtual bool waitForSample(int64_t) noexcept { return false; }
     // Reads the joints now. `elapsed` is the time (s) since the last call by the loop's own clock; an
     // emulated device lives through it under the forces applied last. False says that nothing was heard.
     virtual bool readJoints(double elapsed, JointReading& reading) noexcept = 0;

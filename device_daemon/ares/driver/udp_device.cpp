@@ -1,18 +1,96 @@
 #include "device_daemon/ares/driver/udp_device.h"
 
-#include <utility>
+#include <algorithm>
 
 #include "common/rt/clock.h"
-#include "device_daemon/ares/driver/wire_status.h"
 #include "device_daemon/ares/wire/drive_state.h"
 
 namespace bonemill {
 namespace {
 
+// A motor is as warm as a room at load 0, and at 1 as hot as a touched housing may make its windings.
+constexpr double kColdMotor_dc = 200;  // 0.1 °C
+constexpr double kHotMotor_dc = 800;
+
+double loadOf(const int16_t (&temperature_dc)[6]) noexcept {
+    const double hottest_dc = *std::max_element(temperature_dc, temperature_dc + 6);
+    return std::clamp((hottest_dc - kColdMotor_dc) / (kHotMotor_dc - kColdMotor_dc), 0.0, 1.0);
+}
+
+constexpr uint16_t kVoltageEnabledBit = 1u << 4;
+
+constexpr uint32_t kPassingFaults =
+    wire::kFaultOverTemperature | wire::kFaultOverSpeed | wire::kFaultWatchdog | wire::kFaultLatePackets;
+
+// The first one that is there counts, and the gravest comes first: what is broken, and what no user has given
+// a name, before what passes.
+constexpr std::pair<uint32_t, StopCause> kCauses[] = {
+    {wire::kFaultEmergencyStop, StopCause::kEmergencyStop},
+    {~kPassingFaults, StopCause::kDeviceFault},
+    {wire::kFaultOverTemperature, StopCause::kOverTemperature},
+    {wire::kFaultOverSpeed, StopCause::kSpeed},
+    {wire::kFaultWatchdog, StopCause::kDeviceLost},
+    {wire::kFaultLatePackets, StopCause::kLatePackets},
+};
+
 // An order to reset is said so often, because packets get lost. The controller acts on the first that comes.
 constexpr int kResetRepeats = 10;
 
+// `is_trusted`: the link has proved itself; before that nothing is powered.
+uint32_t deviceStatusOf(uint32_t inputs, uint16_t statusword, bool is_trusted) noexcept {
+    const bool has_voltage = (statusword & kVoltageEnabledBit) && !(inputs & wire::kInputBrake);
+    const bool is_driving = wire::driveStateOf(statusword) == wire::DriveState::kOperationEnabled;
+    uint32_t status = 0;
+    if (is_trusted && has_voltage) status |= kStatusPowered;
+    if (is_trusted && is_driving) status |= kStatusDriving;
+    if (inputs & wire::kInputHomed) status |= kStatusCalibrated;
+    if (inputs & wire::kInputHoming) status |= kStatusHoming;
+    if (inputs & wire::kInputEnabled) status |= kStatusEnabled;
+    if (!(inputs & wire::kInputChainClosed)) status |= kStatusEmergencyStop;
+    if (inputs & wire::kInputReset) status |= kStatusResetPressed;
+    if (inputs & wire::kInputLeaving) status |= kStatusLeaving;
+    return status;
+}
+
+StopCause stopCauseOf(uint32_t faults) noexcept {
+    for (const auto& [bits, cause] : kCauses) {
+        if (faults & bits) return cause;
+    }
+    return StopCause::kNone;
+}
+
 }  // namespace
+
+bool UdpJointDevice::readJoints(double, JointReading& reading) noexcept {
+    const wire::JointState* state = device_.read();
+    if (!state) return false;
+    reading.q = Eigen::Map<const Vector6d>(state->q);
+    reading.q_dot = Eigen::Map<const Eigen::Matrix<float, 6, 1>>(state->qd).cast<double>();
+    reading.forces = Eigen::Map<const Eigen::Matrix<float, 6, 1>>(state->force).cast<double>();
+    reading.buttons = buttonsOf(state->inputs);
+    reading.status = device_.status();
+    reading.fault = device_.fault();
+    reading.fault_code = state->first_fault;
+    reading.load = loadOf(state->temperature_dc);
+    reading.taken_ns = int64_t(state->controller_ns);
+    return true;
+}
+
+void UdpJointDevice::applyForces(const JointOrder& order) noexcept {
+    wire::JointCommand command{};
+    if (order.is_wanted) {
+        Eigen::Map<Eigen::Matrix<float, 6, 1>>(command.force) = order.forces.cast<float>();
+    }
+    device_.write(command, {order.is_wanted, order.is_engaged, order.reset});
+}
+
+const wire::Describe* UdpJointDevice::description() const noexcept {
+    return descriptionCount() > 0 ? &device_.session().description() : nullptr;
+}
+
+uint32_t buttonsOf(uint32_t inputs) noexcept {
+    return (inputs >> wire::kFirstButtonInput) & (kButtonRemove | kButtonAdd);
+}
 
 template <class Packets>
 auto UdpDevice<Packets>::read() noexcept -> const State* {

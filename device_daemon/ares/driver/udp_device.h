@@ -1,5 +1,5 @@
-// This is what every device behind the UDP wire has in common: the link, the way to "operation enabled" and
-// back, homing, and the reset of faults.
+// This is what every device behind the UDP wire has in common, and the one with joints: the link, the way to
+// "operation enabled" and back, homing, and the reset of faults.
 //
 // Making one throws UserError. Everything else is RT-safe but for the socket's system calls; one thread uses
 // it.
@@ -8,10 +8,16 @@
 #include <cstdint>
 #include <utility>
 
-#include "device_daemon/ares/wire/host_link.h"
+#include "common/device_messages/device_messages.h"
+#include "device_daemon/ares/driver/joint_device.h"
+#include "device_daemon/ares/wire/host_session.h"
+#include "device_daemon/ares/wire/packets.h"
 #include "device_daemon/control/haptic_device/haptic_device.h"
 
 namespace bonemill {
+
+// Returns the Button bits of the inputs.
+uint32_t buttonsOf(uint32_t inputs) noexcept;
 
 struct UdpDeviceConfig {
     wire::Endpoint controller;
@@ -64,5 +70,26 @@ class UdpDevice {
 
 extern template class UdpDevice<wire::JointPackets>;
 extern template class UdpDevice<wire::PosePackets>;
+
+// This is a motion controller with the six axes of ARES behind the UDP wire (docs/lab/ares_link.md).
+class UdpJointDevice final : public JointDevice {
+  public:
+    explicit UdpJointDevice(UdpDeviceConfig config) : device_(std::move(config)) {}
+
+    bool hasClock() const noexcept override { return true; }
+    bool waitForSample(int64_t deadline_ns) noexcept override { return device_.waitForSample(deadline_ns); }
+    bool readJoints(double elapsed, JointReading& reading) noexcept override;
+    void applyForces(const JointOrder& order) noexcept override;
+
+    // What the controller said of itself last; null before it has. The count changes with each description.
+    const wire::Describe* description() const noexcept;
+    uint32_t descriptionCount() const noexcept { return device_.session().descriptionCount(); }
+
+    const wire::HostSession<wire::JointPackets>& session() const noexcept { return device_.session(); }
+    wire::Endpoint local() const noexcept { return device_.local(); }
+
+  private:
+    UdpDevice<wire::JointPackets> device_;
+};
 
 }  // namespace bonemill

@@ -3,10 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
-#include "device_daemon/ares/driver/wire_status.h"
+#include "common/base/units.h"
+#include "common/rt/clock.h"
+#include "device_daemon/ares/driver/jump_check.h"
+#include "device_daemon/ares/driver/udp_device.h"
 
 namespace bonemill {
 namespace {
+
+constexpr JumpCheck kMaxWay(PoseGuard::kLargestSpeed, PoseGuard::kSlack);
+constexpr JumpCheck kLargestTurn(PoseGuard::kLargestSpin, PoseGuard::kAngularSlack);
+
+bool isPose(const Pose& X_DT) noexcept {
+    return X_DT.position.norm() <= kMaxDeviceReach &&
+           std::abs(X_DT.rotation.norm() - 1) <= kQuaternionNormTolerance;
+}
+
+constexpr double kCutOff_hz = 50;
+constexpr int64_t kLongestPauseNs = 100 * kNsPerMillisecond;
 
 Eigen::Vector3d vectorOf(const float* xyz) noexcept {
     return Eigen::Map<const Eigen::Vector3f>(xyz).cast<double>();
@@ -17,7 +31,67 @@ Pose poseOf(const wire::PoseState& state) noexcept {
     return {Eigen::Map<const Eigen::Vector3d>(state.p_DT), Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
 }
 
+DeviceCapabilities capabilitiesOf(const wire::Describe& d) noexcept {
+    DeviceCapabilities capabilities{};
+    static_assert(sizeof(capabilities.name) == sizeof(d.name));
+    std::copy(std::begin(d.name), std::end(d.name), capabilities.name);
+    capabilities.kind = d.kind;
+    capabilities.abilities = d.abilities;
+    capabilities.max_force = d.max_force;
+    capabilities.max_torque = d.max_torque;
+    capabilities.max_stiffness = d.max_stiffness;
+    capabilities.max_rotation_stiffness = d.max_rotation_stiffness;
+    capabilities.workspace_radius = d.workspace_radius;
+    return capabilities;
+}
+
 }  // namespace
+
+bool PoseGuard::take(const Pose& X_DT, int64_t stamp_ns, bool is_calibrated) noexcept {
+    if (!is_calibrated) {
+        reset();
+        return isPose(X_DT);
+    }
+    if (is_distrusted_) return false;
+    if (!isPose(X_DT)) {
+        cause_ = StopCause::kImplausiblePose;
+        return false;
+    }
+    is_distrusted_ = has_last_ && hasJumped(X_DT, stamp_ns);
+    cause_ = is_distrusted_ ? StopCause::kPoseJump : StopCause::kNone;
+    has_last_ = true;
+    X_DT_ = X_DT;
+    stamp_ns_ = stamp_ns;
+    return !is_distrusted_;
+}
+
+void PoseGuard::reset() noexcept {
+    has_last_ = is_distrusted_ = false;
+    cause_ = StopCause::kNone;
+}
+
+bool PoseGuard::hasJumped(const Pose& X_DT, int64_t stamp_ns) const noexcept {
+    const double elapsed = secondsOfNs(nsBetween(stamp_ns_, stamp_ns));
+    return kMaxWay.isJump((X_DT.position - X_DT_.position).norm(), elapsed) ||
+           kLargestTurn.isJump(X_DT.rotation.angularDistance(X_DT_.rotation), elapsed);
+}
+
+void PoseDifferentiator::take(const Pose& X_DT, int64_t stamp_ns) noexcept {
+    const int64_t passed_ns = nsBetween(stamp_ns_, stamp_ns);
+    if (has_pose_ && passed_ns == 0) return;
+    if (!has_pose_ || passed_ns < 0 || passed_ns > kLongestPauseNs) {
+        v_DT_.setZero();
+        w_DT_.setZero();
+    } else {
+        const double dt = secondsOfNs(passed_ns);
+        const double share = -std::expm1(-kTurn * kCutOff_hz * dt);
+        v_DT_ += share * ((X_DT.position - X_DT_.position) / dt - v_DT_);
+        w_DT_ += share * (logRotation(X_DT.rotation * X_DT_.rotation.conjugate()) / dt - w_DT_);
+    }
+    has_pose_ = true;
+    X_DT_ = X_DT;
+    stamp_ns_ = stamp_ns;
+}
 
 DeviceCapabilities UdpPoseDevice::capabilities() const noexcept {
     DeviceCapabilities device = capabilitiesOf(device_.session().description());

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
+#include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/log/log.h"
 #include "common/rt/clock.h"
 #include "common/rt/periodic_timer.h"
-#include "common/rt/realtime_thread.h"
+#include "common/rt/realtime.h"
 #include "common/rt/rt_guard.h"
 
 namespace bonemill {
@@ -41,6 +43,24 @@ EmulatedControllerConfig controllerConfigOf(const EmulatorOptions& options, doub
 }
 
 }  // namespace
+
+std::string jsonLineOf(const EmulatorStatistics& s) {
+    return nlohmann::ordered_json{{"ticks", s.ticks},
+                                  {"missed_periods", s.missed_periods},
+                                  {"wall_s", s.wall_time},
+                                  {"scenario_s", s.scenario_time},
+                                  {"max_tracking_mm", kPerMillimetre * s.max_tracking_error},
+                                  {"stop_ticks", s.stop_ticks},
+                                  {"packets_sent", s.packets_sent},
+                                  {"packets_received", s.commands.accepted},
+                                  {"packets_rejected", s.commands.rejected},
+                                  {"packets_old", s.commands.old},
+                                  {"packets_lost", s.commands.lost},
+                                  {"packets_late", s.commands.late},
+                                  {"watchdog_trips", s.watchdog_trips},
+                                  {"final_phase", s.final_phase}}
+        .dump();
+}
 
 Emulator::Emulator(const Scenario& scenario, const EmulatorOptions& options, const StopSignals& stop_signals)
     : scenario_(scenario),

@@ -3,17 +3,55 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "common/process/hand_order.h"
 #include "common/rt/stop_signals.h"
 #include "device_daemon/ares/emulator/emulated_controller.h"
-#include "device_daemon/ares/emulator/emulator_options.h"
-#include "device_daemon/ares/emulator/emulator_statistics.h"
-#include "device_daemon/ares/emulator/faulty_wire.h"
+#include "device_daemon/ares/emulator/fault_spec.h"
 #include "device_daemon/ares/emulator/scenario.h"
+#include "device_daemon/ares/wire/packet_flow.h"
 #include "device_daemon/ares/wire/udp_socket.h"
 
 namespace bonemill {
+
+// The command line of ares_emulator.
+struct EmulatorOptions {
+    std::string scene;
+    std::string address = "127.0.0.1";
+    uint16_t port = 0;              // 0: any free one
+    uint16_t host_port = 0;         // of this PC, the only one that is listened to; 0: any host
+    std::optional<double> rate_hz;  // not given: the scene's
+    std::optional<double> seconds;  // of the scenario; not given: until the last waypoint
+    bool hold = false;
+    double watchdog_ms = 5;
+    bool is_unhomed = false;
+    std::vector<FaultSpec> faults;
+    uint32_t seed = 1;
+    bool is_strict_realtime = false;
+    int core = -1;  // any
+    std::string log_level = "info";
+    std::optional<int> parent;  // process to end with
+};
+
+// What the emulator counted.
+struct EmulatorStatistics {
+    uint64_t ticks = 0;
+    uint64_t missed_periods = 0;
+    double wall_time = 0;           // s
+    double scenario_time = 0;       // s
+    double max_tracking_error = 0;  // m, hand against its own wish
+    uint64_t stop_ticks = 0;        // handle at the end of its workspace
+    uint64_t packets_sent = 0;
+    wire::FlowStatistics commands;
+    uint64_t watchdog_trips = 0;
+    std::string final_phase;
+};
+
+// Returns one JSON object on one line, with the units in the names.
+std::string jsonLineOf(const EmulatorStatistics& statistics);
 
 class Emulator {
   public:

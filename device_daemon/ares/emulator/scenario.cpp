@@ -8,7 +8,7 @@
 #include "common/config/scene_geometry.h"
 #include "common/device_messages/device_messages.h"
 #include "common/geometry/hand_space.h"
-#include "device_daemon/ares/ares_device/scene_ares.h"
+#include "device_daemon/ares/ares_device/ares_settings.h"
 
 namespace bonemill {
 namespace {

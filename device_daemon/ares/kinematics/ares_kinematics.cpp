@@ -1,13 +1,44 @@
 #include "device_daemon/ares/kinematics/ares_kinematics.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "device_daemon/ares/kinematics/singularity.h"
-
 namespace bonemill {
 namespace {
+
+constexpr int kDirections = 64, kAxes = 48;
+constexpr int kHalvings = 9;  // to 1 / 512 of what is searched
+
+// Spreads directions evenly over the sphere, along a spiral with the golden angle.
+Eigen::Vector3d direction(int i, int count) {
+    const double z = 1 - (2.0 * i + 1) / count;
+    const double angle = i * std::numbers::pi * (3 - std::sqrt(5.0));
+    const double radius = std::sqrt(1 - z * z);
+    return {radius * std::cos(angle), radius * std::sin(angle), z};
+}
+
+bool isUsable(const AresKinematics& kinematics, const Pose& X_DT) {
+    Matrix6d J_inv;
+    return kinematics.workspaceFaults(X_DT) == kWorkspaceOk && kinematics.inverseJacobian(X_DT, J_inv) &&
+           kinematics.isOwnAssembly(J_inv) && singularityIndex(J_inv) >= kMinSingularityIndex;
+}
+
+bool isUsableTurned(const AresKinematics& kinematics, const Eigen::Vector3d& p_DT, double turn) {
+    if (!isUsable(kinematics, {p_DT, Eigen::Quaterniond::Identity()})) return false;
+    for (int i = 0; turn > 0 && i < kAxes; ++i) {
+        if (!isUsable(kinematics, {p_DT, expRotation(turn * direction(i, kAxes))})) return false;
+    }
+    return true;
+}
+
+Matrix6d conditioned(const Matrix6d& J_inv) {
+    Matrix6d A = J_inv;
+    A.rightCols<3>() /= kConditioningLength;
+    return A;
+}
 
 // A Newton step is cut to these, so that a far start cannot overshoot into a mirrored pose. Wider than any
 // error inside the specified workspace: a start at the neutral pose keeps its quadratic convergence.
@@ -152,14 +183,65 @@ bool AresKinematics::inverseJacobianGradient(const Pose& X_DT,
 }
 
 Vector6d actuatorForces(const Matrix6d& J_inv, const Wrench& wrench) noexcept {
-    Vector6d w;
-    w << wrench.force, wrench.torque;
-    return J_inv.transpose().partialPivLu().solve(w);
+    return J_inv.transpose().partialPivLu().solve(stacked(wrench));
 }
 
 Wrench wrenchOf(const Matrix6d& J_inv, const Vector6d& actuator_forces) noexcept {
     const Vector6d w = J_inv.transpose() * actuator_forces;
     return {w.head<3>(), w.tail<3>()};
+}
+
+Location locate(const AresKinematics& kinematics, const Vector6d& q, const Pose& X_DT_start) noexcept {
+    Location location;
+    const ForwardSolution solution = kinematics.forward(q, X_DT_start);
+    location.X_DT = solution.X_DT;
+    location.is_found = solution.converged && kinematics.inverseJacobian(solution.X_DT, location.J_inv);
+    if (!location.is_found) return location;
+    location.singularity_index = singularityIndex(location.J_inv);
+    location.faults = kinematics.workspaceFaults(location.X_DT, kWorkspaceSlack);
+    if (!(location.singularity_index >= kMinSingularityIndex)) location.faults |= kWorkspaceSingular;
+    if (!kinematics.isOwnAssembly(location.J_inv)) location.faults |= kWorkspaceMirrored;
+    return location;
+}
+
+double singularityIndex(const Matrix6d& J_inv) noexcept {
+    const Matrix6d A = conditioned(J_inv);
+    // The singular values are roots of the Gram matrix' eigenvalues.
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(A.transpose() * A, Eigen::EigenvaluesOnly);
+    const double smallest = std::max(0.0, solver.eigenvalues()[0]);
+    const double index = std::sqrt(smallest / solver.eigenvalues()[5]);
+    return std::isfinite(index) ? index : 0.0;
+}
+
+double smoothIndex(const Matrix6d& J_inv) noexcept {
+    const Matrix6d A = conditioned(J_inv);
+    const double index = 6 / (A.norm() * A.inverse().norm());
+    return std::isfinite(index) ? index : 0.0;
+}
+
+double smoothIndexChange(const Matrix6d& J_inv, const Matrix6d& J_inv_change) noexcept {
+    const Matrix6d A = conditioned(J_inv);
+    const Matrix6d dA = conditioned(J_inv_change);
+    const Matrix6d A_inv = A.inverse();
+    const Matrix6d dA_inv = -A_inv * dA * A_inv;
+    const double index = 6 / (A.norm() * A_inv.norm());
+    return -index * (A.cwiseProduct(dA).sum() / A.squaredNorm() +
+                     A_inv.cwiseProduct(dA_inv).sum() / A_inv.squaredNorm());
+}
+
+double reachRadius(const AresKinematics& kinematics, double turn) noexcept {
+    double radius = kinematics.geometry().stroke / 2;
+    for (int i = 0; i < kDirections; ++i) {
+        const Eigen::Vector3d way = direction(i, kDirections);
+        if (isUsableTurned(kinematics, radius * way, turn)) continue;
+        double inside = 0, outside = radius;
+        for (int k = 0; k < kHalvings; ++k) {
+            const double middle = (inside + outside) / 2;
+            (isUsableTurned(kinematics, middle * way, turn) ? inside : outside) = middle;
+        }
+        radius = inside;
+    }
+    return radius;
 }
 
 }  // namespace bonemill

@@ -18,6 +18,26 @@
 
 namespace bonemill {
 
+// There are two measures of how well the legs hold the platform: 1 alike in every direction, 0 not at all in
+// one. Both are of A = J_inv diag(I, I / kConditioningLength), which makes a turn and a shift comparable.
+inline constexpr double kConditioningLength = 0.030;  // m
+
+// A pose below this index is refused: rounding, encoder steps and forces grow too much there, and a little
+// further on another assembly of the same legs begins. The specified workspace keeps above 0.22.
+inline constexpr double kMinSingularityIndex = 0.1;
+// A pose below this is so near the singularity that the platform may have gone through it.
+inline constexpr double kLostSingularityIndex = 0.02;
+
+// Returns sigma_min / sigma_max of A, exact above 1e-7; 0 is singular.
+double singularityIndex(const Matrix6d& J_inv) noexcept;
+
+// Returns 6 / (|A| |A^-1|) in the Frobenius norm: the same at 0 and 1, between the index and six times the
+// index elsewhere, and smooth, which the index is not where singular values meet. 0 if J_inv is singular.
+double smoothIndex(const Matrix6d& J_inv) noexcept;
+
+// Returns the change of smoothIndex() when J_inv changes by J_inv_change, per unit of it.
+double smoothIndexChange(const Matrix6d& J_inv, const Matrix6d& J_inv_change) noexcept;
+
 inline constexpr int kLegCount = 6;
 
 // The dimensions are placeholders, since none of ARES is published: vertical axes, leg pairs about 0, 120
@@ -39,7 +59,7 @@ enum WorkspaceFault : uint32_t {
     kWorkspaceStroke = 1u << 1,       // a slider would leave its stroke
     kWorkspaceLean = 1u << 2,         // a link leans too far from its actuator (towards a serial singularity)
     kWorkspaceTurn = 1u << 3,         // the platform is turned too far for its joints
-    kWorkspaceSingular = 1u << 4,     // the legs hardly hold the platform: see singularity.h
+    kWorkspaceSingular = 1u << 4,     // the legs hardly hold the platform: kMinSingularityIndex
     kWorkspaceMirrored = 1u << 5,     // only another assembly of the same legs reaches this pose
 };
 
@@ -73,7 +93,7 @@ class AresKinematics {
 
     // Finds a handle pose for slider positions by Newton's method from `X_DT_start`, with at most
     // kMaxForwardIterations steps. If it does not converge, q is impossible or that too far away. If it does,
-    // the pose may still be that of another assembly: locate() in pose_search.h tells.
+    // the pose may still be that of another assembly: locate() tells.
     ForwardSolution forward(const Vector6d& q, const Pose& X_DT_start) const noexcept;
 
     // Finds how J_inv changes with each component of the twist [v; omega] at a pose: gradient[k] is dJ_inv
@@ -116,5 +136,36 @@ Vector6d actuatorForces(const Matrix6d& J_inv, const Wrench& wrench) noexcept;
 
 // Returns the wrench on the hand that actuator forces make: w = J_inv^T tau.
 Wrench wrenchOf(const Matrix6d& J_inv, const Vector6d& actuator_forces) noexcept;
+
+// Six slider positions fit several poses: a six-legged platform has up to 40 assemblies. Only one of them
+// lies in the workspace that may be believed: turned by no more than kMaxTurn, assembled as the neutral pose,
+// better conditioned than kMinSingularityIndex, and within stroke and lean. That there is no second one is
+// measured, not proved: tests/property/device_daemon/ares/kinematics.
+//
+// Encoders, and a stop that gives way, may show so much beyond stroke and lean (m).
+inline constexpr double kWorkspaceSlack = 1e-3;
+
+struct Location {
+    bool is_found = false;  // X_DT has these slider positions, whether or not it may be believed
+    uint32_t faults = kWorkspaceUnreachable;  // WorkspaceFault bits; without any it may be believed
+    Pose X_DT;
+    Matrix6d J_inv = Matrix6d::Zero();  // there
+    double singularity_index = 0;       // there
+
+    bool isBelieved() const noexcept { return is_found && faults == kWorkspaceOk; }
+};
+
+// Finds the handle pose that six slider positions mean, or says that it does not know, from X_DT_start: the
+// pose of a moment ago, or the neutral one. Whoever follows a moving handle must always start from its last
+// pose, also where that was not believed: a search from elsewhere could find a pose that looks well while the
+// handle is in an assembly that does not.
+Location locate(const AresKinematics& kinematics, const Vector6d& q, const Pose& X_DT_start) noexcept;
+
+inline constexpr double kSpecifiedTurn = 0.6981317007977318;  // rad: 40 degrees, what ARES was asked for
+
+// Returns the radius of the largest ball around D's origin in which the handle may be turned by `turn` about
+// any axis without leaving the workspace or coming near a singularity: for people, and for the server that
+// adapts to it. It is sampled in fixed directions, and takes milliseconds: for start-up.
+double reachRadius(const AresKinematics& kinematics, double turn) noexcept;
 
 }  // namespace bonemill

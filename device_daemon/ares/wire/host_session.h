@@ -9,10 +9,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "common/base/units.h"
-#include "device_daemon/ares/wire/codec.h"
 #include "device_daemon/ares/wire/packet_flow.h"
+#include "device_daemon/ares/wire/packets.h"
 #include "device_daemon/ares/wire/udp_socket.h"
 
 namespace bonemill::wire {
@@ -64,7 +65,6 @@ class HostSession {
 
     const Endpoint& controller() const noexcept { return config_.controller; }
     const FlowStatistics& statistics() const noexcept { return flow_.statistics(); }
-    uint64_t lossCount() const noexcept { return loss_count_; }
 
   private:
     bool takeState(std::span<const std::byte> bytes, int64_t now_ns) noexcept;
@@ -83,7 +83,6 @@ class HostSession {
     bool has_state_ = false;
     const char* refused_figure_ = nullptr;  // a literal
     uint32_t description_count_ = 0;
-    uint64_t loss_count_ = 0;
     Describe description_{};
     State state_{};
     PacketFlow flow_;
@@ -91,5 +90,44 @@ class HostSession {
 
 extern template class HostSession<JointPackets>;
 extern template class HostSession<PosePackets>;
+
+// Returns a seed for session numbers that cannot be guessed.
+uint64_t randomSeed();
+
+// This is a HostSession on its socket. Only its controller gets a packet into that, so that a flood of
+// others keeps no state out. Making one throws UserError. Afterwards everything is RT-safe but for the
+// socket's system calls.
+template <class Packets>
+class HostLink {
+  public:
+    using State = typename Packets::State;
+    using Command = typename Packets::Command;
+
+    // `local` is the address and port that the host sends from.
+    HostLink(const HostSessionConfig& config, const Endpoint& local) : HostLink(config, UdpSocket(local)) {}
+    // The same with a socket that is there already.
+    HostLink(const HostSessionConfig& config, UdpSocket socket)
+        : socket_(std::move(socket)), session_(config) {
+        socket_.admitOnly(config.controller);
+    }
+
+    // Sleeps until a new state has come, or until the deadline; asks for the description meanwhile. True says
+    // that a state has come.
+    bool waitForState(int64_t deadline_ns) noexcept;
+    // Takes what has come, without waiting, and asks if that is due. True says that a state was among it.
+    bool poll(int64_t now_ns) noexcept;
+    // Sends a command; all but its header, reflected sequence and time is the caller's.
+    bool send(Command& command, int64_t now_ns) noexcept;
+
+    const HostSession<Packets>& session() const noexcept { return session_; }
+    Endpoint local() const noexcept { return socket_.local(); }
+
+  private:
+    UdpSocket socket_;
+    HostSession<Packets> session_;
+};
+
+extern template class HostLink<JointPackets>;
+extern template class HostLink<PosePackets>;
 
 }  // namespace bonemill::wire

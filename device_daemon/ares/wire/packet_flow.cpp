@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "device_daemon/ares/wire/codec.h"
+#include "device_daemon/ares/wire/packets.h"
 
 namespace bonemill::wire {
 

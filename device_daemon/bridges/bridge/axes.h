@@ -6,6 +6,7 @@
 // Everything is RT-safe, and any thread may call it.
 #pragma once
 
+#include <Eigen/SVD>
 #include <optional>
 
 #include "common/geometry/pose.h"
@@ -20,5 +21,26 @@ Pose poseInD(const Eigen::Matrix3d& R_DV, const Eigen::Vector3d& p_V, const Eige
 
 // Expresses a wrench of D in the vendor's axes.
 Wrench wrenchInV(const Eigen::Matrix3d& R_DV, const Wrench& wrench_D) noexcept;
+
+std::optional<Eigen::Quaterniond> repairedRotation(const Eigen::Matrix3d& matrix) noexcept {
+    constexpr double kMaxStretch = 0.1;  // a rotation stretches nothing; vendors' are wrong by less than 1e-3
+    if (!matrix.allFinite()) return std::nullopt;
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    if (svd.info() != Eigen::Success) return std::nullopt;
+    const Eigen::Array3d stretches = svd.singularValues();
+    if ((stretches - 1).abs().maxCoeff() > kMaxStretch || matrix.determinant() <= 0) return std::nullopt;
+    const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
+    return Eigen::Quaterniond(rotation).normalized();
+}
+
+Pose poseInD(const Eigen::Matrix3d& R_DV, const Eigen::Vector3d& p_V,
+             const Eigen::Quaterniond& R_V) noexcept {
+    const Eigen::Quaterniond turn(R_DV);
+    return {R_DV * p_V, (turn * R_V * turn.conjugate()).normalized()};
+}
+
+Wrench wrenchInV(const Eigen::Matrix3d& R_DV, const Wrench& wrench_D) noexcept {
+    return {R_DV.transpose() * wrench_D.force, R_DV.transpose() * wrench_D.torque};
+}
 
 }  // namespace bonemill::bridge

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "common/base/units.h"
-#include "device_daemon/ares/wire/controller_link.h"
+#include "device_daemon/ares/wire/controller_session.h"
 #include "device_daemon/bridges/bridge/arm.h"
 #include "device_daemon/bridges/bridge/force_gate.h"
 

@@ -2,21 +2,116 @@
 
 #include <locale.h>
 #include <poll.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <filesystem>
 #include <iostream>
+#include <string_view>
+#include <thread>
 
+#include "common/base/units.h"
 #include "common/base/user_error.h"
-#include "common/process/end_with_parent.h"
+#include "common/cli/command_line.h"
+#include "common/process/run_program.h"
 #include "common/rt/clock.h"
+#include "common/rt/stop_signals.h"
 #include "device_daemon/bridges/bridge/bridge_link.h"
 #include "device_daemon/bridges/bridge/self_test.h"
-#include "device_daemon/bridges/bridge/way_out.h"
 
 namespace bonemill::bridge {
 namespace {
+
+void addOptions(CLI::App& app, BridgeOptions& options) {
+    app.add_option("--port", options.port, "UDP port that device_daemon speaks to; 0 takes any free one")
+        ->capture_default_str();
+    app.add_option("--address", options.address, "Address of this PC to listen on")->capture_default_str();
+    app.add_option("--host-port", options.host_port,
+                   "Listen to nobody but this port of this PC (0: to any host)");
+    app.add_option("--library", options.library, "The vendor's library, if it is not where it is searched");
+    app.add_option("--device", options.device, "Number or name of the arm; default: the first");
+    app.add_option("--max-force-n", options.max_force, "Give no more than this; default: what the arm can")
+        ->check(within(1e-3, 1e3));
+    app.add_flag("--probe", options.probe,
+                 "Load the library, open the arm, say what there is and leave; gives no force");
+    CLI::Option* self_test = app.add_flag("--self-test", options.self_test,
+                                          "Measure rate and jitter of the arm, without device_daemon");
+    app.add_flag("--ramp", options.ramp, "With --self-test: push up with 0.5 N and back, after you typed yes")
+        ->needs(self_test);
+    app.add_option("--seconds", options.seconds, "How long the self-test lasts")
+        ->check(within(0.1, 3600))
+        ->needs(self_test)
+        ->capture_default_str();
+    addRealtimeOptions(app, "the arm's loop", options.is_strict_realtime, options.core);
+    addParentOption(app, options.parent);
+}
+
+// Returns nothing after --help, which is already printed. Throws UserError.
+std::optional<BridgeOptions> parseOptions(int argc, char** argv, const BridgeProgram& program) {
+    BridgeOptions options;
+    CLI::App app{program.about};
+    addOptions(app, options);
+    if (program.add_options) program.add_options(app);
+    if (!parseCommandLine(app, argc, argv, std::filesystem::path(argv[0]).filename())) return std::nullopt;
+    return options;
+}
+
+// The process ends with it when time was up: the kernel closes what the library has open, and the arm's own
+// watchdog takes the force away.
+constexpr int kStuckExitCode = 3;
+constexpr int64_t kTimeToLeaveNs = 2 * kNsPerSecond;
+constexpr int64_t kLookEveryNs = 20 * kNsPerMillisecond;
+
+[[noreturn]] void leaveLibraryBehind() noexcept {
+    constexpr std::string_view kText = "error: the vendor's library does not return; leaving without it\n";
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kText.data(), kText.size());
+    _exit(kStuckExitCode);
+}
+
+// Watches over the end of a bridge: it takes the signals that ask for it, and ends the process when a
+// vendor's library does not let go in time.
+//
+// It has a thread of its own, so that it works while a vendor's call never returns. Make it before any other
+// thread and before a library is loaded: all threads inherit that the signals are its own.
+class WayOut {
+  public:
+    WayOut() {
+        signal(SIGPIPE, SIG_IGN);  // that no process reads what is printed is no reason to leave force behind
+        thread_ = std::thread([this] { watch(); });
+    }
+    ~WayOut() {
+        is_over_ = true;
+        thread_.join();
+    }
+
+    // SIGINT, SIGTERM or SIGHUP has come; the process has kTimeToLeaveNs left from then on.
+    bool isRequested() const noexcept { return is_requested_; }
+    // The process is about to end for another reason, and has as much time.
+    void begin() noexcept {
+        int64_t none = 0;
+        deadline_ns_.compare_exchange_strong(none, monotonicNowNs() + kTimeToLeaveNs);
+    }
+
+  private:
+    void watch() noexcept {
+        while (!is_over_) {
+            if (stop_signals_.await(kLookEveryNs)) {
+                is_requested_ = true;
+                begin();
+            }
+            if (deadline_ns_ != 0 && monotonicNowNs() > deadline_ns_) leaveLibraryBehind();
+        }
+    }
+
+    StopSignals stop_signals_;
+    std::atomic<bool> is_requested_{false};
+    std::atomic<int64_t> deadline_ns_{0};  // 0: none
+    std::atomic<bool> is_over_{false};
+    std::thread thread_;
+};
 
 constexpr int64_t kHangNs = 2 * kNsPerSecond;
 constexpr int64_t kFarewellNs = 200 * kNsPerMillisecond;
@@ -160,7 +255,7 @@ void BridgeRun::stop() {
 }
 
 int runProgram(int argc, char** argv, const BridgeProgram& program) {
-    const auto options = parseBridgeOptions(argc, argv, program.about, program.add_options);
+    const auto options = parseOptions(argc, argv, program);
     if (!options) return 0;
     if (options->parent) endWithParent(*options->parent);
     WayOut way_out;

@@ -4,6 +4,7 @@
 // It is RT-safe, for one thread.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "common/geometry/bounded_vector.h"
@@ -26,5 +27,14 @@ class ForceGate {
     Wrench held_;
     double opening_ = 0;  // 0 closed, 1 open
 };
+
+Wrench ForceGate::step(const std::optional<Wrench>& wanted, double elapsed) noexcept {
+    const bool is_allowed = wanted && wanted->isFinite();
+    if (is_allowed) held_ = bounded(*wanted, norms_);
+    const double change = std::max(0.0, elapsed) / kFadeTime;
+    opening_ = std::clamp(opening_ + (is_allowed ? change : -change), 0.0, 1.0);
+    if (isClosed()) held_ = {};
+    return {held_.force * opening_, held_.torque * opening_};
+}
 
 }  // namespace bonemill::bridge

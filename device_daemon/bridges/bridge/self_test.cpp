@@ -2,21 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "common/base/units.h"
 #include "common/rt/clock.h"
+#include "common/text/printed_text.h"
 
 namespace bonemill::bridge {
-namespace {
-
-std::string formatted(const char* format, double a, double b = 0, double c = 0) {
-    char text[160];
-    std::snprintf(text, sizeof(text), format, a, b, c);
-    return text;
-}
-
-}  // namespace
 
 SelfTest::SelfTest(const ArmDescription& arm, double seconds, bool has_ramp)
     : seconds_(has_ramp ? std::max(seconds, kRampTime + ForceGate::kFadeTime) : seconds),
@@ -60,17 +51,17 @@ std::vector<std::string> SelfTest::lines() const {
                     : has_ramp_ && !has_pushed_ ? "failed: the arm was not ready for force"
                     : !has_ended_               ? "failed: ended before its time"
                                                 : "failed: the arm did not answer every time");
-    lines.push_back(formatted("periods: %.0f, without a pose %.0f, with an error %.0f", double(periods_),
-                              double(invalid_), double(failed_)));
-    lines.push_back(formatted("rate: %.1f Hz", rate));
-    lines.push_back(formatted("interval: median %.3f ms, p99 %.3f ms, max %.3f ms",
-                              millisecondsOfNs(double(intervals_.percentileNs(50))),
-                              millisecondsOfNs(double(intervals_.percentileNs(99))),
-                              millisecondsOfNs(double(intervals_.maxNs()))));
+    lines.push_back(printed("periods: %.0f, without a pose %.0f, with an error %.0f", double(periods_),
+                            double(invalid_), double(failed_)));
+    lines.push_back(printed("rate: %.1f Hz", rate));
+    lines.push_back(printed("interval: median %.3f ms, p99 %.3f ms, max %.3f ms",
+                            millisecondsOfNs(double(intervals_.percentileNs(50))),
+                            millisecondsOfNs(double(intervals_.percentileNs(99))),
+                            millisecondsOfNs(double(intervals_.maxNs()))));
     lines.push_back(std::string("calibrated: ") + (was_homed_ ? "yes" : "no"));
     const Eigen::Vector3d range_mm = (highest_ - lowest_) * kPerMillimetre;
-    lines.push_back(formatted("the handle moved over x %.1f, y %.1f, z %.1f mm", range_mm.x(), range_mm.y(),
-                              range_mm.z()));
+    lines.push_back(
+        printed("the handle moved over x %.1f, y %.1f, z %.1f mm", range_mm.x(), range_mm.y(), range_mm.z()));
     return lines;
 }
 

@@ -28,9 +28,7 @@ LibrarySearch searchFor(const std::string& chosen) {
 DrdLibrary::DrdLibrary(const std::string& chosen, const Tell& tell) : library_(searchFor(chosen)) {
     tell("library: " + library_.path());
     findFunctions();
-    if (!library_.missingOptional().empty())
-        tell("the library lacks, and the bridge goes without: " + joined(library_.missingOptional()));
-    library_.checkRequired();
+    library_.checkFunctions(tell);
     checkVersion(tell);
 }
 

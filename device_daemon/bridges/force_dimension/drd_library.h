@@ -1,19 +1,18 @@
 // The functions of Force Dimension's SDK 3 that the bridge calls, found at run time in libdrd.so.3, which
 // holds the dhd functions, too. The declarations are ours; nothing of the SDK is here.
 //
-// A call returns kOk, kTimeguard (nothing new since the last read) or kMotorSaturated, which are all
-// successes, or kError, with the reason in dhdErrorGetLast of the same thread. Arms are named by a char, 0
+// A call returns 0, kDhdTimeguard (nothing new since the last read) or kDhdMotorSaturated, which are all
+// successes, or -1, with the reason in dhdErrorGetLast of the same thread. Arms are named by a char, 0
 // for the first.
 #pragma once
 
 #include <string>
 
 #include "device_daemon/bridges/bridge/arm.h"
-#include "device_daemon/bridges/bridge/shared_library.h"
+#include "device_daemon/bridges/bridge/vendor_device.h"
 
 namespace bonemill::bridge {
 
-inline constexpr int kDhdError = -1;
 inline constexpr int kDhdTimeguard = 1;
 inline constexpr int kDhdMotorSaturated = 2;
 constexpr bool isDhdSuccess(int result) noexcept {
@@ -23,13 +22,7 @@ constexpr bool isDhdSuccess(int result) noexcept {
 // Places in dhdGetStatus' array. SDK versions write 12 to 17 of them.
 inline constexpr int kStatusLength = 32;
 enum DhdStatus { kDhdPower = 0, kDhdConnected = 1, kDhdReset = 3, kDhdForce = 5, kDhdForceOffCause = 14 };
-enum DhdForceOffCause {
-    kOffByButton = 1,
-    kOffByVelocity = 2,
-    kOffByWatchdog = 3,
-    kOffByUsb = 5,
-    kOffByDeadMan = 6
-};
+enum DhdForceOffCause { kOffByButton = 1, kOffByVelocity = 2, kOffByDeadMan = 6 };
 
 class DrdLibrary {
   public:
@@ -37,8 +30,7 @@ class DrdLibrary {
     // looks, and says what it has found. Throws UserError.
     DrdLibrary(const std::string& chosen, const Tell& tell);
 
-    // These are always there.
-    // They have the vendor's names.
+    // These are always there. They have the vendor's names.
     // NOLINTBEGIN(readability-identifier-naming)
     void (*dhdGetSDKVersion)(int*, int*, int*, int*) = nullptr;
     int (*dhdGetDeviceCount)() = nullptr;

@@ -8,13 +8,26 @@
 #include <optional>
 #include <string>
 
-#include "common/rt/realtime_thread.h"
+#include "common/rt/realtime.h"
 #include "device_daemon/bridges/bridge/arm.h"
-#include "device_daemon/bridges/bridge/bridge_options.h"
+#include "device_daemon/bridges/bridge/bridge_main.h"
 #include "device_daemon/bridges/force_dimension/drd_library.h"
-#include "device_daemon/bridges/force_dimension/system_types.h"
 
 namespace bonemill::bridge {
+
+// What is known of Force Dimension's arms by the type that the SDK reports, as published with the open
+// CHAI3D; the SDK itself does not say how strong an arm is.
+struct SystemType {
+    int type;
+    const char* name;
+    double max_force;         // N
+    double max_torque;        // N·m; 0 for arms whose wrist has no motors
+    double max_stiffness;     // N/m
+    double workspace_radius;  // m
+};
+
+// An arm that is not in the table gets the limits of the weakest that is.
+SystemType systemTypeOf(int type) noexcept;
 
 // Takes the SDK's axes to D.
 inline const Eigen::Matrix3d kForceDimensionAxes{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}};

@@ -7,8 +7,8 @@
 #include "common/base/user_error.h"
 #include "common/rt/clock.h"
 #include "common/rt/periodic_timer.h"
-#include "device_daemon/bridges/bridge/arm_loop.h"
 #include "device_daemon/bridges/bridge/axes.h"
+#include "device_daemon/bridges/bridge/bridge_main.h"
 
 namespace bonemill::bridge {
 namespace {

@@ -4,18 +4,28 @@
 // Not verified on hardware (docs/lab/bridges.md).
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <cstdint>
 #include <optional>
 #include <string>
 
-#include "common/rt/realtime_thread.h"
+#include "common/rt/realtime.h"
 #include "common/web_socket/web_socket_client.h"
 #include "device_daemon/bridges/bridge/arm.h"
-#include "device_daemon/bridges/bridge/bridge_options.h"
+#include "device_daemon/bridges/bridge/bridge_main.h"
 #include "device_daemon/bridges/haply/haply_messages.h"
-#include "device_daemon/bridges/haply/haply_options.h"
 
 namespace bonemill::bridge {
+
+// The options of the bridge to Haply alone.
+struct HaplyOptions {
+    std::string host = "127.0.0.1";
+    uint16_t port = 10001;
+    std::string version = "3.5";
+    // In the service's axes; it is where the vendor's documentation shows an arm at rest.
+    std::array<double, 3> origin_mm{0, -120, 150};
+};
 
 // Takes the service's axes to D.
 inline const Eigen::Matrix3d kHaplyAxes{{-1, 0, 0}, {0, -1, 0}, {0, 0, 1}};

@@ -1,4 +1,5 @@
-// Keeps the last two seconds of samples and commands, so that a stop can be understood afterwards.
+// Keeps the last two seconds of samples and commands, so that a stop can be understood afterwards, and says
+// where they are written.
 //
 // The loop's thread records; kAfterNs after a stop, or at the loop's end, the box holds still until another
 // thread has written it to a file. record() and finish() are RT-safe; the constructor and write() are not.
@@ -12,6 +13,7 @@
 
 #include "common/base/units.h"
 #include "common/device_messages/device_messages.h"
+#include "common/device_messages/device_state.h"
 
 namespace bonemill {
 
@@ -60,5 +62,16 @@ class BlackBox {
     StopCause stop_cause_ = StopCause::kNone;  // of the stop under way
     std::atomic<bool> is_full_ = false;
 };
+
+// Returns $XDG_STATE_HOME/bonemill, or ~/.local/state/bonemill.
+std::filesystem::path defaultStopDir();
+
+// A device that stops again and again fills no disk: the newest N files stay in the folder.
+inline constexpr size_t kMaxStopFiles = 100;
+
+// Returns a new name in the folder, which is made if need be: stop_SESSION_TIME_CAUSE.csv. Makes room for it
+// by removing the oldest files of such names. Never throws: a folder that cannot be made shows when the file
+// is written.
+std::filesystem::path stopFile(const std::filesystem::path& dir, uint32_t session, StopCause cause);
 
 }  // namespace bonemill

@@ -61,10 +61,10 @@ class HapticDevice {
 
     // Tells whether the device gives the pace: waitForSample() wakes with each of its samples. Otherwise the
     // loop has its own timer, and does not call waitForSample().
-    virtual bool hasClock() const noexcept = 0;
+    virtual bool hasClock() const noexcept { return false; }
     // Sleeps until the device has a new sample, or until the deadline (CLOCK_MONOTONIC ns): true says that
     // there is one.
-    virtual bool waitForSample(int64_t deadline_ns) noexcept = 0;
+    virtual bool waitForSample(int64_t) noexcept { return false; }
     // Reads the newest sample, `elapsed` s after the last period. False says that there is none that can be
     // believed: the device is silent, or what it says makes no sense.
     virtual bool read(double elapsed, DeviceReading& reading) noexcept = 0;

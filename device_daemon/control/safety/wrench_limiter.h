@@ -44,8 +44,6 @@ class WrenchLimiter {
     // finite, and within the limits. `factor` is 0 to 1.
     Wrench limit(const Wrench& wanted, double factor, double dt) noexcept;
 
-    // Returns the last result before the factor.
-    const Wrench& beforeFactor() const noexcept { return before_factor_; }
     uint32_t events() const noexcept { return events_; }  // WrenchLimitEvent bits of the last call
 
   private:

@@ -6,13 +6,15 @@
 #include <cmath>
 
 #include "common/rt/clock.h"
-#include "device_daemon/hands/input/spnav_socket.h"
+#include "device_daemon/hands/input/spnav.h"
 
 namespace bonemill {
 namespace {
 
 // A spacenavd that has not answered by then speaks protocol 0.
 constexpr int64_t kProtocolAnswerNs = 250 * kNsPerMillisecond;
+// The buttons that mean something, as masks of SpnavStream::buttons().
+constexpr uint32_t kRemoveButton = 1u << 0, kAddButton = 1u << 1, kFineButtons = ~3u;
 constexpr float kPlainSensitivity = 1;
 // spacenavd's z goes into the picture, ours out of it.
 constexpr std::array<float, 6> kSigns{1, 1, -1, 1, 1, -1};
@@ -26,11 +28,9 @@ float FullScale::shareOf(int32_t counts) noexcept {
     return value / full_counts_;
 }
 
-SpaceMouseDevice::SpaceMouseDevice(const RateConfig& config, const Pose& X_DT_start, std::string socket_path,
-                                   const SpaceMouseButtons& buttons)
+SpaceMouseDevice::SpaceMouseDevice(const RateConfig& config, const Pose& X_DT_start, std::string socket_path)
     : RateDevice(DeviceKind::kSpaceMouse, "SpaceMouse", config, X_DT_start),
       path_(socket_path.empty() ? spnavSocketPath() : std::move(socket_path)),
-      buttons_(buttons),
       reader_(*this) {}
 
 int SpaceMouseDevice::open() {
@@ -80,8 +80,8 @@ void SpaceMouseDevice::tell() {
             input.deflections[i] = kSigns[i] * full_scale_.shareOf(stream_.counts()[i]);
         const uint32_t pressed = stream_.buttons();
         input.buttons =
-            (pressed & buttons_.remove ? kButtonRemove : 0u) | (pressed & buttons_.add ? kButtonAdd : 0u);
-        input.is_fine = (pressed & buttons_.fine) != 0;
+            (pressed & kRemoveButton ? kButtonRemove : 0u) | (pressed & kAddButton ? kButtonAdd : 0u);
+        input.is_fine = (pressed & kFineButtons) != 0;
         input.is_there = 1;
     }
     publish(input);

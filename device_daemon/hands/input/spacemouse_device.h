@@ -11,16 +11,9 @@
 
 #include "device_daemon/hands/input/input_reader.h"
 #include "device_daemon/hands/input/rate_device.h"
-#include "device_daemon/hands/input/spnav_stream.h"
+#include "device_daemon/hands/input/spnav.h"
 
 namespace bonemill {
-
-// The buttons that mean something, as masks of SpnavStream::buttons().
-struct SpaceMouseButtons {
-    uint32_t remove = 1u << 0;
-    uint32_t add = 1u << 1;
-    uint32_t fine = ~3u;
-};
 
 // The largest count of a device, learnt as it is used.
 class FullScale {
@@ -38,8 +31,7 @@ class FullScale {
 class SpaceMouseDevice final : public RateDevice, private InputSource {
   public:
     // The socket is spacenavd's; by default spnavSocketPath(). Nothing need be there yet.
-    SpaceMouseDevice(const RateConfig& config, const Pose& X_DT_start, std::string socket_path = {},
-                     const SpaceMouseButtons& buttons = {});
+    SpaceMouseDevice(const RateConfig& config, const Pose& X_DT_start, std::string socket_path = {});
 
   private:
     int open() override;
@@ -49,7 +41,6 @@ class SpaceMouseDevice final : public RateDevice, private InputSource {
     void tell();
 
     const std::string path_;
-    const SpaceMouseButtons buttons_;
 
     // These belong to the reading thread.
     int socket_ = -1;

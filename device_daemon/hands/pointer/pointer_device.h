@@ -19,12 +19,11 @@
 #include <thread>
 
 #include "common/dds/endpoint.h"
-#include "common/dds/wait_set.h"
 #include "common/geometry/hand_space.h"
 #include "common/rt/clock.h"
 #include "common/rt/seqlock.h"
-#include "device_daemon/hands/pointer/pointer_holder.h"
-#include "device_daemon/hands/virtual_handle/handle_device.h"
+#include "device_daemon/hands/pointer/hand_wish.h"
+#include "device_daemon/hands/virtual_handle/virtual_handle.h"
 
 namespace bonemill {
 
@@ -47,8 +46,6 @@ class PointerDevice final : public HapticDevice {
     ~PointerDevice() override;
 
     DeviceCapabilities capabilities() const noexcept override;
-    bool hasClock() const noexcept override { return false; }
-    bool waitForSample(int64_t) noexcept override { return false; }
     bool read(double elapsed, DeviceReading& reading) noexcept override;
     void write(const DeviceOrder& order) noexcept override;
     void beginAttempt() noexcept override { attempts_.fetch_add(1, std::memory_order_relaxed); }

@@ -8,10 +8,54 @@
 namespace bonemill {
 namespace {
 
+constexpr double kNewestShare = 0.1;  // of an interval in their mean
+
+struct MotionBounds {
+    double speed;
+    double acceleration;
+};
+
+// Where no bound acts this is x'' = k² (wanted - x) - 2 k x', with k = kBandwidth. Braking from the bounded
+// speed needs less than the bounded acceleration, so that the bounds make no overshoot.
+Eigen::Vector3d nextVelocity(const Eigen::Vector3d& way_left, const Eigen::Vector3d& velocity, double dt,
+                             const MotionBounds& bounds) noexcept {
+    constexpr double kBandwidth = MotionFilter::kBandwidth;
+    const Eigen::Vector3d wanted = bounded(kBandwidth / 2 * way_left, bounds.speed);
+    return velocity + dt * bounded(2 * kBandwidth * (wanted - velocity), bounds.acceleration);
+}
+
 constexpr double kLongestSubstep = 1e-4;  // s: a small part of what the stiffest wall and the body swing in
 constexpr double kRoundingSlack = 1e-6;   // so that 1 ms makes 10 substeps, not 11
 
 }  // namespace
+
+void MotionFilter::want(const Pose& X_DT) noexcept {
+    X_DT_wanted_ = X_DT;
+    // A pause says nothing of how fast wishes come.
+    if (since_wish_ < kLongestInterval)
+        interval_ += kNewestShare * (std::max(since_wish_, kShortestInterval) - interval_);
+    since_wish_ = 0;
+    way_time_ = interval_;
+}
+
+void MotionFilter::goToWish(double dt) noexcept {
+    since_wish_ += dt;
+    const double share = way_time_ > dt ? dt / way_time_ : 1;
+    way_time_ -= share * way_time_;
+    X_DT_way_.position += share * (X_DT_wanted_.position - X_DT_way_.position);
+    X_DT_way_.rotation = X_DT_way_.rotation.slerp(share, X_DT_wanted_.rotation).normalized();
+}
+
+void MotionFilter::advance(double dt) noexcept {
+    static_assert(kBandwidth / 2 * kMaxSpeed < kMaxAcceleration &&
+                  kBandwidth / 2 * kMaxSpin < kMaxSpinChange);
+    goToWish(dt);
+    const Eigen::Vector3d way_left = X_DT_way_.position - X_DT_.position;
+    const Eigen::Vector3d turn_left = logRotation(X_DT_way_.rotation * X_DT_.rotation.conjugate());
+    v_DT_ = nextVelocity(way_left, v_DT_, dt, {kMaxSpeed, kMaxAcceleration});
+    w_DT_ = nextVelocity(turn_left, w_DT_, dt, {kMaxSpin, kMaxSpinChange});
+    X_DT_ = X_DT_.incremented(dt * v_DT_, dt * w_DT_);
+}
 
 VirtualHandle::VirtualHandle(const Pose& X_DT_start, const VirtualHand& hand) noexcept
     : hand_(hand),
@@ -57,6 +101,33 @@ void VirtualHandle::substep(double h, const Wrench& wrench_D) noexcept {
         X_DT_.position = bounded(X_DT_.position, kReach);
         v_DT_.setZero();
     }
+}
+
+DeviceCapabilities handleCapabilities(DeviceKind kind, std::string_view name) noexcept {
+    DeviceCapabilities device{};
+    name.copy(device.name, sizeof device.name - 1);
+    device.kind = static_cast<uint32_t>(kind);
+    device.abilities = kAbilityForce | kAbilityTorque | kAbilityOrientation | kAbilitySimulated;
+    device.max_force = kMaxHandleForce;
+    device.max_torque = kMaxHandleTorque;
+    device.max_stiffness = VirtualHandle::kMaxStiffness;
+    device.max_rotation_stiffness = VirtualHandle::kMaxRotationStiffness;
+    device.workspace_radius = VirtualHandle::kReach;
+    return device;
+}
+
+Wrench feltWrench(const DeviceOrder& order) noexcept {
+    return order.wrench_hand_D.isFinite() ? order.wrench_hand_D : Wrench{};
+}
+
+DeviceReading readingOf(const VirtualHandle& handle, const Wrench& felt_D, uint32_t buttons) noexcept {
+    return {.X_DT = handle.pose(),
+            .v_DT = handle.v_DT(),
+            .w_DT = handle.w_DT(),
+            .buttons = buttons,
+            .status = kStatusPowered | kStatusCalibrated | kStatusDriving,
+            .has_applied = true,
+            .applied_D = felt_D};
 }
 
 }  // namespace bonemill

@@ -9,7 +9,6 @@
 
 #include "common/base/user_error.h"
 #include "common/cli/command_line.h"
-#include "common/cli/number_range.h"
 #include "common/cli/version.h"
 #include "common/dds/network_cli.h"
 #include "common/log/log.h"

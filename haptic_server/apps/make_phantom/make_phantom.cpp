@@ -8,7 +8,6 @@
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/cli/command_line.h"
-#include "common/cli/number_range.h"
 #include "common/files/require_apart.h"
 #include "common/process/run_program.h"
 #include "haptic_server/cases/phantom/analytic_body.h"

@@ -11,10 +11,9 @@
 
 #include "common/base/user_error.h"
 #include "common/cli/command_line.h"
-#include "common/cli/number_range.h"
 #include "common/cli/version.h"
-#include "common/digest/sha256.h"
-#include "common/files/private_file.h"
+#include "common/digest/digest.h"
+#include "common/files/whole_file.h"
 #include "common/process/run_program.h"
 #include "haptic_server/teaching/study/form_page.h"
 #include "haptic_server/teaching/study/study_folder.h"

@@ -5,7 +5,7 @@
 #include <charconv>
 
 #include "common/base/user_error.h"
-#include "common/cli/number_range.h"
+#include "common/cli/command_line.h"
 #include "common/text/printed_text.h"
 #include "haptic_server/scans/labels/labels.h"
 

@@ -14,7 +14,7 @@
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/config/scene_file.h"
-#include "common/digest/sha256.h"
+#include "common/digest/digest.h"
 #include "common/files/require_file.h"
 #include "haptic_server/cases/casework/case_figures.h"
 #include "haptic_server/cases/casework/case_plan.h"

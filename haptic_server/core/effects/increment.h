@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "common/geometry/pose_step.h"
+#include "common/geometry/pose.h"
 #include "common/math/pinned_math.h"
 
 namespace bonemill {

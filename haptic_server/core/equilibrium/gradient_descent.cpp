@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/geometry/pose_step.h"
+#include "common/geometry/pose.h"
 #include "haptic_server/core/equilibrium/gradient_model.h"
 
 namespace bonemill {

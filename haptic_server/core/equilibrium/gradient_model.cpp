@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/geometry/pose_step.h"
+#include "common/geometry/pose.h"
 
 namespace bonemill {
 namespace {

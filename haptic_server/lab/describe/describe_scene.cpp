@@ -9,7 +9,6 @@
 
 #include "common/base/units.h"
 #include "common/config/scene_geometry.h"
-#include "common/config/scene_handle.h"
 #include "common/config/scene_table.h"
 #include "common/config/viewer_effects.h"
 #include "common/text/printed_text.h"

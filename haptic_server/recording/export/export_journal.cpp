@@ -10,7 +10,7 @@
 #include "common/files/require_apart.h"
 #include "common/files/whole_file.h"
 #include "common/rt/clock.h"
-#include "common/text/printable_line.h"
+#include "common/text/foreign_text.h"
 #include "haptic_server/recording/export/eye_table.h"
 #include "haptic_server/recording/export/h5_file.h"
 #include "haptic_server/recording/export/tick_table.h"

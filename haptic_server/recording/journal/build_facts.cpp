@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "common/base/user_error.h"
-#include "common/digest/sha256.h"
+#include "common/digest/digest.h"
 #include "haptic_server/core/kernels/kernels.h"
 
 namespace bonemill {

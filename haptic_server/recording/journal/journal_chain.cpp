@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "common/mcap/mcap_bytes.h"
+#include "common/mcap/mcap_index.h"
 #include "common/rt/clock.h"
 #include "proto/journal.pb.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/digest/sha256.h"
+#include "common/digest/digest.h"
 #include "common/mcap/mcap_index.h"
 #include "haptic_server/recording/journal/journal_topics.h"
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "common/base/user_error.h"
-#include "common/text/printable_line.h"
+#include "common/text/foreign_text.h"
 #include "haptic_server/recording/journal/build_facts.h"
 #include "haptic_server/recording/rerun/rerun.h"
 #include "haptic_server/scene/setup/scene_accuracy.h"

@@ -5,7 +5,7 @@
 #include "common/base/user_error.h"
 #include "common/config/scene_check.h"
 #include "common/config/scene_text.h"
-#include "common/text/printable_line.h"
+#include "common/text/foreign_text.h"
 #include "haptic_server/recording/journal/build_facts.h"
 
 namespace bonemill {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "common/commands/order_text.h"
-#include "common/text/printable_line.h"
+#include "common/commands/command_text.h"
+#include "common/text/foreign_text.h"
 #include "haptic_server/recording/rerun/recording.h"
 #include "haptic_server/recording/statistics/device_history.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/rt/latency_histogram.h"
-#include "common/rt/page_faults.h"
+#include "common/rt/realtime.h"
 #include "haptic_server/core/telemetry/tick_record.h"
 #include "haptic_server/recording/statistics/device_history.h"
 #include "haptic_server/recording/statistics/effect_statistics.h"

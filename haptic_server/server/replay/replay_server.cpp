@@ -11,7 +11,7 @@
 #include "common/base/user_error.h"
 #include "common/rt/clock.h"
 #include "common/rt/stop_signals.h"
-#include "common/text/printable_line.h"
+#include "common/text/foreign_text.h"
 #include "haptic_server/recording/rerun/verify_journal.h"
 #include "haptic_server/scene/setup/scene_effects.h"
 #include "haptic_server/scene/setup/scene_materials.h"

@@ -8,7 +8,7 @@
 
 #include "common/base/user_error.h"
 #include "common/config/scene_file.h"
-#include "common/mcap/mcap_bytes.h"
+#include "common/mcap/mcap_index.h"
 #include "common/mcap/mcap_repair.h"
 #include "haptic_server/core/bone/checkpoints.h"
 #include "haptic_server/recording/journal/build_facts.h"

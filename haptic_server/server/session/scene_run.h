@@ -11,8 +11,7 @@
 #include <string>
 #include <thread>
 
-#include "common/rt/page_faults.h"
-#include "common/rt/realtime_thread.h"
+#include "common/rt/realtime.h"
 #include "haptic_server/core/tick/haptic_tick.h"
 #include "haptic_server/server/publish/publisher.h"
 #include "haptic_server/server/session/device_link_io.h"

@@ -10,7 +10,7 @@
 #include <iostream>
 
 #include "common/base/user_error.h"
-#include "common/commands/order_limits.h"
+#include "common/commands/role_rules.h"
 #include "common/rt/clock.h"
 #include "common/rt/stop_signals.h"
 #include "haptic_server/recording/journal/journal_reader.h"

@@ -1,9 +1,9 @@
 #include "haptic_server/server/session/session_commands.h"
 
 #include "common/base/units.h"
-#include "common/config/effect_check.h"
+#include "common/config/scene_check.h"
 #include "common/rt/clock.h"
-#include "common/text/repeated_text.h"
+#include "common/text/foreign_text.h"
 
 namespace bonemill {
 namespace {

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "common/commands/order_limits.h"
 #include "common/commands/role_rules.h"
 #include "haptic_server/core/bone/checkpoints.h"
 #include "haptic_server/core/tick/tick_choices.h"

@@ -11,7 +11,7 @@
 
 #include "common/base/user_error.h"
 #include "common/files/whole_file.h"
-#include "common/text/repeated_text.h"
+#include "common/text/foreign_text.h"
 #include "haptic_server/recording/statistics/bone_files.h"
 #include "haptic_server/scans/nrrd/nrrd_writer.h"
 

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "common/base/units.h"
-#include "common/commands/order_text.h"
+#include "common/commands/command_text.h"
 #include "common/config/scene_geometry.h"
 #include "common/rt/clock.h"
 #include "haptic_server/core/telemetry/fault_names.h"

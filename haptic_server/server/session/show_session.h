@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "common/base/units.h"
-#include "common/log/log_limit.h"
+#include "common/log/log.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "haptic_server/server/publish/byte_budget.h"
 #include "haptic_server/server/publish/publisher.h"

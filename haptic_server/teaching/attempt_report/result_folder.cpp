@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "common/files/line_file.h"
-#include "common/files/private_file.h"
+#include "common/files/whole_file.h"
 #include "haptic_server/teaching/attempt_report/result_json.h"
 #include "haptic_server/teaching/attempt_report/xapi.h"
 

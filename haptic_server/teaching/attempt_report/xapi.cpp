@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "common/digest/name_uuid.h"
+#include "common/digest/digest.h"
 
 namespace bonemill {
 namespace {

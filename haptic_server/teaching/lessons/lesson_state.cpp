@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "common/attempts_csv/attempts_csv.h"
-#include "common/text/repeated_text.h"
+#include "common/text/foreign_text.h"
 
 namespace bonemill {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "common/text/repeated_text.h"
+#include "common/text/foreign_text.h"
 
 namespace bonemill {
 namespace {

@@ -11,7 +11,7 @@
 #include "common/base/user_error.h"
 #include "common/config/scene_file.h"
 #include "common/config/scene_tools.h"
-#include "common/text/repeated_text.h"
+#include "common/text/foreign_text.h"
 #include "haptic_server/teaching/lessons/accuracy_figures.h"
 
 namespace bonemill {

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "common/base/user_error.h"
-#include "common/digest/sha256.h"
+#include "common/digest/digest.h"
 #include "common/files/require_file.h"
 
 namespace bonemill::study {

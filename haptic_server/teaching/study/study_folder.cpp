@@ -12,9 +12,9 @@
 #include <iterator>
 
 #include "common/base/user_error.h"
-#include "common/digest/sha256.h"
-#include "common/files/private_file.h"
+#include "common/digest/digest.h"
 #include "common/files/require_file.h"
+#include "common/files/whole_file.h"
 #include "haptic_server/teaching/study/shipped_files.h"
 
 namespace bonemill::study {

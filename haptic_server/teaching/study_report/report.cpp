@@ -1,6 +1,6 @@
 #include "haptic_server/teaching/study_report/report.h"
 
-#include "common/files/private_file.h"
+#include "common/files/whole_file.h"
 #include "haptic_server/teaching/study/shipped_files.h"
 #include "haptic_server/teaching/study_report/checklist.h"
 #include "haptic_server/teaching/study_report/study_report_text.h"

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "common/base/user_error.h"
-#include "common/files/private_file.h"
+#include "common/files/whole_file.h"
 #include "render_client/web/connect/gateway_session.h"
 #include "render_client/web/gateway/guest_list.h"
 #include "render_client/web/secrets/secrets.h"

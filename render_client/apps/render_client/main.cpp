@@ -2,7 +2,6 @@
 #include <iostream>
 
 #include "common/log/log.h"
-#include "common/process/process_limits.h"
 #include "common/process/run_program.h"
 #include "render_client/apps/render_client/connect_gateway.h"
 #include "render_client/apps/render_client/list_sessions.h"

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <optional>
 
-#include "common/dds/wait_set.h"
+#include "common/dds/endpoint.h"
 #include "render_client/link/subscribe/wire.h"
 
 namespace bonemill {

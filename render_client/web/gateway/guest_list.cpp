@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "common/base/user_error.h"
-#include "common/files/private_file.h"
+#include "common/files/whole_file.h"
 #include "render_client/web/secrets/secrets.h"
 
 namespace bonemill::gateway {

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "common/log/log_limit.h"
+#include "common/log/log.h"
 #include "common/tcp/descriptor.h"
-#include "common/tcp/peer_address.h"
+#include "common/tcp/listen.h"
 #include "render_client/web/relay/relay_greeting.h"
 #include "render_client/web/relay/relay_options.h"
 

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "common/tcp/descriptor.h"
-#include "common/tcp/peer_address.h"
+#include "common/tcp/listen.h"
 #include "render_client/web/relay/relay_greeting.h"
 #include "render_client/web/relay/relay_options.h"
 

@@ -17,7 +17,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/tcp/peer_address.h"
+#include "common/tcp/listen.h"
 
 namespace bonemill {
 

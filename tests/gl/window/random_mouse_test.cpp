@@ -9,7 +9,7 @@
 
 #include "common/base/units.h"
 #include "common/device_messages/device_state.h"
-#include "device_daemon/hands/virtual_handle/handle_device.h"
+#include "device_daemon/hands/virtual_handle/virtual_handle.h"
 #include "render_client/link/subscribe/scene_subscriber.h"
 #include "tests/gl/window/mouse_session.h"
 #include "tests/support/dds_session.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "device_daemon/ares/wire/drive_state.h"
-#include "device_daemon/ares/wire/host_link.h"
+#include "device_daemon/ares/wire/host_session.h"
 #include "tests/support/process.h"
 
 namespace bonemill::test {

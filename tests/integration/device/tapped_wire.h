@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "device_daemon/ares/wire/codec.h"
+#include "device_daemon/ares/wire/packets.h"
 #include "device_daemon/ares/wire/udp_socket.h"
 
 namespace bonemill::test {

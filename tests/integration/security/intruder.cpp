@@ -57,10 +57,10 @@ struct Intrusion {
 
 dds_entity_t participantOf(const Intrusion& intrusion) {
     dds_create_domain(intrusion.domain, dds::networkConfiguration({}).c_str());
-    dds::Qos qos;
+    const dds::Qos qos = dds::makeQos();
     if (!intrusion.secure.empty())
         for (const auto& [name, value] : SecurityFolder(intrusion.secure).properties(intrusion.plugins))
-            qos.property(name, value);
+            dds_qset_prop(qos.get(), name.c_str(), value.c_str());
     return dds_create_participant(intrusion.domain, qos.get(), nullptr);
 }
 

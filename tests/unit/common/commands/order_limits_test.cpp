@@ -1,8 +1,7 @@
-#include "common/commands/order_limits.h"
-
 #include <gtest/gtest.h>
 
 #include "common/base/units.h"
+#include "common/commands/role_rules.h"
 
 namespace bonemill {
 namespace {

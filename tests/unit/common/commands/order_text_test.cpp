@@ -1,6 +1,6 @@
-#include "common/commands/order_text.h"
-
 #include <gtest/gtest.h>
+
+#include "common/commands/command_text.h"
 
 namespace bonemill {
 namespace {

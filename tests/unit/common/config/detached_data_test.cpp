@@ -1,4 +1,3 @@
-#include "common/config/detached_data.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-#include "common/config/material_check.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-#include "common/config/task_check.h"
 
 #include <gtest/gtest.h>
 

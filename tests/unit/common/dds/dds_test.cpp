@@ -1,3 +1,4 @@
+#include <dds/dds.h>
 #include <gtest/gtest.h>
 #include <net/if.h>
 #include <spdlog/sinks/ringbuffer_sink.h>
@@ -10,7 +11,6 @@
 
 #include "common/base/user_error.h"
 #include "common/dds/endpoint.h"
-#include "common/dds/wait_set.h"
 #include "tests/support/dds_session.h"
 
 namespace bonemill::dds {
@@ -155,7 +155,7 @@ TEST_F(DdsTest, LogsAWriterThatDoesNotMatch) {
     Reader<NodeMeshSample> reader(participant_);
     Participant other(testDomain());
     TopicDescription description = describeTopic<NodeMeshSample>();
-    description.qos.bestEffort();
+    dds_qset_reliability(description.qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);
     const AnyWriter writer(other, description);
     for (int i = 0; i < 1000 && sink->last_raw().empty(); ++i) std::this_thread::sleep_for(10ms);
     for (uint64_t i = 0; i < 2 * kMaxNamedMismatches; ++i) const AnyWriter more(other, description);

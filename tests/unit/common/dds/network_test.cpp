@@ -5,7 +5,6 @@
 #include <cstdlib>
 
 #include "common/base/user_error.h"
-#include "common/dds/network_interfaces.h"
 #include "common/dds/participant.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/temporary_folder.h"

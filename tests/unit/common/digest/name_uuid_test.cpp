@@ -1,9 +1,13 @@
-#include "common/digest/name_uuid.h"
-
 #include <gtest/gtest.h>
+
+#include "common/digest/digest.h"
 
 namespace bonemill {
 namespace {
+
+// The namespace of domain names, RFC 4122, appendix C.
+constexpr UuidBytes kDnsNames{0x6b, 0xa7, 0xb8, 0x10, 0x9d, 0xad, 0x11, 0xd1,
+                              0x80, 0xb4, 0x00, 0xc0, 0x4f, 0xd4, 0x30, 0xc8};
 
 // The second is Python's own example of uuid.uuid5(); all are what it gives.
 TEST(NameUuid, IsThatOfOthers) {

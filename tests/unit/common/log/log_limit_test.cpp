@@ -1,6 +1,6 @@
-#include "common/log/log_limit.h"
-
 #include <gtest/gtest.h>
+
+#include "common/log/log.h"
 
 namespace bonemill {
 namespace {

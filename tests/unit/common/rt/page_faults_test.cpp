@@ -1,8 +1,8 @@
-#include "common/rt/page_faults.h"
-
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <unistd.h>
+
+#include "common/rt/realtime.h"
 
 namespace bonemill {
 namespace {

@@ -1,11 +1,10 @@
-#include "common/rt/realtime_thread.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <stdexcept>
 
 #include "common/base/user_error.h"
+#include "common/rt/realtime.h"
 
 namespace bonemill {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "device_daemon/hands/input/gamepad_map.h"
-#include "device_daemon/hands/input/rate_control.h"
+#include "device_daemon/hands/input/gamepad_device.h"
+#include "device_daemon/hands/input/rate_device.h"
 #include "device_daemon/hands/input/spacemouse_device.h"
 #include "tests/support/mutated_bytes.h"
 #include "tests/unit/device_daemon/hands/input/input_test_tools.h"

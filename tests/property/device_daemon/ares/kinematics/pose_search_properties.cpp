@@ -9,8 +9,7 @@
 #include <random>
 
 #include "common/base/units.h"
-#include "device_daemon/ares/kinematics/pose_search.h"
-#include "device_daemon/ares/kinematics/singularity.h"
+#include "device_daemon/ares/kinematics/ares_kinematics.h"
 
 namespace bonemill {
 namespace {

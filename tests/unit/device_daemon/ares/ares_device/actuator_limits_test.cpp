@@ -1,10 +1,9 @@
-#include "device_daemon/ares/ares_device/actuator_limits.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <random>
 
+#include "device_daemon/ares/ares_device/ares_device.h"
 #include "device_daemon/ares/kinematics/ares_kinematics.h"
 #include "tests/support/random_direction.h"
 

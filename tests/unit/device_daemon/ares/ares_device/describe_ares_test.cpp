@@ -1,11 +1,9 @@
-#include "device_daemon/ares/ares_device/describe_ares.h"
 
 #include <gtest/gtest.h>
 
 #include "common/base/user_error.h"
-#include "device_daemon/ares/ares_device/scene_ares.h"
-#include "device_daemon/ares/ares_device/workspace_figures.h"
-#include "device_daemon/ares/kinematics/singularity.h"
+#include "device_daemon/ares/ares_device/ares_settings.h"
+#include "device_daemon/ares/kinematics/ares_kinematics.h"
 
 namespace bonemill {
 namespace {

@@ -1,5 +1,5 @@
-// Each fault of an encoder is found within the time that sensor_checks.h states, and a sound device raises no
-// alarm.
+// Each fault of an encoder is found within the time that position_guard.h states, and a sound device raises
+// no alarm.
 #include <gtest/gtest.h>
 
 #include "tests/unit/device_daemon/ares/ares_device/ares_bench.h"

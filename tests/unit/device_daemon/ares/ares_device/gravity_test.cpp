@@ -1,9 +1,8 @@
-#include "device_daemon/ares/ares_device/gravity.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
+#include "device_daemon/ares/ares_device/ares_device.h"
 #include "tests/support/random_direction.h"
 
 namespace bonemill {
@@ -20,6 +19,11 @@ TEST(Gravity, HoldsUpWhatFallsDown) {
     const Wrench wrench = holdingWrench(weight, Pose{});
     EXPECT_NEAR(wrench.force.z(), 0.5 * 9.80665, 1e-12);
     EXPECT_NEAR(wrench.torque.y(), -0.02 * 0.5 * 9.80665, 1e-12);
+}
+
+// J, zero with the weight's centre at D's origin.
+double potentialEnergy(const MovingWeight& weight, const Pose& X_DT) {
+    return -weight.mass * kStandardGravity * weight.down_D.dot(X_DT * weight.centre_T);
 }
 
 TEST(Gravity, IsTheGradientOfThePotentialEnergy) {

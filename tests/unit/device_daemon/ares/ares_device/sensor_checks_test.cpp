@@ -1,8 +1,8 @@
-#include "device_daemon/ares/ares_device/sensor_checks.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "device_daemon/ares/ares_device/position_guard.h"
 
 namespace bonemill {
 namespace {

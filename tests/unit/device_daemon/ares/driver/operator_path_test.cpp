@@ -1,6 +1,6 @@
-#include "device_daemon/ares/driver/operator_path.h"
-
 #include <gtest/gtest.h>
+
+#include "device_daemon/ares/driver/ares_emulator.h"
 
 namespace bonemill {
 namespace {

@@ -1,10 +1,9 @@
-#include "device_daemon/ares/driver/pose_guard.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "device_daemon/ares/driver/jump_check.h"
+#include "device_daemon/ares/driver/udp_pose_device.h"
 
 namespace bonemill {
 namespace {

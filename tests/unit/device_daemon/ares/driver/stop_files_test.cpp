@@ -1,7 +1,6 @@
-#include "device_daemon/device_setup/stop_files.h"
-
 #include <gtest/gtest.h>
 
+#include "device_daemon/control/device_loop/black_box.h"
 #include "tests/support/process.h"
 
 namespace bonemill {

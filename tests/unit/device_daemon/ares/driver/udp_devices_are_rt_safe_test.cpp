@@ -2,7 +2,7 @@
 // silence, garbage, and the way back.
 #include <gtest/gtest.h>
 
-#include "device_daemon/ares/driver/udp_joint_device.h"
+#include "device_daemon/ares/driver/udp_device.h"
 #include "device_daemon/ares/driver/udp_pose_device.h"
 #include "tests/support/rt_guard/rt_probe.h"
 #include "tests/unit/device_daemon/ares/driver/wire_controller.h"

@@ -1,7 +1,6 @@
-#include "device_daemon/ares/driver/udp_joint_device.h"
-
 #include <gtest/gtest.h>
 
+#include "device_daemon/ares/driver/udp_device.h"
 #include "tests/unit/device_daemon/ares/driver/wire_controller.h"
 
 namespace bonemill {

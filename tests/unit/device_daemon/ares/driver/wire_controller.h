@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "common/rt/clock.h"
-#include "device_daemon/ares/wire/controller_link.h"
+#include "device_daemon/ares/wire/controller_session.h"
 
 namespace bonemill::test {
 

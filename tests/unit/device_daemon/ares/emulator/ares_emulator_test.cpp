@@ -8,7 +8,7 @@
 
 #include "common/rt/clock.h"
 #include "common/rt/realtime.h"
-#include "device_daemon/ares/driver/udp_joint_device.h"
+#include "device_daemon/ares/driver/udp_device.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,8 +1,8 @@
-#include "device_daemon/ares/emulator/faulty_wire.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
+
+#include "device_daemon/ares/emulator/fault_spec.h"
 
 namespace bonemill {
 namespace {

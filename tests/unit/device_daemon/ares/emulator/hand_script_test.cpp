@@ -1,8 +1,8 @@
-#include "device_daemon/ares/emulator/hand_script.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "device_daemon/ares/emulator/emulated_controller.h"
 
 namespace bonemill {
 namespace {

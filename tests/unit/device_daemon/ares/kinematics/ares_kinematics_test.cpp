@@ -7,8 +7,6 @@
 #include <numbers>
 #include <random>
 
-#include "device_daemon/ares/kinematics/singularity.h"
-
 namespace bonemill {
 namespace {
 

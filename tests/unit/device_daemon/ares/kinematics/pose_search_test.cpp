@@ -1,10 +1,8 @@
-#include "device_daemon/ares/kinematics/pose_search.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "device_daemon/ares/kinematics/singularity.h"
+#include "device_daemon/ares/kinematics/ares_kinematics.h"
 #include "tests/support/random_direction.h"
 
 namespace bonemill {

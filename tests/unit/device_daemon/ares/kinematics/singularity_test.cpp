@@ -1,4 +1,3 @@
-#include "device_daemon/ares/kinematics/singularity.h"
 
 #include <gtest/gtest.h>
 

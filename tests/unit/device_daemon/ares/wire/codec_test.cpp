@@ -1,11 +1,10 @@
-#include "device_daemon/ares/wire/codec.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "device_daemon/ares/wire/packets.h"
 #include "tests/unit/device_daemon/ares/wire/wire_test_tools.h"
 
 namespace bonemill::wire {

@@ -2,8 +2,8 @@
 
 #include "common/base/user_error.h"
 #include "common/rt/clock.h"
-#include "device_daemon/ares/wire/controller_link.h"
-#include "device_daemon/ares/wire/host_link.h"
+#include "device_daemon/ares/wire/controller_session.h"
+#include "device_daemon/ares/wire/host_session.h"
 #include "tests/unit/device_daemon/ares/wire/wire_test_tools.h"
 
 namespace bonemill::wire {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "device_daemon/ares/wire/host_link.h"
+#include "device_daemon/ares/wire/host_session.h"
 
 namespace bonemill::bridge {
 namespace {

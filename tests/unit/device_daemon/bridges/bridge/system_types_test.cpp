@@ -1,6 +1,6 @@
-#include "device_daemon/bridges/force_dimension/system_types.h"
-
 #include <gtest/gtest.h>
+
+#include "device_daemon/bridges/force_dimension/force_dimension_arm.h"
 
 namespace bonemill::bridge {
 namespace {

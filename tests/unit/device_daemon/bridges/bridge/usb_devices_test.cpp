@@ -1,7 +1,6 @@
-#include "device_daemon/bridges/bridge/usb_devices.h"
-
 #include <gtest/gtest.h>
 
+#include "device_daemon/bridges/bridge/vendor_device.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,9 +1,9 @@
-#include "device_daemon/control/safety/motion_monitor.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+
+#include "device_daemon/control/safety/safety_states.h"
 
 namespace bonemill {
 namespace {

@@ -1,8 +1,7 @@
 // Keys and axes of an input device are kept from its events, and asked for anew when events were dropped.
-#include "device_daemon/hands/input/evdev_state.h"
-
 #include <gtest/gtest.h>
 
+#include "device_daemon/hands/input/evdev_device.h"
 #include "tests/unit/device_daemon/hands/input/input_test_tools.h"
 
 namespace bonemill {

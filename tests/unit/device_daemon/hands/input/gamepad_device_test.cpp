@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "common/base/user_error.h"
 #include "device_daemon/hands/input/pedal_source.h"
 #include "tests/unit/device_daemon/hands/input/input_test_tools.h"
 
@@ -66,7 +65,7 @@ TEST_F(GamepadDeviceTest, DroppedEventsThatCannotBeAskedForAreALostDevice) {
 
 TEST(PedalSource, AnyKeyRemovesAndUnpluggedItIsReleased) {
     PipedInput pipe{EvdevState{}};
-    const PedalSource pedal(pipe.opener(), {});
+    const PedalSource pedal(pipe.opener());
     EXPECT_FALSE(pedal.isThere());
     pipe.plugIn();
     ASSERT_TRUE(comesTrue([&] { return pedal.isThere(); }));
@@ -81,34 +80,6 @@ TEST(PedalSource, AnyKeyRemovesAndUnpluggedItIsReleased) {
     EXPECT_TRUE(comesTrue([&] { return pedal.buttons() == 0 && !pedal.isThere(); }));
     pipe.plugIn();
     EXPECT_TRUE(comesTrue([&] { return pedal.isThere(); }));
-}
-
-TEST(PedalSource, KeysHaveTheirOwnButtons) {
-    PipedInput pipe{EvdevState{}};
-    const PedalSource pedal(pipe.opener(), {.remove = KEY_A, .add = KEY_C});
-    pipe.plugIn();
-    ASSERT_TRUE(comesTrue([&] { return pedal.isThere(); }));
-    pipe.send(EV_KEY, KEY_B, 1);
-    pipe.send(EV_KEY, KEY_C, 1);
-    ASSERT_TRUE(comesTrue([&] { return pedal.buttons() == kButtonAdd; }));
-    pipe.send(EV_KEY, KEY_A, 1);
-    EXPECT_TRUE(comesTrue([&] { return pedal.buttons() == (kButtonRemove | kButtonAdd); }));
-}
-
-TEST(PedalSource, WithoutAKeyToRemoveAllOthersDo) {
-    PipedInput pipe{EvdevState{}};
-    const PedalSource pedal(pipe.opener(), {.remove = {}, .add = KEY_C});
-    pipe.plugIn();
-    pipe.send(EV_KEY, KEY_C, 1);
-    ASSERT_TRUE(comesTrue([&] { return pedal.buttons() == kButtonAdd; }));
-    pipe.send(EV_KEY, BTN_0, 1);
-    EXPECT_TRUE(comesTrue([&] { return pedal.buttons() == (kButtonRemove | kButtonAdd); }));
-}
-
-TEST(PedalSource, RefusesACodeThatNoKeyHas) {
-    PipedInput pipe;
-    EXPECT_THROW(PedalSource(pipe.opener(), {.remove = 60000, .add = {}}), UserError);
-    EXPECT_THROW(PedalSource("/dev/null", {.remove = {}, .add = KEY_CNT}, false), UserError);
 }
 
 TEST(EvdevDevice, WhatIsNoInputDeviceIsRefused) {

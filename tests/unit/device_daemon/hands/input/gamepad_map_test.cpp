@@ -1,9 +1,8 @@
-// Sticks, triggers and buttons mean what gamepad_map.h says, with a driver of its own and without.
-#include "device_daemon/hands/input/gamepad_map.h"
-
+// Sticks, triggers and buttons mean what gamepad_device.h says, with a driver of its own and without.
 #include <gtest/gtest.h>
 
 #include "common/device_messages/device_messages.h"
+#include "device_daemon/hands/input/gamepad_device.h"
 #include "tests/unit/device_daemon/hands/input/input_test_tools.h"
 
 namespace bonemill {

@@ -26,7 +26,7 @@ TEST(InputIsRtSafe, InAPeriodOfTheLoop) {
     test::PipedInput pad, pedal_pipe;
     SpaceMouseDevice mouse(RateConfig{}, Pose{}, folder / "spnav.sock");
     GamepadDevice gamepad(RateConfig{}, Pose{}, pad.opener());
-    const PedalSource pedal(pedal_pipe.opener(), {});
+    const PedalSource pedal(pedal_pipe.opener());
     pad.plugIn();
     pedal_pipe.plugIn();
     DeviceReading reading;

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "device_daemon/hands/input/gamepad_device.h"
-#include "device_daemon/hands/input/spnav_stream.h"
+#include "device_daemon/hands/input/spnav.h"
 
 namespace bonemill::test {
 

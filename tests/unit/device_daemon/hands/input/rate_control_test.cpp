@@ -1,11 +1,11 @@
 // Deflections become rates through dead zone and curve, and rates become a wish that never leaves its leash.
-#include "device_daemon/hands/input/rate_control.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "device_daemon/hands/input/rate_device.h"
 
 namespace bonemill {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "device_daemon/hands/input/spnav_socket.h"
+#include "device_daemon/hands/input/spnav.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/device_daemon/hands/input/input_test_tools.h"
 

@@ -1,8 +1,7 @@
 // The wire of spacenavd is understood in whatever pieces it comes.
-#include "device_daemon/hands/input/spnav_stream.h"
-
 #include <gtest/gtest.h>
 
+#include "device_daemon/hands/input/spnav.h"
 #include "tests/unit/device_daemon/hands/input/input_test_tools.h"
 
 namespace bonemill {

@@ -246,7 +246,7 @@ TEST_F(UdevTest, TheGamepadShakesWithTheForce) {
 }
 
 TEST_F(UdevTest, HearsThePedal) {
-    const PedalSource pedal(kPedal, {}, false);
+    const PedalSource pedal([] { return openEvdev(kPedal, false); });
     ASSERT_TRUE(comesTrue([&] { return pedal.isThere(); }));
     send(kPedal, EV_KEY, KEY_B, 1);
     EXPECT_TRUE(comesTrue([&] { return pedal.buttons() == kButtonRemove; }));

@@ -1,7 +1,7 @@
 // One viewer holds the tool at a time.
-#include "device_daemon/hands/pointer/pointer_holder.h"
-
 #include <gtest/gtest.h>
+
+#include "device_daemon/hands/pointer/hand_wish.h"
 
 namespace bonemill {
 namespace {

@@ -1,9 +1,9 @@
 // The motion made of wishes in steps is smooth, within its bounds and does not overshoot.
-#include "device_daemon/hands/virtual_handle/motion_filter.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "device_daemon/hands/virtual_handle/virtual_handle.h"
 
 namespace bonemill {
 namespace {

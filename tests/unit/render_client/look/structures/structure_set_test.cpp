@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "common/geometry/pose_step.h"
+#include "common/geometry/pose.h"
 #include "haptic_server/core/effects/burr_probes.h"
 #include "haptic_server/scans/densify/distance_transform.h"
 #include "haptic_server/surface/mesh/structure_mesher.h"

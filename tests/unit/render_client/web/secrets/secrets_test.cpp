@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "common/files/private_file.h"
+#include "common/files/whole_file.h"
 #include "tests/support/process.h"
 
 namespace bonemill {
