@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render_client/link/density_store/density_grid.h"
+#include "render_client/link/density_store/density_store.h"
 
 namespace bonemill {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "render_client/link/subscribe/density_payloads.h"
+#include "render_client/link/subscribe/payloads.h"
 
 namespace bonemill {
 namespace {

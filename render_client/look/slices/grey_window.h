@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "render_client/link/density_store/density_grid.h"
+#include "render_client/link/density_store/density_store.h"
 #include "render_client/look/camera/view_settings.h"
 
 namespace bonemill {

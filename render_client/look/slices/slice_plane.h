@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/geometry/pose.h"
-#include "render_client/link/density_store/density_grid.h"
+#include "render_client/link/density_store/density_store.h"
 
 namespace bonemill {
 
