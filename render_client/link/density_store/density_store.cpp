@@ -88,30 +88,8 @@ const DensityBrick* DensityStore::find(uint32_t brick) const {
     return held == bricks_.end() ? nullptr : &held->second.contents;
 }
 
-std::optional<DensityStore::Place> DensityStore::placeOf(const Eigen::Vector3i& voxel) const {
-    if (!grid_ || (voxel.array() < 0).any() || (voxel.array() >= grid_->voxels.array()).any()) return {};
-    const DensityBrick* const brick = find(brickOf(*grid_, voxel));
-    if (!brick) return {};
-    const int edge = grid_->brick_edge;
-    const Eigen::Vector3i at = voxel.unaryExpr([edge](int v) { return v % edge; });
-    return Place{brick, size_t(at.x() + edge * (at.y() + edge * at.z()))};
-}
-
 bool DensityStore::hasAllWanted() const {
     return std::ranges::all_of(wanted_, [this](uint32_t brick) { return find(brick) != nullptr; });
-}
-
-std::optional<uint16_t> DensityStore::scannedAt(const Eigen::Vector3i& voxel) const {
-    const auto place = placeOf(voxel);
-    if (!place) return {};
-    return place->brick->scanned[place->index];
-}
-
-std::optional<uint16_t> DensityStore::presentAt(const Eigen::Vector3i& voxel) const {
-    const auto place = placeOf(voxel);
-    if (!place) return {};
-    const auto& present = place->brick->present;
-    return present.empty() ? place->brick->scanned[place->index] : present[place->index];
 }
 
 }  // namespace bonemill

@@ -78,10 +78,6 @@ class DensityStore {
     uint64_t changes() const { return changes_; }
     size_t bytes() const { return bytes_; }
 
-    // Nothing is returned for a voxel outside of the grid, or whose brick is not here.
-    std::optional<uint16_t> scannedAt(const Eigen::Vector3i& voxel) const;
-    std::optional<uint16_t> presentAt(const Eigen::Vector3i& voxel) const;
-
   private:
     struct Held {
         DensityBrick contents;
@@ -91,11 +87,6 @@ class DensityStore {
         return (brick.scanned.size() + brick.present.size()) * sizeof(uint16_t) + brick.materials.size();
     }
     void dropOldest();
-    struct Place {
-        const DensityBrick* brick;
-        size_t index;
-    };
-    std::optional<Place> placeOf(const Eigen::Vector3i& voxel) const;
 
     size_t most_bytes_;
     std::optional<DensityGrid> grid_;

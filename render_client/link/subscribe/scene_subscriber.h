@@ -15,10 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "render_client/link/subscribe/command_outbox.h"
 #include "render_client/link/subscribe/density_feed.h"
-#include "render_client/link/subscribe/hand_speaker.h"
 #include "render_client/link/subscribe/session_ear.h"
+#include "render_client/link/subscribe/viewer_voice.h"
 #include "render_client/link/subscribe/wire.h"
 
 namespace bonemill {

@@ -1,5 +1,5 @@
 // Hears a session: takes what servers and viewers say, checks it, and hands to a sink what comes from the one
-// server that is shown (server_choice.h). Viewers and gateways hear by it.
+// server that is shown (heard_peers.h). Viewers and gateways hear by it.
 //
 // One thread: poll() takes what has arrived and never waits. Bytes that do not make sense are dropped,
 // counted, and at first named in the log; what comes with them arrives.
@@ -14,11 +14,9 @@
 
 #include "common/dds/wait_set.h"
 #include "proto/topics.pb.h"
+#include "render_client/link/subscribe/heard_peers.h"
 #include "render_client/link/subscribe/payloads.h"
 #include "render_client/link/subscribe/scene_model.h"
-#include "render_client/link/subscribe/server_choice.h"
-#include "render_client/link/subscribe/silence_monitor.h"
-#include "render_client/link/subscribe/viewer_list.h"
 #include "render_client/link/subscribe/wire.h"
 
 namespace bonemill {
