@@ -13,11 +13,9 @@
 #include "common/commands/role_rules.h"
 #include "common/dds/network_cli.h"
 #include "render_client/link/subscribe/command_words.h"
-#include "render_client/look/hud/session_text.h"
-#include "render_client/viewer_options/connect_options.h"
-#include "render_client/viewer_options/relay_choice.h"
-#include "render_client/viewer_options/serve_options.h"
+#include "render_client/look/hud/figure_text.h"
 #include "render_client/viewer_options/view_options.h"
+#include "render_client/viewer_options/web_options.h"
 
 namespace bonemill {
 namespace {

@@ -9,12 +9,12 @@
 
 #include "common/dds/network.h"
 #include "render_client/link/subscribe/scene_subscriber.h"
-#include "render_client/look/camera/first_view.h"
+#include "render_client/look/camera/camera.h"
 #include "render_client/look/camera/view_settings.h"
-#include "render_client/look/hud/waiting_page.h"
-#include "render_client/viewer_options/connect_options.h"
+#include "render_client/look/hud/hud_lines.h"
+#include "render_client/viewer_options/web_options.h"
 #include "render_client/web/gateway/gateway_options.h"
-#include "render_client/web/relay/relay_options.h"
+#include "render_client/web/relay/relay_greeting.h"
 
 namespace bonemill {
 

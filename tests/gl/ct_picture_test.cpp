@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "render_client/look/offscreen/osmesa_context.h"
-#include "render_client/look/slices/grey_window.h"
+#include "render_client/look/slices/slice_image.h"
 #include "tests/gl/altered_shaders.h"
 #include "tests/gl/golden.h"
 #include "tests/gl/scanned_block.h"

@@ -10,7 +10,7 @@
 #include "common/config/scene_file.h"
 #include "common/config/scene_tools.h"
 #include "common/device_messages/device_state.h"
-#include "render_client/hand/controls/help_rows.h"
+#include "render_client/hand/controls/key_table.h"
 #include "render_client/look/offscreen/osmesa_context.h"
 #include "tests/gl/milled_scene.h"
 #include "tests/support/places.h"

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "render_client/hand/controls/help_rows.h"
+#include "render_client/hand/controls/key_table.h"
 #include "render_client/look/offscreen/osmesa_context.h"
 #include "tests/gl/altered_shaders.h"
 #include "tests/gl/milled_scene.h"

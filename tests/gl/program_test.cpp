@@ -1,7 +1,6 @@
-#include "render_client/look/gl/program.h"
-
 #include <gtest/gtest.h>
 
+#include "render_client/look/gl/gl_api.h"
 #include "render_client/look/offscreen/osmesa_context.h"
 
 namespace bonemill {

@@ -5,7 +5,7 @@
 #include <array>
 #include <memory>
 
-#include "render_client/hand/controls/help_rows.h"
+#include "render_client/hand/controls/key_table.h"
 #include "render_client/look/offscreen/osmesa_context.h"
 #include "render_client/look/render_scene/render_scene.h"
 #include "tests/gl/synthetic_scene.h"

@@ -12,7 +12,7 @@
 #include "common/process/gnuplot.h"
 #include "common/process/run_program.h"
 #include "render_client/sound/milling_synth.h"
-#include "render_client/sound/wav_file.h"
+#include "render_client/sound/sound_output.h"
 
 namespace bonemill {
 namespace {

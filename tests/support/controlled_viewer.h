@@ -4,7 +4,7 @@
 #include "proto/topics.pb.h"
 #include "render_client/hand/controls/session_view.h"
 #include "render_client/hand/controls/viewer_controls.h"
-#include "render_client/look/camera/orbit_camera.h"
+#include "render_client/look/camera/camera.h"
 #include "render_client/look/camera/view_settings.h"
 
 namespace bonemill::test {

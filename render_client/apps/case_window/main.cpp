@@ -14,7 +14,7 @@
 #include "haptic_server/scans/import/import_volume.h"
 #include "render_client/case_window/case_screen/screen_painter.h"
 #include "render_client/hand/window/glfw_window.h"
-#include "render_client/look/hud/text_scale.h"
+#include "render_client/look/hud/hud_canvas.h"
 
 namespace bonemill {
 namespace {

@@ -1,19 +1,20 @@
-// The tool in this viewer's mouse: begins to hold it, tells the device where it is wanted, and lets the
-// user see how. In another scene and in a new attempt, which begin with the tool elsewhere, the hold rests
-// until the bone is there. It belongs to the thread of the OpenGL context.
+// What the user does in the picture with the mouse. It belongs to the thread of the OpenGL context.
 #pragma once
 
 #include <chrono>
 #include <optional>
 #include <string>
 
-#include "render_client/hand/controls/hold_monitor.h"
+#include "render_client/hand/controls/tool_hold.h"
 #include "render_client/hand/controls/viewer_controls.h"
 #include "render_client/link/subscribe/scene_subscriber.h"
 #include "render_client/look/render_scene/render_scene.h"
 
 namespace bonemill {
 
+// The tool in this viewer's mouse: begins to hold it, tells the device where it is wanted, and lets the
+// user see how. In another scene and in a new attempt, which begin with the tool elsewhere, the hold rests
+// until the bone is there.
 class HandFeed {
   public:
     using Clock = std::chrono::steady_clock;
@@ -55,6 +56,27 @@ class HandFeed {
     Clock::time_point begun_;                   // the hold
     std::optional<Clock::time_point> started_;  // the first picture
     std::optional<Clock::time_point> milled_;   // first, in the mouse
+};
+
+// What people write and draw: makes strokes and the places of notes of what the mouse does over the last
+// picture, and tells of what others write.
+class RemarkFeed {
+  public:
+    // Both must outlive the feed.
+    RemarkFeed(ViewerControls& controls, RenderScene& scene) : controls_(controls), scene_(scene) {}
+
+    // Once per picture, after its events and before the wishes are carried out. Returns what the user should
+    // notice: a note that another person wrote just now.
+    std::optional<HudNotice> update(const SessionView& session, Wishes& wishes);
+
+  private:
+    void draw(const SessionView& session, Wishes& wishes);
+    std::optional<HudNotice> news(const SessionView& session);
+
+    ViewerControls& controls_;
+    RenderScene& scene_;
+    uint64_t seen_epoch_ = 0;
+    uint32_t seen_number_ = 0;  // the highest one, in that run of the server
 };
 
 }  // namespace bonemill

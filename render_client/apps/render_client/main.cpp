@@ -1,22 +1,170 @@
-// render_client shows a session (docs/teach/viewer.md).
-#include <iostream>
+// render_client shows a session (docs/teach/viewer.md), or does here what needs no picture.
+#include <spdlog/spdlog.h>
 
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+
+#include "common/base/user_error.h"
+#include "common/files/whole_file.h"
 #include "common/log/log.h"
 #include "common/process/run_program.h"
-#include "render_client/apps/render_client/connect_gateway.h"
-#include "render_client/apps/render_client/list_sessions.h"
-#include "render_client/apps/render_client/measure_viewer.h"
-#include "render_client/apps/render_client/offscreen_viewer.h"
-#include "render_client/apps/render_client/run_relay.h"
-#include "render_client/apps/render_client/send_command.h"
-#include "render_client/apps/render_client/serve_gateway.h"
-#include "render_client/apps/render_client/stop_signal.h"
-#include "render_client/apps/render_client/video_viewer.h"
+#include "render_client/apps/render_client/scene_feed.h"
+#include "render_client/apps/render_client/unattended_viewer.h"
 #include "render_client/apps/render_client/window_viewer.h"
-#include "render_client/viewer_options/connect_options.h"
+#include "render_client/link/subscribe/command_words.h"
+#include "render_client/link/subscribe/session_list.h"
+#include "render_client/viewer_options/viewer_options.h"
+#include "render_client/viewer_options/web_options.h"
+#include "render_client/web/connect/gateway_session.h"
+#include "render_client/web/gateway/gateway_server.h"
+#include "render_client/web/gateway/guest_list.h"
+#include "render_client/web/relay/relay.h"
+#include "render_client/web/secrets/secrets.h"
 
 namespace bonemill {
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::seconds kGatewayPatience{10}, kListPatience{2};
+constexpr std::chrono::milliseconds kSlice{20};  // how often what is waited for is looked after
+
+// The token itself is kept nowhere.
+std::filesystem::path ticketFile(const std::string& token) {
+    return gateway::configFolder() / "tickets" / sha256Hex(token);
+}
+
+std::string keptTicket(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    std::string ticket;
+    std::getline(stream, ticket);
+    return ticket;
+}
+
+void keepTicket(const std::filesystem::path& file, const std::string& ticket) {
+    try {
+        writePrivateFile(file, ticket);
+    } catch (const std::exception& error) {
+        spdlog::warn("{}; the next run needs another invitation", error.what());
+    }
+}
+
+std::shared_ptr<connect::GatewaySession> sessionOf(const ConnectOptions& options, const std::string& ticket) {
+    if (!ticket.empty()) {
+        try {
+            return std::make_shared<connect::GatewaySession>(options.target, ticket, kGatewayPatience);
+        } catch (const UserError&) {
+            // The gateway has forgotten it, or does not answer: the token tells.
+        }
+    }
+    return std::make_shared<connect::GatewaySession>(options.target, options.token, kGatewayPatience);
+}
+
+// render_client --connect: the viewer becomes a gateway's guest. Comes in with the ticket of an earlier run,
+// or else with the token, and keeps the ticket in the user's configuration. From then on the options have the
+// session, and name and role that the gateway's list gives. Throws UserError.
+void connectToGateway(ClientOptions& options) {
+    ConnectOptions& wish = *options.connect;
+    const std::filesystem::path file = ticketFile(wish.token);
+    const auto session = sessionOf(wish, keptTicket(file));
+    keepTicket(file, session->welcome().ticket());
+    wish.token.clear();
+    options.subscriber.name = session->welcome().name();
+    options.subscriber.role = session->welcome().role();
+    options.subscriber.remote = session;
+}
+
+// render_client --list: which sessions are there? Listens for some seconds and prints one line per session of
+// the domain. Returns the exit code: 1 where there is none, which is said. Throws UserError when the DDS
+// domain cannot be joined.
+int runListSessions(const ClientOptions& options) {
+    SessionList list(options.subscriber.domain);
+    for (const auto end = Clock::now() + kListPatience; Clock::now() < end && !stopRequested();) {
+        std::this_thread::sleep_for(kSlice);
+        list.poll();
+    }
+    const std::vector<ListedSession> sessions = list.sessions();
+    for (const ListedSession& session : sessions) std::cout << sessionText(session) << '\n';
+    if (sessions.empty())
+        std::cerr << "no session in domain " << options.subscriber.domain
+                  << "; on other PCs they are found with --profile lab or classroom" << std::endl;
+    return sessions.empty() ? 1 : 0;
+}
+
+// render_client --relay: a relay instead of a viewer. Says where it can be reached, and serves until a stop
+// signal. Returns the exit code. Throws UserError.
+int runRelay(const ClientOptions& options) {
+    Relay relay(*options.relay);
+    std::cout << "relay for a gateway with --via: "
+              << textOf(NetworkPlace{options.relay->address, relay.port()}) << std::endl;
+    relay.run(stopRequested);
+    const Relay::Counts counts = relay.counts();
+    spdlog::info("the relay ends: it passed on {} bytes and turned {} lines away", counts.bytes,
+                 counts.refused);
+    return 0;
+}
+
+// render_client --serve: a gateway instead of a viewer. Says where it can be reached, and serves until a stop
+// signal. Returns the exit code. Throws UserError.
+int runGateway(const ClientOptions& options) {
+    gateway::GatewayServer server(*options.serve);
+    std::cout << "gateway of session " << options.serve->session << ": https://"
+              << textOf(NetworkPlace{options.serve->address, server.port()}) << '\n';
+    if (options.serve->via)
+        std::cout << "through the relay, once it is reached: https://"
+                  << textOf(NetworkPlace{options.serve->via->host, options.serve->via->port}) << '\n';
+    if (server.certificate().is_self_made)
+        std::cout << "certificate of its own making, which browsers ask about; fingerprint (SHA-256): "
+                  << server.certificate().fingerprint << '\n';
+    if (!server.hasPage()) std::cout << "the page was not built: only viewers with --connect can come\n";
+    std::cout << std::flush;
+    server.serveUntil(stopRequested);
+    return 0;
+}
+
+// Returns true when `condition` held in time, false after `end` or a stop signal.
+template <class Condition>
+bool pollUntil(SceneSubscriber& subscriber, Clock::time_point end, Condition&& condition) {
+    while (!stopRequested() && Clock::now() < end) {
+        subscriber.poll();
+        if (condition()) return true;
+        subscriber.waitForData(kSlice);
+    }
+    return false;
+}
+
+// render_client --command, for scripts: one line on stdout. Waits for the server, asks it and prints its
+// answer. Returns the program's exit code: 0 if the server did it, 1 if it refused or did not answer, or a
+// stop signal came first. Throws UserError (DDS domain, a tool or checkpoint that the session does not have),
+// and std::runtime_error when no server came in time.
+int runSendCommand(const ClientOptions& options) {
+    const CommandOptions& wish = *options.command;
+    SceneSubscriber subscriber(options.subscriber);
+    // A server takes commands as soon as it shows a status.
+    const auto is_ready = [&] {
+        return subscriber.hasServer() && subscriber.status() && subscriber.sceneInfo();
+    };
+    if (!pollUntil(subscriber, Clock::now() + wish.timeout, is_ready)) {
+        if (stopRequested()) return 1;
+        throw std::runtime_error("no server within " + std::to_string(wish.timeout.count()) +
+                                 " s: " + serverQuestion(options.subscriber));
+    }
+    subscriber.sendCommand(commandOf(wish.text, *subscriber.sceneInfo(), *subscriber.status()));
+    std::vector<CommandOutcome> outcomes;
+    // The outbox itself gives up in time.
+    pollUntil(subscriber, Clock::time_point::max(),
+              [&] { return !(outcomes = subscriber.takeOutcomes()).empty(); });
+    if (outcomes.empty()) return 1;
+    std::cout << outcomeText(outcomes.front());
+    if (outcomes.front().command.has_replay() && outcomes.front().isDone() &&
+        !subscriber.status()->replay().event().empty())
+        std::cout << ": " << subscriber.status()->replay().event();
+    std::cout << std::endl;
+    return outcomes.front().isDone() ? 0 : 1;
+}
 
 // Mesa crashes where it gets no memory to draw and to compile shaders in.
 constexpr size_t kPictureBytes = size_t(1) << 30;

@@ -1,17 +1,59 @@
-// Moves what the subscriber received into the scene that is drawn. It belongs to the thread of
-// the OpenGL context.
+// Moves what the subscriber received into the scene that is drawn and heard. It belongs to the thread of the
+// OpenGL context.
 #pragma once
 
 #include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
-#include "render_client/apps/render_client/sound_feed.h"
-#include "render_client/hand/controls/announce_clock.h"
+#include "proto/topics.pb.h"
+#include "render_client/hand/controls/announcing.h"
 #include "render_client/link/subscribe/cut_to_screen.h"
 #include "render_client/link/subscribe/scene_subscriber.h"
 #include "render_client/look/render_scene/node_intake.h"
+#include "render_client/sound/sound_output.h"
 
 namespace bonemill {
+
+// SIGINT and SIGTERM are a question that the render loop asks: from now on the signals only make
+// stopRequested() true. It is called once, from main().
+void catchStopSignals();
+bool stopRequested() noexcept;
+
+// The milling sound of the session is heard from the loudspeakers, into a WAV file, or both. A scene that
+// does not list milling_sound makes no synth, no thread and no sound device; its WAV file is silent.
+struct SoundOutputs {
+    bool is_played = false;
+    std::filesystem::path wav;  // empty: none
+};
+
+class SoundFeed {
+  public:
+    // Throws UserError when the file cannot be made.
+    explicit SoundFeed(const SoundOutputs& outputs);
+
+    // Takes the newest scene info and tool state, and how long ago (s) the call before
+    // was: as much is written.
+    void update(const std::optional<topics::SceneInfo>& info, const std::optional<topics::ToolState>& tool,
+                bool is_heard, double seconds);
+    // Completes the file. Throws UserError when it could not be written.
+    void finish();
+
+  private:
+    void follow(const scene::Effects& wish);
+    void writeWav(double seconds);
+
+    SoundOutputs outputs_;
+    std::string wish_text_;  // of the message that the synths were made from
+    std::unique_ptr<SoundPlayer> player_;
+    std::unique_ptr<MillingSynth> wav_synth_;
+    std::optional<WavFile> wav_;
+    double due_ = 0;  // samples
+    std::vector<float> block_;
+};
 
 class SceneFeed {
   public:

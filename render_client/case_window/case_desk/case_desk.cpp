@@ -1,6 +1,7 @@
 #include "render_client/case_window/case_desk/case_desk.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <new>
 #include <utility>

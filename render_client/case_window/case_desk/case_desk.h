@@ -6,22 +6,45 @@
 // it. It belongs to the thread of the window.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
+#include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/geometry/node_mesh.h"
 #include "haptic_server/cases/casework/case_plan.h"
 #include "haptic_server/scans/dicom/series_table.h"
 #include "haptic_server/scans/find_bone/value_histogram.h"
-#include "render_client/case_window/case_desk/scan_pane.h"
+#include "render_client/case_window/case_desk/scan_slice.h"
 #include "render_client/case_window/case_desk/structure_list.h"
-#include "render_client/case_window/case_desk/worker.h"
 #include "render_client/look/camera/view_settings.h"
 
 namespace bonemill {
+
+// Does long work beside the window, one piece at a time.
+//
+// It belongs to the thread of the window. Its end waits for the work that is under way.
+class Worker {
+  public:
+    using Done = std::function<void()>;
+    // Runs `work` in a thread of its own; what it returns is called by poll(). The worker must not be busy.
+    void start(std::function<Done()> work) { future_ = std::async(std::launch::async, std::move(work)); }
+    bool isBusy() const { return future_.valid(); }
+    // If the work is over, calls what it returned, or throws what it threw.
+    void poll() {
+        if (!isBusy() || future_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+        const Done done = std::exchange(future_, {}).get();
+        if (done) done();
+    }
+
+  private:
+    std::future<Done> future_;
+};
 
 // What was said, for people.
 struct DeskLine {

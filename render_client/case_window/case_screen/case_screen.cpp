@@ -33,6 +33,75 @@ ImVec4 colourOf(DeskLine::Kind kind) {
 
 }  // namespace
 
+void BrowseBox::open(const std::string& title, const std::string& near, bool takes_folders) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    fs::path folder = near.empty() ? fs::current_path(error) : fs::path(near);
+    if (!fs::is_directory(folder, error)) folder = folder.parent_path();
+    if (!fs::is_directory(folder, error)) folder = fs::current_path(error);
+    title_ = title;
+    takes_folders_ = takes_folders;
+    is_asked_for_ = true;
+    view_ = lookInto(folder);
+}
+
+std::optional<std::string> BrowseBox::build(ControlPlaces& places, float scale) {
+    const std::string id = title_ + "###browse";
+    if (is_asked_for_) ImGui::OpenPopup(id.c_str());
+    is_asked_for_ = false;
+    std::optional<std::string> chosen;
+    ImGui::SetNextWindowSize(ImVec2(640 * scale, 460 * scale), ImGuiCond_Always);
+    const ImVec2 picture = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(picture.x / 2, picture.y / 2), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+    if (!ImGui::BeginPopupModal(id.c_str(), nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove))
+        return chosen;
+    ImGui::TextWrapped("%s", view_.path.c_str());
+    if (!view_.problem.empty()) ImGui::TextWrapped("It cannot be looked into: %s", view_.problem.c_str());
+    const float footer = 2.4f * ImGui::GetFrameHeightWithSpacing();
+    if (ImGui::BeginChild("entries", ImVec2(0, -footer), true)) chosen = buildEntries(places);
+    ImGui::EndChild();
+    ImGui::TextDisabled(
+        "%zu other files here%s", view_.other_files,
+        view_.other_files > 0 && takes_folders_ ? ": slices of a series have often no ending" : "");
+    if (takes_folders_) {
+        if (ImGui::Button("Open this folder")) chosen = view_.path.string();
+        notePlace(places, "Open this folder");
+        ImGui::SameLine();
+    }
+    if (ImGui::Button("Cancel")) ImGui::CloseCurrentPopup();
+    notePlace(places, "Cancel");
+    if (chosen) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+    return chosen;
+}
+
+std::optional<std::string> BrowseBox::buildEntries(ControlPlaces& places) {
+    std::optional<std::string> chosen;
+    std::filesystem::path next;
+    const auto row = [&](const std::string& text) {
+        const bool is_clicked = ImGui::Selectable(text.c_str(), false, ImGuiSelectableFlags_DontClosePopups);
+        notePlace(places, text);
+        return is_clicked;
+    };
+    if (view_.path.has_relative_path() && row("..  (one folder up)")) next = view_.path.parent_path();
+    for (const std::string& name : view_.folders)
+        if (row(name + "/")) next = view_.path / name;
+    for (const std::string& name : view_.scans)
+        if (row(name)) chosen = (view_.path / name).string();
+    if (!next.empty()) view_ = lookInto(next);
+    return chosen;
+}
+
+void notePlace(ControlPlaces& places, const std::string& label) {
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const ImVec2 seen_low = ImGui::GetWindowDrawList()->GetClipRectMin(),
+                 seen_high = ImGui::GetWindowDrawList()->GetClipRectMax();
+    const float left = std::max(low.x, seen_low.x), right = std::min(high.x, seen_high.x);
+    const float y = (low.y + high.y) / 2;
+    if (left < right && y > seen_low.y && y < seen_high.y)
+        places[label] = {double(left + right) / 2, double(y)};
+}
+
 CaseScreen::CaseScreen(CaseDesk& desk, const std::filesystem::path& tools_folder)
     : desk_(desk),
       tool_sets_(toolSetsIn(tools_folder)),
@@ -107,11 +176,7 @@ void CaseScreen::buildMessages(float height) {
             const int dots = int(ImGui::GetTime() * 3) % 4;
             ImGui::TextColored(ImVec4(0.45f, 0.8f, 1, 1), "%s %.*s", desk_.busyWith().c_str(), dots, "...");
         }
-        for (const DeskLine& line : desk_.lines()) {
-            ImGui::PushStyleColor(ImGuiCol_Text, colourOf(line.kind));
-            ImGui::TextWrapped("%s", line.text.c_str());
-            ImGui::PopStyleColor();
-        }
+        for (const DeskLine& line : desk_.lines()) say(line.text, colourOf(line.kind));
         if (desk_.lines().size() != lines_seen_) ImGui::SetScrollHereY(1);
         lines_seen_ = desk_.lines().size();
     }

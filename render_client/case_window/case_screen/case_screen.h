@@ -7,18 +7,43 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 
 #include "render_client/case_window/case_desk/case_desk.h"
-#include "render_client/case_window/case_screen/browse_box.h"
-#include "render_client/case_window/case_screen/control_places.h"
-#include "render_client/look/camera/orbit_camera.h"
+#include "render_client/case_window/case_desk/folder_view.h"
+#include "render_client/hand/controls/window_event.h"
+#include "render_client/look/camera/camera.h"
 #include "render_client/panel/imgui/imgui_stage.h"
 
 struct ImVec2;
+struct ImVec4;
 
 namespace bonemill {
+
+// Where the controls of the screen are, by their label: tests click there. It belongs to the render thread.
+using ControlPlaces = std::map<std::string, PixelPoint>;
+
+// Notes the middle of the control that was built last, if it can be seen.
+void notePlace(ControlPlaces& places, const std::string& label);
+
+// A box over the screen in which a folder or file is looked for. It belongs to the render thread.
+class BrowseBox {
+  public:
+    // Opens the box at the folder of this path, or at the working folder. With `takes_folders` a folder can
+    // be chosen as a whole.
+    void open(const std::string& title, const std::string& near, bool takes_folders);
+    // It is called in every frame; returns what was chosen.
+    std::optional<std::string> build(ControlPlaces& places, float scale);
+
+  private:
+    std::optional<std::string> buildEntries(ControlPlaces& places);
+
+    std::string title_ = "Browse";
+    bool takes_folders_ = true, is_asked_for_ = false;
+    FolderView view_;
+};
 
 // Numbers under which the drawing names the pictures of the slices, by axis of W, and of the bone.
 inline constexpr std::array<int, 3> kSlicePictures = {1, 2, 3};
@@ -67,7 +92,9 @@ class CaseScreen {
     bool button(const char* label, bool is_enabled = true);
     bool choice(const char* label, bool is_chosen);
     bool isTyped(const char* label, const char* hint, std::string& text, float free_width);
+    bool slider(const char* label, float& value, float low, float high, const char* format, int flags = 0);
     void say(const std::string& text);
+    void say(const std::string& text, const ImVec4& colour);
     // slice_panes.cpp
     void buildPanes(const ImVec2& size);
     void buildSlice(size_t axis, const ImVec2& size);

@@ -1,17 +1,59 @@
 // The left of the screen: the five steps from a scan to a case.
+
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "common/base/units.h"
 #include "common/text/printed_text.h"
+#include "render_client/case_window/case_desk/case_desk.h"
 #include "render_client/case_window/case_screen/case_screen.h"
-#include "render_client/case_window/case_screen/histogram_plot.h"
+#include "render_client/look/slices/slice_image.h"
 
 namespace bonemill {
 namespace {
+
+// The scan's values as a plot, on which the iso-value is moved. It belongs to the render thread.
+//
+// Counts from 1 to the most frequent value's, as parts of the plot's height. A scan's air would hide all else
+// on a linear scale.
+float heightOf(double count, double most) {
+    return count < 1 || most <= 1 ? 0 : float(std::log1p(count) / std::log1p(most));
+}
+
+// Returns the value that the mouse has moved the line to. What is white above the grey window is drawn white.
+std::optional<double> plotHistogram(const Histogram& histogram, const std::optional<double>& iso,
+                                    const std::optional<double>& runner_up, const GreyWindow& window,
+                                    float height, ControlPlaces& places) {
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    const ImVec2 size(ImGui::GetContentRegionAvail().x, height);
+    ImGui::InvisibleButton("histogram", size);
+    notePlace(places, "histogram");
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const ImVec2 high(low.x + size.x, low.y + size.y);
+    draw.AddRectFilled(low, high, IM_COL32(12, 16, 20, 255), 3);
+    const double range = histogram.width * double(histogram.count.size());
+    if (range <= 0) return std::nullopt;
+    const double most = *std::ranges::max_element(histogram.count);
+    const float step = size.x / float(histogram.count.size());
+    for (size_t bin = 0; bin < histogram.count.size(); ++bin) {
+        const auto grey = int(70 + 185 * greyOf(window, histogram.centre(bin)));
+        const float top = high.y - 0.94f * size.y * heightOf(histogram.count[bin], most);
+        draw.AddRectFilled(ImVec2(low.x + step * float(bin), top),
+                           ImVec2(low.x + step * float(bin + 1), high.y), IM_COL32(grey, grey, grey, 255));
+    }
+    const auto line = [&](double value, ImU32 colour, float thickness) {
+        const float x = low.x + size.x * float((value - histogram.low) / range);
+        if (x >= low.x && x <= high.x) draw.AddLine(ImVec2(x, low.y), ImVec2(x, high.y), colour, thickness);
+    };
+    if (runner_up) line(*runner_up, IM_COL32(255, 176, 32, 110), 1);
+    if (iso) line(*iso, IM_COL32(255, 176, 32, 255), 2);
+    if (!ImGui::IsItemActive()) return std::nullopt;
+    return histogram.low + range * double((ImGui::GetIO().MousePos.x - low.x) / size.x);
+}
 
 constexpr size_t kLongestText = 4096;
 constexpr float kPlotHeight = 84;  // pixels at scale 1
@@ -67,8 +109,20 @@ bool CaseScreen::isTyped(const char* label, const char* hint, std::string& text,
     return is_entered;
 }
 
+bool CaseScreen::slider(const char* label, float& value, float low, float high, const char* format,
+                        int flags) {
+    ImGui::SetNextItemWidth(-110 * stage_.scale());
+    const bool is_moved = ImGui::SliderFloat(label, &value, low, high, format, flags);
+    notePlace(places_, label);
+    return is_moved;
+}
+
 void CaseScreen::say(const std::string& text) {
-    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
+    say(text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
+}
+
+void CaseScreen::say(const std::string& text, const ImVec4& colour) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour);
     ImGui::TextWrapped("%s", text.c_str());
     ImGui::PopStyleColor();
 }
@@ -159,11 +213,9 @@ void CaseScreen::buildIso() {
     };
     if (moved) take(*moved);
     auto value = float(iso.value_or((range.low + high) / 2));
-    ImGui::SetNextItemWidth(-110 * stage_.scale());
-    if (ImGui::SliderFloat("iso-value", &value, float(std::max(range.low, histogram.low)), float(high),
-                           range.are_integers ? "%.0f" : "%.4g"))
+    if (slider("iso-value", value, float(std::max(range.low, histogram.low)), float(high),
+               range.are_integers ? "%.0f" : "%.4g"))
         take(double(value));
-    notePlace(places_, "iso-value");
     desk_.hold(is_line_held || ImGui::IsItemActive());
     if (!proposed) return;
     say(printed("Proposed: %.4g, %s (%s).", proposed->value, doubtText(proposed->doubt),
@@ -181,15 +233,10 @@ void CaseScreen::buildWindow() {
     const double low = histogram.low,
                  high = low + std::max(histogram.width * double(histogram.count.size()), 1e-6);
     auto level = float(desk_.window.level), width = float(desk_.window.width);
-    ImGui::SetNextItemWidth(-110 * stage_.scale());
-    if (ImGui::SliderFloat("grey level", &level, float(low), float(high), "%.4g"))
-        desk_.window.level = double(level);
-    notePlace(places_, "grey level");
-    ImGui::SetNextItemWidth(-110 * stage_.scale());
-    if (ImGui::SliderFloat("grey width", &width, float((high - low) / 256), float(2 * (high - low)), "%.4g",
-                           ImGuiSliderFlags_Logarithmic))
+    if (slider("grey level", level, float(low), float(high), "%.4g")) desk_.window.level = double(level);
+    if (slider("grey width", width, float((high - low) / 256), float(2 * (high - low)), "%.4g",
+               ImGuiSliderFlags_Logarithmic))
         desk_.window.width = double(width);
-    notePlace(places_, "grey width");
 }
 
 void CaseScreen::buildPieces() {
@@ -225,19 +272,14 @@ void CaseScreen::buildPlace() {
     if (choice("A part of it, with fine voxels", desk_.isOfPart())) desk_.millPart(true);
     if (desk_.isOfPart()) {
         auto size = float(desk_.sizeMm());
-        ImGui::SetNextItemWidth(-110 * stage_.scale());
-        if (ImGui::SliderFloat("edge mm", &size, 2, 200, "%.0f", ImGuiSliderFlags_Logarithmic))
+        if (slider("edge mm", size, 2, 200, "%.0f", ImGuiSliderFlags_Logarithmic))
             desk_.setSizeMm(std::clamp(std::round(double(size)), 2.0, 500.0));
-        notePlace(places_, "edge mm");
         if (button("Place it at the cross")) desk_.placeAt(desk_.marks().cross_W);
         say("The green box is what is milled: drag its middle in the slices.");
     }
     say("The hand comes along the red arrow: drag its round end in the slices.");
     if (desk_.isHandChosen() && button("Let it come from outside")) desk_.bringHandFromOutside();
-    if (desk_.planProblem().empty()) return;
-    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.00f, 0.80f, 0.35f, 1));
-    ImGui::TextWrapped("%s", desk_.planProblem().c_str());
-    ImGui::PopStyleColor();
+    if (!desk_.planProblem().empty()) say(desk_.planProblem(), ImVec4(1.00f, 0.80f, 0.35f, 1));
 }
 
 void CaseScreen::buildStructures() {
@@ -308,9 +350,7 @@ void CaseScreen::buildCase() {
     ImGui::PopStyleColor(2);
     if (!why_not.empty()) say(why_not);
     if (!desk_.madeScene().empty()) {
-        ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.45f, 0.9f, 0.55f, 1));
-        ImGui::TextWrapped("Made: %s", desk_.madeScene().c_str());
-        ImGui::PopStyleColor();
+        say("Made: " + desk_.madeScene(), ImVec4(0.45f, 0.9f, 0.55f, 1));
         say("Mill it: bonemill start " + desk_.madeScene());
     }
 }

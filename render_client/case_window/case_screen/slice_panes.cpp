@@ -8,7 +8,7 @@
 #include "common/base/units.h"
 #include "common/text/printed_text.h"
 #include "render_client/case_window/case_screen/case_screen.h"
-#include "render_client/look/model/mesh_difference.h"
+#include "render_client/look/model/node_store.h"
 
 namespace bonemill {
 namespace {
@@ -23,12 +23,9 @@ ImVec2 operator+(const ImVec2& a, const Eigen::Vector2d& b) {
     return {a.x + float(b.x()), a.y + float(b.y())};
 }
 
-DensityGrid gridOf(const VolumeGeometry& geometry) {
-    DensityGrid grid{};
-    grid.voxels = geometry.dims;
-    grid.spacing_m = geometry.spacing;
-    grid.origin_m.setZero();
-    return grid;
+Eigen::Vector2d mouseFrom(const ImVec2& corner) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    return {double(mouse.x - corner.x), double(mouse.y - corner.y)};
 }
 
 void drawArrow(ImDrawList& draw, const ImVec2& tip, const ImVec2& end, float scale) {
@@ -126,8 +123,7 @@ void CaseScreen::buildSlice(size_t axis, const ImVec2& size) {
 }
 
 void CaseScreen::moveOnSlice(size_t axis, const ImVec2& corner) {
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const Eigen::Vector2d pixel(double(mouse.x - corner.x), double(mouse.y - corner.y));
+    const Eigen::Vector2d pixel = mouseFrom(corner);
     const ScanPane& pane = panes_[axis];
     const double reach = double(kReach * stage_.scale());
     if (ImGui::IsItemActivated()) grip_ = gripAt(pane, desk_.marks(), pixel, reach);
@@ -147,10 +143,8 @@ void CaseScreen::scrollSlice(size_t axis, const ImVec2& corner) {
         cross_W[along] += double(steps) * sliceStep(gridOf(geometry), geometry.X_WV, axis);
         return desk_.moveCross(cross_W);
     }
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const Eigen::Vector2d pixel(double(mouse.x - corner.x), double(mouse.y - corner.y));
     const ScanPane& pane = panes_[axis];
-    const Eigen::Vector3d under_W = pane.toWorld(pixel);
+    const Eigen::Vector3d under_W = pane.toWorld(mouseFrom(corner));
     const double zoom = std::clamp(zoom_ * std::pow(kZoomStep, double(steps)), 1.0, kMaxZoom);
     if (zoom_ <= 1) zoom_middle_W_ = desk_.marks().cross_W;
     const Eigen::Vector3d middle_W = under_W + (pane.middle_W - under_W) * (zoom_ / zoom);

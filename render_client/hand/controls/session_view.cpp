@@ -4,19 +4,77 @@
 
 #include "common/commands/role_rules.h"
 #include "common/device_messages/device_messages.h"
+#include "render_client/look/hud/figure_text.h"
 
 namespace bonemill {
 namespace {
+
+std::string milledText(const SessionView& session) {
+    return readableText(session.status->removed_mm3(), " mm\u00b3") + " are milled";
+}
+
+// A checkpoint has the bone as it is when just as much was removed until then.
+bool hasUnsavedWork(const SessionView& session) {
+    if (!session.status || session.status->removed_mm3() == 0) return false;
+    for (const topics::Checkpoint& checkpoint : session.status->checkpoints())
+        if (checkpoint.removed_mm3() == session.status->removed_mm3()) return false;
+    return true;
+}
+
+bool isAttemptRunning(const SessionView& session) {
+    return session.lesson && session.lesson->is_running();
+}
+
+std::string attemptText(const SessionView& session) {
+    return session.lesson->trainee() + "'s attempt";
+}
+
+std::optional<Question> beforeScene(const SessionView& session) {
+    std::string lost;
+    if (isAttemptRunning(session)) lost += " " + attemptText(session) + " ends.";
+    if (session.status && session.status->removed_mm3() > 0)
+        lost += " " + milledText(session) + " and go with it.";
+    if (lost.empty()) return std::nullopt;
+    return Question{"Change the exercise?" + lost, "Change"};
+}
+
+std::optional<Question> beforeOtherBone(const topics::Command& command, const SessionView& session) {
+    if (!hasUnsavedWork(session)) return std::nullopt;
+    const std::string what = command.reset_volume()
+                                 ? "Put the bone back?"
+                                 : "Back to checkpoint " + std::to_string(command.restore_checkpoint()) + "?";
+    return Question{.text = what + " " + milledText(session) + " and in no checkpoint.",
+                    .yes = command.reset_volume() ? "Put back" : "Go back",
+                    .offers_checkpoint = true};
+}
+
+std::optional<Question> beforeCommand(const topics::Command& command, const SessionView& session) {
+    if (command.has_choose_scene()) return beforeScene(session);
+    if (command.has_start_attempt()) {
+        if (!isAttemptRunning(session)) return std::nullopt;
+        return Question{
+            "End " + attemptText(session) + "? " + command.start_attempt() + " begins on whole bone.",
+            "Begin anew"};
+    }
+    if (command.has_erase_remark() && command.erase_remark() == 0)
+        return Question{"Erase all notes and strokes, for everybody?", "Erase"};
+    if (command.reset_volume() || command.has_restore_checkpoint()) return beforeOtherBone(command, session);
+    return std::nullopt;
+}
 
 CommandOrReason refuse(std::string why_not) {
     return {std::nullopt, std::move(why_not)};
 }
 
+template <class Value>
+CommandOrReason order(void (topics::Command::*set)(Value), std::type_identity_t<Value> value) {
+    return {commandWith(set, value), ""};
+}
+
 CommandOrReason pauseOrGoOn(const SessionView& session) {
-    topics::Command command;
-    command.set_pause_milling(isReplay(session) ? session.status->replay().is_playing()
-                                                : !(session.status && session.status->is_milling_paused()));
-    return {command, ""};
+    return order(&topics::Command::set_pause_milling,
+                 isReplay(session) ? session.status->replay().is_playing()
+                                   : !(session.status && session.status->is_milling_paused()));
 }
 
 // Each step of speed is a doubling, from where it stands.
@@ -48,17 +106,13 @@ CommandOrReason orderReplay(Action action, const SessionView& session) {
 CommandOrReason backToLastCheckpoint(const SessionView& session) {
     if (!session.status || session.status->checkpoints().empty())
         return refuse("there is no checkpoint yet: " + keyLabelOf(Action::kSaveCheckpoint) + " saves one");
-    topics::Command command;
-    command.set_restore_checkpoint(session.status->checkpoints().rbegin()->id());
-    return {command, ""};
+    return order(&topics::Command::set_restore_checkpoint, session.status->checkpoints().rbegin()->id());
 }
 
 CommandOrReason nextTool(const SessionView& session) {
     const uint32_t count = session.info ? uint32_t(session.info->tool_names_size()) : 0;
     if (count < 2) return refuse("the scene has one tool only");
-    topics::Command command;
-    command.set_select_tool((session.info->tool_index() + 1) % count);
-    return {command, ""};
+    return order(&topics::Command::set_select_tool, (session.info->tool_index() + 1) % count);
 }
 
 // The one after the scene in force, of those that can be chosen.
@@ -79,12 +133,69 @@ CommandOrReason nextScene(const SessionView& session) {
 
 CommandOrReason stopAttempt(const SessionView& session) {
     if (!session.lesson || !session.lesson->is_running()) return refuse("no attempt is under way");
+    return order(&topics::Command::set_stop_attempt, true);
+}
+
+CommandOrReason askedBy(Action action, const SessionView& session) {
     topics::Command command;
-    command.set_stop_attempt(true);
-    return {command, ""};
+    switch (action) {
+        case Action::kResetBone:
+            return order(&topics::Command::set_reset_volume, true);
+        case Action::kPauseMilling:
+            return pauseOrGoOn(session);
+        case Action::kReplayBack:
+        case Action::kReplayAhead:
+        case Action::kReplaySlower:
+        case Action::kReplayFaster:
+        case Action::kPreviousEvent:
+        case Action::kNextEvent:
+            return orderReplay(action, session);
+        case Action::kSaveCheckpoint:
+            return order(&topics::Command::set_save_checkpoint, true);
+        case Action::kLastCheckpoint:
+            return backToLastCheckpoint(session);
+        case Action::kNextTool:
+            return nextTool(session);
+        case Action::kNextScene:
+            return nextScene(session);
+        case Action::kStopAttempt:
+            return stopAttempt(session);
+        case Action::kResetDevice:
+            return order(&topics::Command::set_reset_device, true);
+        case Action::kAccuracyScene:
+        case Action::kAccuracy1:
+        case Action::kAccuracy2:
+        case Action::kAccuracy3:
+        case Action::kAccuracy4:
+            command.set_set_accuracy(std::string(accuracyOf(action)));
+            return {command, ""};
+        default:
+            return {};
+    }
 }
 
 }  // namespace
+
+bool isSame(const Deed& a, const Deed& b) {
+    return a.kind == b.kind && a.command.SerializeAsString() == b.command.SerializeAsString();
+}
+
+std::optional<Question> questionBefore(const Deed& deed, const SessionView& session) {
+    switch (deed.kind) {
+        case Deed::Kind::kCommand:
+            return beforeCommand(deed.command, session);
+        case Deed::Kind::kNextTrainee:
+            if (!isAttemptRunning(session)) return std::nullopt;
+            return Question{"Next trainee? " + attemptText(session) + " ends.", "End it"};
+        case Deed::Kind::kQuit:
+            return Question{"Close this viewer?", "Close"};
+    }
+    return std::nullopt;
+}
+
+bool wantsCheckpointBefore(const Deed& deed, const SessionView& session) {
+    return deed.command.has_start_attempt() && !isAttemptRunning(session) && hasUnsavedWork(session);
+}
 
 std::string whyNotCommand(const SessionView& session) {
     if (!mayOrderAnything(session.role)) return "A viewer only looks: start with --role operator";
@@ -127,55 +238,8 @@ std::string whyNotEndSession(const SessionView& session) {
 }
 
 CommandOrReason commandOf(Action action, const SessionView& session) {
-    topics::Command command;
-    CommandOrReason asked;
-    switch (action) {
-        case Action::kResetBone:
-            command.set_reset_volume(true);
-            asked = {command, ""};
-            break;
-        case Action::kPauseMilling:
-            asked = pauseOrGoOn(session);
-            break;
-        case Action::kReplayBack:
-        case Action::kReplayAhead:
-        case Action::kReplaySlower:
-        case Action::kReplayFaster:
-        case Action::kPreviousEvent:
-        case Action::kNextEvent:
-            asked = orderReplay(action, session);
-            break;
-        case Action::kSaveCheckpoint:
-            command.set_save_checkpoint(true);
-            asked = {command, ""};
-            break;
-        case Action::kLastCheckpoint:
-            asked = backToLastCheckpoint(session);
-            break;
-        case Action::kNextTool:
-            asked = nextTool(session);
-            break;
-        case Action::kNextScene:
-            asked = nextScene(session);
-            break;
-        case Action::kStopAttempt:
-            asked = stopAttempt(session);
-            break;
-        case Action::kResetDevice:
-            command.set_reset_device(true);
-            asked = {command, ""};
-            break;
-        case Action::kAccuracyScene:
-        case Action::kAccuracy1:
-        case Action::kAccuracy2:
-        case Action::kAccuracy3:
-        case Action::kAccuracy4:
-            command.set_set_accuracy(std::string(accuracyOf(action)));
-            asked = {command, ""};
-            break;
-        default:
-            return {};
-    }
+    const CommandOrReason asked = askedBy(action, session);
+    if (!asked.command && asked.why_not.empty()) return asked;
     if (const std::string why_not = whyNotCommand(session); !why_not.empty()) return refuse(why_not);
     if (asked.command && !mayOrder(session.role, asked.command->action_case()))
         return refuse("An examiner leaves bone, tool and device to others");

@@ -1,16 +1,19 @@
-// A viewer knows this about its session, for those who show it, and who may ask the server for what.
+// A viewer knows this about its session, for those who show it, who may ask the server for
+// what, and what must be asked about first.
 //
 // They are plain values, for any thread. The pointers are the owner's; they are null while nothing
 // has come yet.
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "proto/topics.pb.h"
 #include "render_client/hand/controls/key_table.h"
-#include "render_client/look/hud/fault_list.h"
+#include "render_client/look/hud/conditions.h"
 
 namespace bonemill {
 
@@ -49,6 +52,14 @@ bool isReplay(const SessionView& session);
 // The session's tool is held by a mouse (device_daemon --device pointer).
 bool isHeldByMouse(const SessionView& session);
 
+// Returns the command that this setter fills in.
+template <class Value>
+topics::Command commandWith(void (topics::Command::*set)(Value), std::type_identity_t<Value> value) {
+    topics::Command command;
+    (command.*set)(value);
+    return command;
+}
+
 // It says what an action asks of the server, or why it cannot be asked. Both are empty for actions that are
 // none of the server's business.
 struct CommandOrReason {
@@ -56,5 +67,28 @@ struct CommandOrReason {
     std::string why_not;
 };
 CommandOrReason commandOf(Action action, const SessionView& session);
+
+// What a user wants may cost something: then it is asked about first. These are the deeds that can be asked
+// about, and the questions.
+struct Deed {
+    enum class Kind { kCommand, kNextTrainee, kQuit };
+    Kind kind = Kind::kCommand;
+    topics::Command command = {};  // of kCommand
+};
+bool isSame(const Deed& a, const Deed& b);
+
+struct Question {
+    std::string text;  // UTF-8, with what would be lost
+    std::string yes;   // labels of the answers
+    std::string no = "Stay";
+    bool offers_checkpoint = false;  // a checkpoint keeps what would be lost
+};
+
+// Returns nothing when nothing is lost by the deed.
+std::optional<Question> questionBefore(const Deed& deed, const SessionView& session);
+
+// A start puts the bone back. Where no trainee loses anything by it nobody is asked, and a checkpoint keeps
+// what is milled.
+bool wantsCheckpointBefore(const Deed& deed, const SessionView& session);
 
 }  // namespace bonemill

@@ -13,44 +13,15 @@ constexpr double kOrbitPerKey = 0.0873;  // rad, 5 degrees
 constexpr double kCutStep = 0.02;        // of the bone's box
 constexpr double kTextStep = 1.25;       // factor
 
-StereoMode nextStereo(StereoMode mode) {
-    switch (mode) {
-        case StereoMode::kOff:
-            return StereoMode::kSideBySide;
-        case StereoMode::kSideBySide:
-            return StereoMode::kAnaglyph;
-        case StereoMode::kAnaglyph:
-            return StereoMode::kOff;
-    }
-    return StereoMode::kOff;
+template <class Mode>
+Mode nextOf(Mode mode, Mode last) {
+    return Mode((int(mode) + 1) % (int(last) + 1));
 }
 
-CtShown nextCt(CtShown shown) {
-    return CtShown((int(shown) + 1) % (int(CtShown::kMaterialsOnCuts) + 1));
-}
-
-StructureMode nextMode(StructureMode mode) {
-    return StructureMode((int(mode) + 1) % (int(StructureMode::kOff) + 1));
-}
-
-// W is LPS: x to the patient's left, y to the back, z to the head.
-Eigen::Vector3d directionOf(Side side) {
-    switch (side) {
-        case Side::kFront:
-            return -Eigen::Vector3d::UnitY();
-        case Side::kBack:
-            return Eigen::Vector3d::UnitY();
-        case Side::kLeft:
-            return Eigen::Vector3d::UnitX();
-        case Side::kRight:
-            return -Eigen::Vector3d::UnitX();
-        case Side::kTop:
-            return Eigen::Vector3d::UnitZ();
-        case Side::kBottom:
-            return -Eigen::Vector3d::UnitZ();
-    }
-    return -Eigen::Vector3d::UnitY();
-}
+// W is LPS: x to the patient's left, y to the back, z to the head. The order is that of Side.
+const Eigen::Vector3d kSides[] = {-Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitY(),
+                                  Eigen::Vector3d::UnitX(),  -Eigen::Vector3d::UnitX(),
+                                  Eigen::Vector3d::UnitZ(),  -Eigen::Vector3d::UnitZ()};
 
 // The camera's own axes for its `up` are read off the camera.
 Eigen::Vector3d towardsEyeAt(OrbitCamera camera, double azimuth) {
@@ -79,18 +50,18 @@ void ViewerControls::changeView(Action action) {
         case Action::kCutHigher:
             return moveCut(kCutStep);
         case Action::kScanOnBone:
-            settings_.slices.ct = nextCt(settings_.slices.ct);
+            settings_.slices.ct = nextOf(settings_.slices.ct, CtShown::kMaterialsOnCuts);
             return;
         case Action::kSlices:
             return toggle(settings_.slices.are_shown);
         case Action::kTransparency:
             return toggle(settings_.is_transparent);
         case Action::kStructures:
-            return settings_.structures.fill(nextMode(settings_.structures[0]));
+            return settings_.structures.fill(nextOf(settings_.structures[0], StructureMode::kOff));
         case Action::kThickness:
             return toggle(settings_.show_thickness);
         case Action::kStereo:
-            return setStereo(nextStereo(settings_.stereo));
+            return setStereo(nextOf(settings_.stereo, StereoMode::kAnaglyph));
         case Action::kQuickDrawing:
             settings_.quality = settings_.quality == Quality::kFull ? Quality::kQuick : Quality::kFull;
             return;
@@ -175,7 +146,7 @@ void ViewerControls::setOpacity(double opacity) {
 }
 
 void ViewerControls::lookFrom(Side side) {
-    const Eigen::Vector3d direction = directionOf(side);
+    const Eigen::Vector3d& direction = kSides[size_t(side)];
     const Eigen::Vector3d front = towardsEyeAt(camera_, 0), left = towardsEyeAt(camera_, M_PI / 2);
     camera_.elevation = std::asin(std::clamp(direction.dot(camera_.up_W()), -1.0, 1.0));
     const Eigen::Vector2d level(direction.dot(front), direction.dot(left));

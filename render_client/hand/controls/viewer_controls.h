@@ -10,12 +10,10 @@
 #include <vector>
 
 #include "render_client/hand/controls/key_table.h"
-#include "render_client/hand/controls/pane_mouse.h"
-#include "render_client/hand/controls/question.h"
+#include "render_client/hand/controls/mouse_modes.h"
 #include "render_client/hand/controls/session_view.h"
-#include "render_client/hand/controls/stroke_pen.h"
 #include "render_client/hand/controls/tool_hold.h"
-#include "render_client/look/camera/orbit_camera.h"
+#include "render_client/look/camera/camera.h"
 #include "render_client/look/camera/view_settings.h"
 #include "render_client/look/hud/hud.h"
 

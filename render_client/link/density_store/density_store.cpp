@@ -6,6 +6,31 @@
 
 namespace bonemill {
 
+Eigen::Vector3i bricksPerAxis(const DensityGrid& grid) {
+    return (grid.voxels.array() + (grid.brick_edge - 1)) / grid.brick_edge;
+}
+
+int brickCount(const DensityGrid& grid) {
+    return bricksPerAxis(grid).prod();
+}
+
+uint32_t brickOf(const DensityGrid& grid, const Eigen::Vector3i& voxel) {
+    BONEMILL_ASSERT((voxel.array() >= 0).all() && (voxel.array() < grid.voxels.array()).all());
+    const Eigen::Vector3i n = bricksPerAxis(grid), at = voxel / grid.brick_edge;
+    return uint32_t(at.x() + n.x() * (at.y() + n.y() * at.z()));
+}
+
+Eigen::Vector3i firstVoxelOf(const DensityGrid& grid, uint32_t brick) {
+    const Eigen::Vector3i n = bricksPerAxis(grid);
+    const int b = int(brick);
+    BONEMILL_ASSERT(b >= 0 && b < n.prod());
+    return Eigen::Vector3i(b % n.x(), b / n.x() % n.y(), b / n.x() / n.y()) * grid.brick_edge;
+}
+
+size_t brickVoxels(const DensityGrid& grid) {
+    return size_t(grid.brick_edge) * size_t(grid.brick_edge) * size_t(grid.brick_edge);
+}
+
 void DensityStore::setGrid(const DensityGrid& grid) {
     if (grid_ == grid) return;
     clear();
@@ -63,30 +88,8 @@ const DensityBrick* DensityStore::find(uint32_t brick) const {
     return held == bricks_.end() ? nullptr : &held->second.contents;
 }
 
-std::optional<DensityStore::Place> DensityStore::placeOf(const Eigen::Vector3i& voxel) const {
-    if (!grid_ || (voxel.array() < 0).any() || (voxel.array() >= grid_->voxels.array()).any()) return {};
-    const DensityBrick* const brick = find(brickOf(*grid_, voxel));
-    if (!brick) return {};
-    const int edge = grid_->brick_edge;
-    const Eigen::Vector3i at = voxel.unaryExpr([edge](int v) { return v % edge; });
-    return Place{brick, size_t(at.x() + edge * (at.y() + edge * at.z()))};
-}
-
 bool DensityStore::hasAllWanted() const {
     return std::ranges::all_of(wanted_, [this](uint32_t brick) { return find(brick) != nullptr; });
-}
-
-std::optional<uint16_t> DensityStore::scannedAt(const Eigen::Vector3i& voxel) const {
-    const auto place = placeOf(voxel);
-    if (!place) return {};
-    return place->brick->scanned[place->index];
-}
-
-std::optional<uint16_t> DensityStore::presentAt(const Eigen::Vector3i& voxel) const {
-    const auto place = placeOf(voxel);
-    if (!place) return {};
-    const auto& present = place->brick->present;
-    return present.empty() ? place->brick->scanned[place->index] : present[place->index];
 }
 
 }  // namespace bonemill

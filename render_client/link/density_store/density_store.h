@@ -5,15 +5,39 @@
 // when it is wanted again.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <list>
 #include <optional>
 #include <unordered_map>
 #include <vector>
 
-#include "render_client/link/density_store/density_grid.h"
-
 namespace bonemill {
+
+// The grid of the scan's voxels, cut into bricks of equal edge. It is for any thread.
+//
+// Voxel (i, j, k) lies at origin_m + spacing_m ∘ (i, j, k) in the volume frame V (docs/develop/frames.md).
+// Bricks are numbered x fastest; the last ones of an axis may reach beyond the grid.
+struct DensityGrid {
+    Eigen::Vector3i voxels;     // per axis, at least 1
+    Eigen::Vector3d spacing_m;  // > 0
+    Eigen::Vector3d origin_m;   // of voxel (0, 0, 0), in V
+    int brick_edge;             // voxels, at least 1
+    double value_at_0;          // of the scan at density 0, HU where it is CT
+    double value_at_65535;      // of the scan at density 65535
+    double iso_value;           // of the bone surface, as the two above
+    bool operator==(const DensityGrid&) const = default;
+};
+
+Eigen::Vector3i bricksPerAxis(const DensityGrid& grid);
+int brickCount(const DensityGrid& grid);
+// The voxel must be one of the grid.
+uint32_t brickOf(const DensityGrid& grid, const Eigen::Vector3i& voxel);
+// Returns the brick's first voxel. The brick must be one of the grid.
+Eigen::Vector3i firstVoxelOf(const DensityGrid& grid, uint32_t brick);
+// Returns how many voxels a brick holds, those beyond the grid included.
+size_t brickVoxels(const DensityGrid& grid);
 
 // A brick has brick_edge³ voxels, x fastest; those outside of the grid are 0. Densities are 0 .. 65535.
 struct DensityBrick {
@@ -54,10 +78,6 @@ class DensityStore {
     uint64_t changes() const { return changes_; }
     size_t bytes() const { return bytes_; }
 
-    // Nothing is returned for a voxel outside of the grid, or whose brick is not here.
-    std::optional<uint16_t> scannedAt(const Eigen::Vector3i& voxel) const;
-    std::optional<uint16_t> presentAt(const Eigen::Vector3i& voxel) const;
-
   private:
     struct Held {
         DensityBrick contents;
@@ -67,11 +87,6 @@ class DensityStore {
         return (brick.scanned.size() + brick.present.size()) * sizeof(uint16_t) + brick.materials.size();
     }
     void dropOldest();
-    struct Place {
-        const DensityBrick* brick;
-        size_t index;
-    };
-    std::optional<Place> placeOf(const Eigen::Vector3i& voxel) const;
 
     size_t most_bytes_;
     std::optional<DensityGrid> grid_;

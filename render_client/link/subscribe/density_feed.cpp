@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "render_client/link/subscribe/density_payloads.h"
+#include "render_client/link/subscribe/payloads.h"
 
 namespace bonemill {
 namespace {
@@ -128,11 +128,7 @@ void DensityFeed::say(DensityStore& store, int64_t now_ns) {
     if (is_over && wished_.empty()) return;
     const std::string bytes = wishOf(store).SerializeAsString();
     if (bytes == said_ && now_ns - said_ns_ < kRepeat_ns) return;
-    dds::DensityWishSample sample{};
-    sample.session = session_;
-    sample.sender = sender_;
-    dds::setPayload(sample, bytes);
-    if (!writer_->write(sample)) return;
+    if (!writer_->write(session_, sender_, bytes)) return;
     said_ = bytes;
     said_ns_ = now_ns;
 }

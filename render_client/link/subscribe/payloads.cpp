@@ -6,11 +6,31 @@
 #include "common/commands/role_rules.h"
 #include "common/config/viewer_effects.h"
 #include "common/dds/remark_bounds.h"
-#include "render_client/link/subscribe/density_payloads.h"
-#include "render_client/link/subscribe/scene_parts.h"
 
 namespace bonemill {
 namespace {
+
+constexpr int64_t kMaxBricks = 1 << 20;  // of a server's 16³ voxels, a scan of 1600³
+
+int64_t bricksOf(const topics::DensityGrid& grid) {
+    int64_t bricks = 1;
+    for (const uint32_t voxels : grid.voxels())
+        bricks *= (int64_t(voxels) + grid.brick_edge() - 1) / grid.brick_edge();
+    return bricks;
+}
+
+// This is as many as a scene may have: a vertex names one of them in one byte.
+constexpr int kMaxShownMaterials = 255;
+
+// Forgets what is no viewer's business, so that nobody relies on it.
+void keepShownParts(scene::Material& material) {
+    scene::Material kept;
+    kept.set_name(material.name());
+    if (material.has_color()) kept.mutable_color()->Swap(material.mutable_color());
+    kept.set_is_protected(material.is_protected());
+    material.Swap(&kept);
+    material.DiscardUnknownFields();
+}
 
 constexpr size_t kMaxMaterialName = 64;  // bytes
 constexpr uint32_t kMaxScenes = 64;
@@ -59,6 +79,30 @@ std::optional<Message> parse(std::span<const uint8_t> payload) {
 }
 
 }  // namespace
+
+bool isUsableGrid(const topics::DensityGrid& grid) {
+    if (!isWithinBounds(grid)) return false;
+    const int64_t bricks = bricksOf(grid);
+    return bricks <= kMaxBricks && int64_t(grid.air().size()) == (bricks + 7) / 8 &&
+           grid.value_at_0() < grid.value_at_65535();
+}
+
+DensityGrid densityGridOf(const topics::DensityGrid& grid) {
+    const auto& n = grid.voxels();
+    return {.voxels = {int(n[0]), int(n[1]), int(n[2])},
+            .spacing_m = Eigen::Map<const Eigen::Vector3d>(grid.spacing_m().data()),
+            .origin_m = Eigen::Map<const Eigen::Vector3d>(grid.origin_m().data()),
+            .brick_edge = int(grid.brick_edge()),
+            .value_at_0 = grid.value_at_0(),
+            .value_at_65535 = grid.value_at_65535(),
+            .iso_value = grid.iso_value()};
+}
+
+std::optional<topics::DensityBrick> parseDensityBrick(std::span<const uint8_t> payload) {
+    topics::DensityBrick brick;
+    if (!parseWithinBounds(payload, brick)) return std::nullopt;
+    return brick;
+}
 
 std::optional<DecodedNode> parseNode(std::span<const uint8_t> payload, uint32_t leaf, uint32_t revision) {
     const std::string_view bytes(reinterpret_cast<const char*>(payload.data()), payload.size());

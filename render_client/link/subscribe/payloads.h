@@ -8,6 +8,7 @@
 
 #include "common/mesh_codec/mesh_codec.h"
 #include "proto/topics.pb.h"
+#include "render_client/link/density_store/density_store.h"
 
 namespace bonemill {
 
@@ -30,7 +31,7 @@ inline constexpr size_t kMaxTrianglesOfStructures = 1000000;
 std::optional<StructureSurface> parseStructure(std::span<const uint8_t> payload, uint32_t structure);
 
 // Vectors have their length, numbers are finite, quaternions are of unit length, the tool's triangles name
-// vertices; of effects and materials only what scene_parts.h keeps, within the ranges of scene files.
+// vertices; of effects and materials only what a viewer uses, within the ranges of scene files.
 std::optional<topics::SceneInfo> parseSceneInfo(std::span<const uint8_t> payload);
 std::optional<topics::ToolState> parseToolState(std::span<const uint8_t> payload);
 std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload);
@@ -45,5 +46,14 @@ std::optional<topics::Remark> parseRemark(std::span<const uint8_t> payload, uint
 // `sender` is that of the sample's envelope. The name is cut to 64 bytes of printable UTF-8; only an
 // instructor points.
 std::optional<topics::Viewer> parseViewer(std::span<const uint8_t> payload, uint64_t sender);
+
+// Every number is in a range in which a viewer can compute with it, and `air` has a bit for each brick.
+bool isUsableGrid(const topics::DensityGrid& grid);
+
+// The grid must be usable.
+DensityGrid densityGridOf(const topics::DensityGrid& grid);
+
+// What it holds is still coded.
+std::optional<topics::DensityBrick> parseDensityBrick(std::span<const uint8_t> payload);
 
 }  // namespace bonemill

@@ -42,12 +42,8 @@ void SceneSubscriber::sendCommands() {
     if (!link_->command_writer.isAllowed()) outbox_.refuseAll("refused: the identity of --secure only looks");
     outbox_.step(CommandOutbox::Clock::now(), link_->command_writer.matchedReaders() > 0,
                  [this](const topics::Command& command) {
-                     const std::string bytes = command.SerializeAsString();
-                     dds::CommandSample sample{};
-                     sample.session = options_.session;
-                     sample.sender = command.sender();
-                     dds::setPayload(sample, bytes);
-                     link_->command_writer.write(sample);
+                     link_->command_writer.write(options_.session, command.sender(),
+                                                 command.SerializeAsString());
                  });
 }
 
@@ -130,12 +126,7 @@ void SceneSubscriber::announce(double frame_rate_hz, const std::optional<Eigen::
     viewer.set_is_trainee(options_.is_trainee);
     if (eye) *viewer.mutable_eye() = *eye;
     if (pointer_W) viewer.mutable_pointer_m()->Assign(pointer_W->begin(), pointer_W->end());
-    const std::string bytes = viewer.SerializeAsString();
-    dds::ViewerSample sample{};
-    sample.session = options_.session;
-    sample.sender = viewer.sender();
-    dds::setPayload(sample, bytes);
-    link_->viewer_writer.write(sample);
+    link_->viewer_writer.write(options_.session, viewer.sender(), viewer.SerializeAsString());
 }
 
 uint32_t SceneSubscriber::sendCommand(topics::Command command) {

@@ -1,5 +1,5 @@
 // Hears a session: takes what servers and viewers say, checks it, and hands to a sink what comes from the one
-// server that is shown (server_choice.h). Viewers and gateways hear by it.
+// server that is shown (heard_peers.h). Viewers and gateways hear by it.
 //
 // One thread: poll() takes what has arrived and never waits. Bytes that do not make sense are dropped,
 // counted, and at first named in the log; what comes with them arrives.
@@ -12,16 +12,58 @@
 #include <optional>
 #include <string>
 
+#include "common/dds/endpoint.h"
 #include "proto/topics.pb.h"
-#include "render_client/link/subscribe/hearing.h"
+#include "render_client/link/subscribe/heard_peers.h"
 #include "render_client/link/subscribe/payloads.h"
 #include "render_client/link/subscribe/scene_model.h"
-#include "render_client/link/subscribe/server_choice.h"
-#include "render_client/link/subscribe/server_numbers.h"
-#include "render_client/link/subscribe/server_readers.h"
-#include "render_client/link/subscribe/viewer_list.h"
+#include "render_client/link/subscribe/wire.h"
 
 namespace bonemill {
+
+// The readers of what servers write, which can be made anew: new readers get the newest sample of every key
+// once more.
+class ServerReaders {
+  public:
+    // Joins `also`, another reader, to the wait; it must outlive this object. Throws UserError.
+    ServerReaders(const Wire& wire, const Inlet<dds::ViewerSample>& also)
+        : nodes(wire),
+          scene_info(wire),
+          structures(wire),
+          tool_state(wire),
+          status(wire),
+          lesson(wire),
+          pictures(wire),
+          remarks(wire),
+          remote_(wire.remote) {
+        if (remote_) return;
+        wait_set_.emplace(*wire.participant);
+        const auto watch = [this](const auto& reader) {
+            wait_set_->add([&reader] { return reader.handle(); });
+        };
+        watch(nodes), watch(scene_info), watch(structures), watch(tool_state), watch(status), watch(lesson);
+        watch(pictures), watch(remarks);
+        watch(also);
+    }
+
+    // Returns true when something can be taken, false when `timeout` passed before.
+    bool wait(std::chrono::nanoseconds timeout) {
+        return remote_ ? remote_->wait(timeout) : wait_set_->wait(timeout);
+    }
+
+    Inlet<dds::NodeMeshSample> nodes;
+    Inlet<dds::SceneInfoSample> scene_info;
+    Inlet<dds::StructureMeshSample> structures;
+    Inlet<dds::ToolStateSample> tool_state;
+    Inlet<dds::StatusSample> status;
+    Inlet<dds::LessonSample> lesson;
+    Inlet<dds::ScenePictureSample> pictures;
+    Inlet<dds::RemarkSample> remarks;
+
+  private:
+    RemoteSession* remote_;
+    std::optional<dds::WaitSet> wait_set_;  // the last member: it waits for the others
+};
 
 // Is called from SessionEar::poll(). Of one kind the newest counts.
 class SessionSink {

@@ -2,14 +2,41 @@
 // as dds::Reader and dds::Writer are.
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "common/dds/endpoint.h"
-#include "render_client/link/subscribe/remote_session.h"
+#include "proto/gateway.pb.h"
 
 namespace bonemill {
+
+namespace gateway {
+// What a guest's Hello says; render_client/web/page/src/link/session_socket.ts says the same.
+inline constexpr uint32_t kProtocolVersion = 2;
+}  // namespace gateway
+
+// A session that a viewer reaches without DDS: what a gateway passes on (proto/gateway.proto). next() and
+// wait() are for the thread that shows the session; the others for any.
+class RemoteSession {
+  public:
+    virtual ~RemoteSession() = default;
+
+    // Takes the next sample of this topic that has come; false: there is none.
+    virtual bool next(gateway::Sample::Topic topic, gateway::Sample& sample) = 0;
+    // Returns true when something can be taken, false when `timeout` passed before.
+    virtual bool wait(std::chrono::nanoseconds timeout) = 0;
+    // The gateway hears the session's server.
+    virtual bool hasServer() const = 0;
+    // The gateway itself is not reached.
+    virtual bool isCut() const = 0;
+    // Returns false while the gateway is not reached.
+    virtual bool say(const gateway::FromGuest& message) = 0;
+    // So the gateway is called: "wss://host:port".
+    virtual std::string name() const = 0;
+};
 
 // What it names outlives whatever is made of it.
 struct Wire {
@@ -22,81 +49,34 @@ struct Wire {
 };
 
 // How the samples of a topic travel through a gateway.
-template <class Sample>
-struct RemoteTopic;
-template <>
-struct RemoteTopic<dds::NodeMeshSample> {
-    static constexpr auto kTopic = gateway::Sample::NODE_MESH;
-    static void setKey(dds::NodeMeshSample& sample, const gateway::Sample& from) {
-        sample.node = uint32_t(from.key());
-        sample.revision = from.revision();
+struct RemoteTopic {
+    using Topic = gateway::Sample;
+    static constexpr auto of(const dds::NodeMeshSample&) { return Topic::NODE_MESH; }
+    static constexpr auto of(const dds::SceneInfoSample&) { return Topic::SCENE_INFO; }
+    static constexpr auto of(const dds::StructureMeshSample&) { return Topic::STRUCTURE_MESH; }
+    static constexpr auto of(const dds::ToolStateSample&) { return Topic::TOOL_STATE; }
+    static constexpr auto of(const dds::StatusSample&) { return Topic::STATUS; }
+    static constexpr auto of(const dds::LessonSample&) { return Topic::LESSON; }
+    static constexpr auto of(const dds::ScenePictureSample&) { return Topic::SCENE_PICTURE; }
+    static constexpr auto of(const dds::RemarkSample&) { return Topic::REMARK; }
+    static constexpr auto of(const dds::DensityBrickSample&) { return Topic::DENSITY_BRICK; }
+    static constexpr auto of(const dds::ViewerSample&) { return Topic::VIEWER; }
+
+    static auto* in(gateway::FromGuest& frame, const dds::ViewerSample&) { return frame.mutable_announce(); }
+    static auto* in(gateway::FromGuest& frame, const dds::HandPointerSample&) { return frame.mutable_hand(); }
+    static auto* in(gateway::FromGuest& frame, const dds::CommandSample&) { return frame.mutable_command(); }
+    static auto* in(gateway::FromGuest& frame, const dds::DensityWishSample&) { return frame.mutable_wish(); }
+
+    template <class Sample>
+    static void setKey(Sample& sample, const gateway::Sample& from) {
+        if constexpr (requires { sample.node; }) sample.node = uint32_t(from.key());
+        if constexpr (requires { sample.revision; }) sample.revision = from.revision();
+        if constexpr (requires { sample.structure; }) sample.structure = uint32_t(from.key());
+        if constexpr (requires { sample.scene; }) sample.scene = uint32_t(from.key());
+        if constexpr (requires { sample.place; }) sample.place = uint32_t(from.key());
+        if constexpr (requires { sample.brick; }) sample.brick = uint32_t(from.key());
+        if constexpr (requires { sample.sender; }) sample.sender = from.key();
     }
-};
-template <>
-struct RemoteTopic<dds::SceneInfoSample> {
-    static constexpr auto kTopic = gateway::Sample::SCENE_INFO;
-    static void setKey(dds::SceneInfoSample&, const gateway::Sample&) {}
-};
-template <>
-struct RemoteTopic<dds::StructureMeshSample> {
-    static constexpr auto kTopic = gateway::Sample::STRUCTURE_MESH;
-    static void setKey(dds::StructureMeshSample& sample, const gateway::Sample& from) {
-        sample.structure = uint32_t(from.key());
-    }
-};
-template <>
-struct RemoteTopic<dds::ToolStateSample> {
-    static constexpr auto kTopic = gateway::Sample::TOOL_STATE;
-    static void setKey(dds::ToolStateSample&, const gateway::Sample&) {}
-};
-template <>
-struct RemoteTopic<dds::StatusSample> {
-    static constexpr auto kTopic = gateway::Sample::STATUS;
-    static void setKey(dds::StatusSample&, const gateway::Sample&) {}
-};
-template <>
-struct RemoteTopic<dds::LessonSample> {
-    static constexpr auto kTopic = gateway::Sample::LESSON;
-    static void setKey(dds::LessonSample&, const gateway::Sample&) {}
-};
-template <>
-struct RemoteTopic<dds::ScenePictureSample> {
-    static constexpr auto kTopic = gateway::Sample::SCENE_PICTURE;
-    static void setKey(dds::ScenePictureSample& sample, const gateway::Sample& from) {
-        sample.scene = uint32_t(from.key());
-    }
-};
-template <>
-struct RemoteTopic<dds::RemarkSample> {
-    static constexpr auto kTopic = gateway::Sample::REMARK;
-    static void setKey(dds::RemarkSample& sample, const gateway::Sample& from) {
-        sample.place = uint32_t(from.key());
-    }
-};
-template <>
-struct RemoteTopic<dds::DensityBrickSample> {
-    static constexpr auto kTopic = gateway::Sample::DENSITY_BRICK;
-    static void setKey(dds::DensityBrickSample& sample, const gateway::Sample& from) {
-        sample.brick = uint32_t(from.key());
-    }
-};
-template <>
-struct RemoteTopic<dds::ViewerSample> {
-    static constexpr auto kTopic = gateway::Sample::VIEWER;
-    static void setKey(dds::ViewerSample& sample, const gateway::Sample& from) { sample.sender = from.key(); }
-    static auto* messageIn(gateway::FromGuest& frame) { return frame.mutable_announce(); }
-};
-template <>
-struct RemoteTopic<dds::HandPointerSample> {
-    static auto* messageIn(gateway::FromGuest& frame) { return frame.mutable_hand(); }
-};
-template <>
-struct RemoteTopic<dds::CommandSample> {
-    static auto* messageIn(gateway::FromGuest& frame) { return frame.mutable_command(); }
-};
-template <>
-struct RemoteTopic<dds::DensityWishSample> {
-    static auto* messageIn(gateway::FromGuest& frame) { return frame.mutable_wish(); }
 };
 
 template <class Sample>
@@ -112,10 +92,10 @@ class Inlet {
         if (reader_) return reader_->take(max_samples, handle);
         gateway::Sample from;
         size_t taken = 0;
-        for (; taken < max_samples && remote_->next(RemoteTopic<Sample>::kTopic, from); ++taken) {
+        for (; taken < max_samples && remote_->next(RemoteTopic::of(Sample{}), from); ++taken) {
             Sample sample{};
             sample.session = session_;
-            RemoteTopic<Sample>::setKey(sample, from);
+            RemoteTopic::setKey(sample, from);
             const std::string& payload = from.payload();
             dds::setPayload(sample, payload);
             handle(sample, dds::SampleInfo{!payload.empty(), payload.empty(), kGateway});
@@ -153,8 +133,16 @@ class Outlet {
         if (writer_) return writer_->write(sample);
         const auto payload = dds::payloadOf(sample);
         gateway::FromGuest frame;
-        return RemoteTopic<Sample>::messageIn(frame)->ParseFromArray(payload.data(), int(payload.size())) &&
+        return RemoteTopic::in(frame, sample)->ParseFromArray(payload.data(), int(payload.size())) &&
                remote_->say(frame);
+    }
+    // Says these bytes as this sender.
+    bool write(uint32_t session, uint64_t sender, const std::string& bytes) {
+        Sample sample{};
+        sample.session = session;
+        sample.sender = sender;
+        dds::setPayload(sample, bytes);
+        return write(sample);
     }
     int matchedReaders() const { return writer_ ? writer_->matchedReaders() : remote_->hasServer(); }
     // A gateway answers for itself.

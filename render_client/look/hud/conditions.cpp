@@ -1,10 +1,54 @@
 #include "render_client/look/hud/conditions.h"
 
+#include <algorithm>
+#include <iterator>
+#include <sstream>
+
 #include "render_client/look/hud/device_lines.h"
-#include "render_client/look/hud/fault_words.h"
 
 namespace bonemill {
 namespace {
+
+constexpr struct {
+    const char* name;
+    const char* text;
+    HudTone tone;
+} kWords[] = {
+    {"overrun", "The computer was too slow for a moment: a tick took longer than its period.",
+     HudTone::kWarning},
+    {"stale_device",
+     "The hand was not heard of for a moment: the device sent nothing, and the force went to zero.",
+     HudTone::kAlarm},
+    {"bad_device_pose", "The hand was not heard of for a moment: the device sent a pose that is none.",
+     HudTone::kAlarm},
+    {"solve", "The force faded for a moment: no balance of forces was found.", HudTone::kAlarm},
+    {"motion_clamped", "The tool moved no faster than its limit.", HudTone::kPlain},
+    {"force_clamped", "The force was kept within the hand's limit.", HudTone::kPlain},
+    {"shell_overflow", "Some milled surface is not felt: there is no room for its contact points.",
+     HudTone::kWarning},
+    {"contact_overflow",
+     "The computer was too slow for a moment: more contact points were near the tool than there was time "
+     "for.",
+     HudTone::kWarning},
+    {"milling_cut_short", "Milling came a moment late: there was more to mill than a tick has time for.",
+     HudTone::kPlain},
+    {"coarser_shell", "A little less detail is felt: a tick has no time for more contact points.",
+     HudTone::kPlain},
+    {"volume_full", "There is no memory for more milled bone: some was not milled.", HudTone::kAlarm},
+    {"stalled", "Nothing to worry about: forces were out of balance for a tick.", HudTone::kPlain},
+    {"implausible_device", "The device said what cannot be: it was refused.", HudTone::kAlarm},
+    {"early_samples", "The device is faster than the loop: a tick was held back.", HudTone::kPlain},
+    {"fewer_samples", "A little less detail is felt: there was no time to sample the contact more finely.",
+     HudTone::kPlain},
+    {"not_recorded", "Not all of the session is recorded: the server's disk is full or slow.",
+     HudTone::kAlarm},
+};
+
+Condition wordsOf(const std::string& name) {
+    const auto known = std::ranges::find_if(kWords, [&](const auto& words) { return words.name == name; });
+    if (known != std::end(kWords)) return {name, known->text, known->tone, true, false};
+    return {name, "The server reports: " + name + ".", HudTone::kWarning, true, false};
+}
 
 constexpr char kStaleDevice[] = "stale_device";
 
@@ -25,9 +69,8 @@ void addTickFaults(const topics::Status& status, std::vector<Condition>& conditi
         conditions.push_back(
             {kStaleDevice, "The device sends nothing: there is no force.", HudTone::kAlarm, true});
     if (status.faults() == 0) return;
-    for (const FaultWords& fault : faultWords(status.fault_text()))
-        if (!is_stale || fault.name != kStaleDevice)
-            conditions.push_back({fault.name, fault.text, fault.tone, true, false});
+    for (const Condition& fault : faultWords(status.fault_text()))
+        if (!is_stale || fault.id != kStaleDevice) conditions.push_back(fault);
 }
 
 void addDevice(const HudInput& input, std::vector<Condition>& conditions) {
@@ -52,6 +95,88 @@ void addPause(const HudInput& input, std::vector<Condition>& conditions) {
 }
 
 }  // namespace
+
+FaultList::Kept* FaultList::find(const std::string& id) {
+    const auto kept = std::ranges::find(kept_, id, [](const Kept& k) { return k.condition.id; });
+    return kept == kept_.end() ? nullptr : &*kept;
+}
+
+void FaultList::begin(Kept& kept, double session_s, Clock::time_point now) {
+    if (kept.entry.count++ == 0) kept.entry.first_s = session_s;
+    kept.began = now;
+}
+
+// What has only happened is over at once; it begins anew when it begins to last.
+void FaultList::observe(const std::vector<Condition>& conditions, double session_s, Clock::time_point now) {
+    for (Kept& kept : kept_) kept.is_present = false;
+    for (const Condition& condition : conditions) {
+        Kept* kept = find(condition.id);
+        if (!kept && kept_.size() >= kMaxKept) continue;
+        if (!kept) kept = &kept_.emplace_back();
+        const bool is_new = kept->entry.count == 0 || (condition.lasts && !kept->entry.lasts);
+        kept->condition = condition;
+        kept->is_present = true;
+        if (is_new) begin(*kept, session_s, now);
+        if (is_new || condition.lasts) {
+            kept->entry.text = condition.text;
+            kept->entry.tone = condition.tone;
+            kept->entry.last_s = session_s;
+            kept->ended = now;
+        }
+        kept->entry.lasts = condition.lasts;
+    }
+    for (Kept& kept : kept_)
+        if (!kept.is_present) kept.entry.lasts = false;
+}
+
+bool FaultList::isSaid(const Kept& kept) {
+    return !kept.condition.is_fault || kept.entry.tone != HudTone::kPlain;
+}
+
+float FaultList::opacity(const Kept& kept, Clock::time_point now) {
+    if (kept.entry.lasts) return 1;
+    const Clock::time_point end = std::max(kept.ended, kept.began + kShown);
+    const std::chrono::duration<float> left = end + kFade - now, fade = kFade;
+    return std::clamp(left / fade, 0.0f, 1.0f);
+}
+
+std::vector<HudNotice> FaultList::said(Clock::time_point now) const {
+    std::vector<const Kept*> visible;
+    for (const Kept& kept : kept_)
+        if (isSaid(kept) && opacity(kept, now) > 0) visible.push_back(&kept);
+    std::ranges::stable_sort(visible, [](const Kept* a, const Kept* b) {
+        return std::pair(a->entry.lasts, a->entry.tone) > std::pair(b->entry.lasts, b->entry.tone);
+    });
+    std::vector<HudNotice> said;
+    const bool are_all = visible.size() <= kMaxShown;
+    const size_t in_full = are_all ? visible.size() : kMaxShown - 1;
+    for (size_t i = 0; i < in_full; ++i)
+        said.push_back({visible[i]->entry.text, visible[i]->entry.tone, opacity(*visible[i], now)});
+    if (are_all) return said;
+    float most = 0;
+    for (size_t i = in_full; i < visible.size(); ++i) most = std::max(most, opacity(*visible[i], now));
+    said.push_back({"and " + std::to_string(visible.size() - in_full) + " more, listed in the panel",
+                    HudTone::kWarning, most});
+    return said;
+}
+
+std::vector<FaultEntry> FaultList::faults() const {
+    std::vector<FaultEntry> faults;
+    for (const Kept& kept : kept_)
+        if (kept.condition.is_fault) faults.push_back(kept.entry);
+    return faults;
+}
+
+std::vector<Condition> faultWords(const std::string& names) {
+    std::vector<Condition> faults;
+    std::istringstream words(names);
+    for (std::string name; words >> name;) {
+        while (name.ends_with(',')) name.pop_back();
+        if (name.empty() || std::ranges::find(faults, name, &Condition::id) != faults.end()) continue;
+        faults.push_back(wordsOf(name));
+    }
+    return faults;
+}
 
 std::vector<Condition> conditionsOf(const HudInput& input) {
     std::vector<Condition> conditions;

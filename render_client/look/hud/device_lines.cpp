@@ -86,6 +86,12 @@ std::string stiffnessText(const topics::Device& device) {
 
 }  // namespace
 
+BurrWork burrWorkOf(const topics::ToolState& tool) {
+    if (tool.waits_for_release()) return BurrWork::kIdle;
+    if (tool.buttons() & kButtonRemove) return BurrWork::kRemoving;
+    return tool.buttons() & kButtonAdd ? BurrWork::kAdding : BurrWork::kIdle;
+}
+
 std::vector<HudRow> deviceRows(const topics::Device& device, const topics::ToolState* tool) {
     const SafetyState state = stateOf(device, tool);
     return {{shownName(device), std::string(nameOf(state)) + (device.is_simulated() ? ", simulated" : ""),

@@ -1,4 +1,5 @@
-// These are the lines that tell of the device in the hand. The functions are pure; any thread may call them.
+// These are the lines that tell of the device in the hand, and what it does with the burr. The functions are
+// pure; any thread may call them.
 #pragma once
 
 #include <optional>
@@ -8,6 +9,12 @@
 #include "render_client/look/hud/hud.h"
 
 namespace bonemill {
+
+// Says what the burr does to the bone, from the tool's buttons and what keeps it from milling.
+enum class BurrWork { kIdle, kRemoving, kAdding };
+
+// It removes while both buttons are down.
+BurrWork burrWorkOf(const topics::ToolState& tool);
 
 // In all of them `tool`, which is newer than `device`, has the last word on the state; it may be null.
 

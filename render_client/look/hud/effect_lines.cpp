@@ -1,12 +1,79 @@
 #include "render_client/look/hud/effect_lines.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/base/units.h"
 #include "render_client/look/hud/figure_text.h"
 
 namespace bonemill {
 namespace {
+
+constexpr double kLittleTime = 60;  // s
+constexpr int kMaxGateRows = 2;
+
+struct RoleRow {
+    scene::Task::Role role;
+    const char* label;
+    bool in_percent;
+};
+// What is left of targets counts by its share, what is gone of the others by its volume.
+constexpr RoleRow kRoleRows[] = {{scene::Task::TARGET, "Target", true},
+                                 {scene::Task::LEEWAY_SIDES, "Leeway, sides", false},
+                                 {scene::Task::LEEWAY_BOTTOM, "Leeway, bottom", false},
+                                 {scene::Task::CONTAINER_SIDES, "Beyond, sides", false},
+                                 {scene::Task::CONTAINER_BOTTOM, "Beyond, bottom", false}};
+
+// What is gone of all zones of a role; empty if there are none.
+std::string goneText(const topics::TaskState& task, const RoleRow& row) {
+    double removed = 0, bone = 0;
+    bool is_there = false;
+    for (const topics::TaskState::Zone& zone : task.zones()) {
+        if (zone.role() != uint32_t(row.role)) continue;
+        is_there = true;
+        removed += zone.removed_mm3();
+        bone += zone.bone_mm3();
+    }
+    if (!is_there) return {};
+    if (row.in_percent) return figureText(bone > 0 ? 100 * removed / bone : 0, 0, " %");
+    return readableText(removed, " mm\u00b3");
+}
+
+void addZoneRow(const topics::TaskState& task, const RoleRow& row, std::vector<HudRow>& rows) {
+    if (std::string gone = goneText(task, row); !gone.empty()) rows.push_back({row.label, std::move(gone)});
+}
+
+int countOf(const topics::TaskState& task, topics::TaskState::Gate::State state) {
+    return int(std::ranges::count_if(task.gates(), [&](const auto& gate) { return gate.state() == state; }));
+}
+
+// While the task is done it is one line, whatever happens.
+HudRow gateRow(const topics::TaskState& task) {
+    using Gate = topics::TaskState::Gate;
+    const std::string of_all = " of " + std::to_string(task.gates_size());
+    if (const int broken = countOf(task, Gate::BROKEN))
+        return {"Limits", std::to_string(broken) + of_all + " broken", HudTone::kAlarm};
+    if (const int open = countOf(task, Gate::OPEN))
+        return {"Limits", std::to_string(open) + of_all + " open"};
+    return {"Limits", "all held", HudTone::kGood};
+}
+
+void addResultRows(const topics::TaskState& task, std::vector<HudRow>& rows) {
+    const int broken = countOf(task, topics::TaskState::Gate::BROKEN);
+    rows.push_back(
+        {"Result", broken == 0 ? "passed" : "failed", broken == 0 ? HudTone::kGood : HudTone::kAlarm});
+    int named = 0;
+    for (const topics::TaskState::Gate& gate : task.gates())
+        if (gate.state() == topics::TaskState::Gate::BROKEN && named++ < kMaxGateRows)
+            rows.push_back({shortenedText(gate.text(), kLongestRow), "", HudTone::kAlarm});
+    if (broken > kMaxGateRows)
+        rows.push_back({"and " + std::to_string(broken - kMaxGateRows) + " more", "", HudTone::kAlarm});
+}
+
+std::string timeLeftText(const topics::TaskState& task) {
+    return clockText(std::max(0.0, task.time_left_s()));
+}
 
 using topics::EffectState;
 
@@ -16,12 +83,9 @@ constexpr size_t kLongestStructureName = 16;
 constexpr double kWarm_c = 42;
 constexpr uint32_t kHarm = EffectState::PROTECTED_TOUCHED | EffectState::PROTECTED_DAMAGED;
 
-HudTone toneOfVolume(double mm3) {
-    return mm3 > 0 ? HudTone::kAlarm : HudTone::kGood;
-}
-
-std::string volumeText(double mm3) {
-    return mm3 > 0 ? readableText(mm3, " mm\u00b3") : "none";
+HudRow harmRow(const char* label, double mm3) {
+    if (mm3 > 0) return {label, readableText(mm3, " mm\u00b3"), HudTone::kAlarm};
+    return {label, "none", HudTone::kGood};
 }
 
 HudRow temperatureRow(double celsius, uint32_t events) {
@@ -44,6 +108,27 @@ HudRow structureRow(const EffectState& state, const topics::SceneInfo* info, uin
 
 }  // namespace
 
+HudRow taskSummaryRow(const topics::TaskState& task) {
+    const bool is_broken = countOf(task, topics::TaskState::Gate::BROKEN) > 0;
+    std::string text = task.is_result() ? (is_broken ? "failed" : "passed") : goneText(task, kRoleRows[0]);
+    if (task.has_time_left_s()) text += (text.empty() ? "" : ", ") + timeLeftText(task);
+    return {"Task", text, is_broken ? HudTone::kAlarm : HudTone::kPlain};
+}
+
+std::vector<HudRow> taskStateRows(const topics::TaskState& task) {
+    std::vector<HudRow> rows;
+    if (task.has_time_left_s())
+        rows.push_back({"Time left", timeLeftText(task),
+                        task.time_left_s() < kLittleTime ? HudTone::kWarning : HudTone::kPlain});
+    for (const RoleRow& row : kRoleRows) addZoneRow(task, row, rows);
+    if (task.gates_size() > 0 && task.is_result())
+        addResultRows(task, rows);
+    else if (task.gates_size() > 0)
+        rows.push_back(gateRow(task));
+    if (task.has_score()) rows.push_back({"Score", figureText(100 * task.score(), 0, " of 100")});
+    return rows;
+}
+
 std::string structureName(uint32_t protected_id, const topics::SceneInfo* info) {
     if (!info || protected_id == 0 || protected_id > uint32_t(info->materials_size())) return "protected";
     const std::string& name = info->materials(int(protected_id) - 1).name();
@@ -54,11 +139,9 @@ std::vector<HudRow> effectTaskRows(const EffectState& state, const topics::Scene
     std::vector<HudRow> rows;
     if (state.has_protected_distance_m() || state.has_damaged_mm3())
         rows.push_back(structureRow(state, info, events));
-    if (state.has_damaged_mm3())
-        rows.push_back({"Damaged", volumeText(state.damaged_mm3()), toneOfVolume(state.damaged_mm3())});
+    if (state.has_damaged_mm3()) rows.push_back(harmRow("Damaged", state.damaged_mm3()));
     if (state.has_temperature_c()) rows.push_back(temperatureRow(state.temperature_c(), events));
-    if (state.has_necrotic_mm3())
-        rows.push_back({"Necrosis", volumeText(state.necrotic_mm3()), toneOfVolume(state.necrotic_mm3())});
+    if (state.has_necrotic_mm3()) rows.push_back(harmRow("Necrosis", state.necrotic_mm3()));
     for (const topics::ShownFigure& figure : state.figures())
         rows.push_back({shortenedText(figure.words(), kLongestStructureName),
                         readableText(figure.value(), (" " + figure.unit()).c_str())});
@@ -91,8 +174,7 @@ std::optional<HudNotice> effectAlert(uint32_t events, uint32_t structure, const 
 
 std::vector<HudRow> trainingRows(const topics::Training& training) {
     std::vector<HudRow> rows;
-    if (training.has_damaged_mm3())
-        rows.push_back({"Damaged", volumeText(training.damaged_mm3()), toneOfVolume(training.damaged_mm3())});
+    if (training.has_damaged_mm3()) rows.push_back(harmRow("Damaged", training.damaged_mm3()));
     if (training.has_least_distance_mm())
         rows.push_back(
             {"Least distance to " + (training.nearest_structure().empty() ? "a protected structure"
@@ -102,9 +184,7 @@ std::vector<HudRow> trainingRows(const topics::Training& training) {
     if (training.has_max_protected_force_n())
         rows.push_back(
             {"Largest force on a protected structure", readableText(training.max_protected_force_n(), " N")});
-    if (training.has_necrotic_mm3())
-        rows.push_back(
-            {"Necrosis", volumeText(training.necrotic_mm3()), toneOfVolume(training.necrotic_mm3())});
+    if (training.has_necrotic_mm3()) rows.push_back(harmRow("Necrosis", training.necrotic_mm3()));
     if (training.has_max_temperature_c())
         rows.push_back({"Hottest bone so far", figureText(training.max_temperature_c(), 1, " \u00b0C"),
                         training.max_temperature_c() >= kWarm_c ? HudTone::kWarning : HudTone::kPlain});

@@ -1,9 +1,12 @@
-// The figures over the picture show numbers and names so. The functions are pure; any thread may call them.
+// The figures over the picture show numbers, names and the session so. The functions are pure; any thread may
+// call them.
 #pragma once
 
 #include <span>
 #include <string>
 #include <vector>
+
+#include "proto/topics.pb.h"
 
 namespace bonemill {
 
@@ -23,5 +26,20 @@ std::string shortenedText(const std::string& text, size_t most);
 inline constexpr size_t kLongestRow = 26;
 // Returns lines of at most `most` bytes, cut at spaces; a longer word stays whole.
 std::vector<std::string> wrappedText(const std::string& text, size_t most);
+
+// Puts the session into words, the same in the figures, the panel and the log.
+inline constexpr topics::Viewer::Role kRoles[] = {topics::Viewer::VIEWER, topics::Viewer::OPERATOR,
+                                                  topics::Viewer::INSTRUCTOR, topics::Viewer::EXAMINER};
+// A role that this version does not know is "?".
+std::string roleName(topics::Viewer::Role role);
+
+// Returns the name of a watcher, or something to read when there is none.
+std::string watcherName(const std::string& name);
+
+// Returns what a list of watchers says of one: "operator, 60 Hz", "viewer by browser, 12 Hz, incomplete".
+std::string watcherText(const topics::Viewer& watcher);
+
+// Returns a time of the session (s) as h:mm:ss in whole seconds, at most 1e9 s; a dash for what is no time.
+std::string clockText(double seconds);
 
 }  // namespace bonemill

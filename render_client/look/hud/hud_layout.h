@@ -4,13 +4,22 @@
 // Positions and sizes are pixels from the picture's upper left corner.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "render_client/look/hud/hud.h"
 #include "render_client/look/hud/hud_canvas.h"
-#include "render_client/look/hud/scale_bar.h"
 
 namespace bonemill {
+
+// Beside a bar of a round length one sees how large the bone is.
+struct ScaleBar {
+    double length = 0;  // m; 0: there is none
+    std::string label;
+};
+
+// Returns the longest length of 1, 2 or 5 times a power of ten that spans at most max_pixels.
+ScaleBar makeScaleBar(double metres_per_pixel, double max_pixels);
 
 struct PictureSize {
     int width = 0;

@@ -2,17 +2,78 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
+#include <vector>
 
-#include "render_client/look/hud/burr_work.h"
+#include "common/base/units.h"
 #include "render_client/look/hud/conditions.h"
-#include "render_client/look/hud/detail_lines.h"
+#include "render_client/look/hud/device_lines.h"
 #include "render_client/look/hud/effect_lines.h"
 #include "render_client/look/hud/figure_text.h"
-#include "render_client/look/hud/session_text.h"
-#include "render_client/look/hud/task_lines.h"
 
 namespace bonemill {
 namespace {
+
+constexpr size_t kMaxAccuracyLines = 2;
+
+void append(std::vector<HudRow> more, std::vector<HudRow>& rows) {
+    rows.insert(rows.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+void addLoopRows(const topics::Status& status, std::vector<HudRow>& rows) {
+    const bool has_ticked = status.ticks() > 0;
+    rows.push_back({"Loop", has_ticked ? figureText(status.rate_hz(), 1, " Hz") : kNoNumber});
+    rows.push_back({"Tick p50 / p99", has_ticked ? readableText(status.tick_p50_us(), "") + " / " +
+                                                       readableText(status.tick_p99_us(), " \u00b5s")
+                                                 : kNoNumber});
+}
+
+void addAccuracyRows(const topics::Status& status, std::vector<HudRow>& rows) {
+    // A preset is one word; all knobs take more than one line.
+    std::vector<std::string> lines = wrappedText(status.preset(), kLongestRow);
+    if (lines.size() > kMaxAccuracyLines) {
+        lines.resize(kMaxAccuracyLines);
+        lines.back() += "\u2026";
+    }
+    std::string label = "Accuracy";
+    for (const std::string& line : lines) rows.push_back({std::exchange(label, ""), line});
+    rows.push_back({"Force error", status.has_accuracy_error()
+                                       ? readableText(status.force_error_percent(), " %") + ", " +
+                                             readableText(status.force_direction_error_deg(), "\u00b0")
+                                       : "not measured"});
+}
+
+void addContactRows(const topics::ToolState& tool, std::vector<HudRow>& rows) {
+    const auto& torque = tool.torque_nm();
+    rows.push_back({"Torque", lengthText({torque.data(), size_t(torque.size())}, kPerMilli, " N\u00b7mm")});
+    rows.push_back({"Contacts", std::to_string(tool.contacts())});
+}
+
+HudRow faultRow(size_t count) {
+    if (count == 0) return {"Faults", "none", HudTone::kGood};
+    return {"Faults", std::to_string(count) + ", see the panel", HudTone::kWarning};
+}
+
+// The lines that are folded as a rule: how well the session runs, and what of the force and the effects does
+// not matter to the task.
+std::vector<HudRow> detailRows(const HudInput& input) {
+    std::vector<HudRow> rows;
+    if (input.status) {
+        addLoopRows(*input.status, rows);
+        addAccuracyRows(*input.status, rows);
+    }
+    if (input.tool) {
+        addContactRows(*input.tool, rows);
+        append(effectDetailRows(input.tool->effects()), rows);
+    }
+    if (input.status && input.status->has_device())
+        append(deviceRows(input.status->device(), input.tool ? &*input.tool : nullptr), rows);
+    rows.push_back(faultRow(input.fault_count));
+    rows.push_back({"Watching", std::to_string(input.watchers.size())});
+    if (input.frame_rate_hz > 0) rows.push_back({"Pictures", figureText(input.frame_rate_hz, 0, " Hz")});
+    return rows;
+}
 
 constexpr size_t kLongestName = 24;
 constexpr int kMaxWatchers = 6;  // rows of the list
@@ -76,14 +137,9 @@ std::vector<HudRow> taskRows(const HudInput& input) {
         rows.push_back(volumeRow(input.status->removed_mm3()));
     if (input.status && !input.status->replay().event().empty())
         rows.push_back({"Moment", input.status->replay().event(), HudTone::kGood});
-    if (input.tool && input.tool->has_effects()) {
-        const auto more = effectTaskRows(input.tool->effects(), info, input.events);
-        rows.insert(rows.end(), more.begin(), more.end());
-    }
-    if (task && !is_summary) {
-        const auto more = taskStateRows(*task);
-        rows.insert(rows.end(), more.begin(), more.end());
-    }
+    if (input.tool && input.tool->has_effects())
+        append(effectTaskRows(input.tool->effects(), info, input.events), rows);
+    if (task && !is_summary) append(taskStateRows(*task), rows);
     return rows;
 }
 
@@ -152,6 +208,27 @@ void removeFigures(Hud& hud) {
 }
 
 }  // namespace
+
+HudPage waitingPage(const ServerSought& sought) {
+    if (!sought.gateway.empty())
+        return {"Waiting for a haptic_server",
+                {{"Gateway", sought.gateway}},
+                {"The gateway hears no server. Whoever started it knows of which session it is."}};
+    HudPage page{
+        "Waiting for a haptic_server",
+        {{"Session", sought.is_any_session ? "the only one there is" : std::to_string(sought.session)},
+         {"Domain", std::to_string(sought.domain)},
+         {"Profile", sought.profile}},
+        {"Is one running? deploy/bonemill start begins a session.",
+         "It must have been started with the same --session, --domain and --profile."}};
+    if (!sought.is_on_lan) {
+        page.lines.push_back("One on another PC is found with --profile lab or classroom only.");
+        return page;
+    }
+    page.rows.push_back({"Interface", sought.interface.empty() ? "chosen by itself" : sought.interface});
+    page.lines.push_back("deploy/check-network says what is wrong between two PCs.");
+    return page;
+}
 
 std::optional<HudNotice> alertOf(const HudInput& input) {
     return effectAlert(input.events, input.structure, input.info ? &*input.info : nullptr);

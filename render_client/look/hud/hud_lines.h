@@ -1,18 +1,32 @@
 // These are the lines of the head-up display, from top to bottom: what each says, and when it is there.
 // First come the figures that matter to the task; which lines they have depends on the scene alone, so that
-// they stand still. The rest (detail_lines.h) is folded. Another line is a function of hud_lines.cpp or
-// detail_lines.cpp, or of effect_lines.cpp when it tells of an effect. The functions are pure; any thread may
-// call them.
+// they stand still. The rest is folded. Another line is a function of hud_lines.cpp, or of effect_lines.cpp
+// when it tells of an effect. The functions are pure; any thread may call them.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "proto/topics.pb.h"
 #include "render_client/look/hud/hud.h"
-#include "render_client/look/hud/waiting_page.h"
 
 namespace bonemill {
+
+// Says which server a viewer waits for, and what to try.
+struct ServerSought {
+    uint32_t session = 1;
+    uint32_t domain = 0;
+    std::string profile;          // as the user knows it: one-pc, lab, ...
+    std::string interface;        // empty: none was chosen
+    bool is_on_lan = false;       // the server may run on another PC
+    bool is_any_session = false;  // the number does not count
+    std::string gateway = {};     // not empty: it is the gateway that looks for the server
+    HudLock lock = HudLock::kNone;
+};
+
+HudPage waitingPage(const ServerSought& sought);
 
 // It says how the viewer stands with its server.
 enum class Connection {

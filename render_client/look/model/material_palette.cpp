@@ -42,15 +42,12 @@ MaterialPalette::MaterialPalette(const GlApi& gl, const std::vector<Eigen::Vecto
     gl_.ActiveTexture(GL_TEXTURE0 + kUnit);
     gl_.BindTexture(GL_TEXTURE_2D, texture_.name());
     gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA16F, kMaxColours, 1, 0, GL_RGBA, GL_FLOAT, texels.data());
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    gl_.setSampling(GL_TEXTURE_2D, GL_NEAREST, GL_REPEAT);
     gl_.ActiveTexture(GL_TEXTURE0);
 }
 
 void MaterialPalette::setUniforms(const Program& program) const {
-    gl_.ActiveTexture(GL_TEXTURE0 + kUnit);
-    gl_.BindTexture(GL_TEXTURE_2D, texture_.name());
-    gl_.ActiveTexture(GL_TEXTURE0);
+    gl_.bindTexture(kUnit, GL_TEXTURE_2D, texture_.name());
     program.set("palette", kUnit);
 }
 

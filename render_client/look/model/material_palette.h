@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "proto/topics.pb.h"
-#include "render_client/look/gl/gl_object.h"
-#include "render_client/look/gl/program.h"
+#include "render_client/look/gl/gl_api.h"
 
 namespace bonemill {
 

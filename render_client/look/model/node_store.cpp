@@ -1,12 +1,67 @@
 #include "render_client/look/model/node_store.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <stdexcept>
-
-#include "render_client/look/model/mesh_difference.h"
+#include <utility>
 
 namespace bonemill {
 namespace {
+
+struct Corner {
+    PackedVertex vertex;
+    uint8_t material;
+};
+using Triangle = std::array<Corner, 3>;
+
+std::pair<uint64_t, uint8_t> keyOf(const Corner& corner) {
+    return {std::bit_cast<uint64_t>(corner.vertex), corner.material};
+}
+
+Corner cornerOf(const NodeMesh& mesh, uint32_t index) {
+    return {mesh.vertices[index], mesh.materials.empty() ? uint8_t(0) : mesh.materials[index]};
+}
+
+bool isBefore(const Triangle& a, const Triangle& b) {
+    for (size_t i = 0; i < 3; ++i)
+        if (keyOf(a[i]) != keyOf(b[i])) return keyOf(a[i]) < keyOf(b[i]);
+    return false;
+}
+
+// Each triangle begins with its smallest corner: the same one is the same, however it was numbered.
+std::vector<Triangle> sortedTriangles(const NodeMesh& mesh) {
+    std::vector<Triangle> triangles(mesh.indices.size() / 3);
+    for (size_t n = 0; n < triangles.size(); ++n) {
+        Triangle& t = triangles[n];
+        for (size_t i = 0; i < 3; ++i) t[i] = cornerOf(mesh, mesh.indices[3 * n + i]);
+        const auto first =
+            std::min_element(t.begin(), t.end(), [](auto& a, auto& b) { return keyOf(a) < keyOf(b); });
+        std::rotate(t.begin(), first, t.end());
+    }
+    std::sort(triangles.begin(), triangles.end(), isBefore);
+    return triangles;
+}
+
+constexpr int kCells = 4;  // of the grid, along each axis of the node
+constexpr size_t kAllCells = size_t(kCells) * kCells * kCells;
+
+class PlaceGrid {
+  public:
+    explicit PlaceGrid(const NodeMesh& mesh) : mesh_(mesh) {
+        for (const PackedVertex& v : mesh.vertices) box_.extend(Eigen::Vector3i(v.x, v.y, v.z));
+    }
+    size_t cellOf(uint32_t vertex) const {
+        const PackedVertex& v = mesh_.vertices[vertex];
+        const Eigen::Array3i at = Eigen::Array3i(v.x, v.y, v.z) - box_.min().array();
+        const Eigen::Array3i cell = at * kCells / (box_.sizes().array() + 1);
+        return (size_t(cell.z()) * kCells + size_t(cell.y())) * kCells + size_t(cell.x());
+    }
+
+  private:
+    const NodeMesh& mesh_;
+    Eigen::AlignedBox3i box_;  // in steps
+};
 
 enum class Sight { kOutside, kPartly, kInside };
 
@@ -29,6 +84,49 @@ Sight sightOf(const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& clip_from_m
 }
 
 }  // namespace
+
+Eigen::AlignedBox3f boxOf(const NodeMesh& mesh) {
+    Eigen::AlignedBox3f box;
+    for (const PackedVertex& vertex : mesh.vertices) box.extend(positionOf(mesh, vertex));
+    return box;
+}
+
+Eigen::AlignedBox3f differenceBox(const NodeMesh& before, const NodeMesh& after) {
+    if (before.origin != after.origin || before.step != after.step) return boxOf(before).merged(boxOf(after));
+    const std::vector<Triangle> old_ones = sortedTriangles(before), new_ones = sortedTriangles(after);
+    std::vector<Triangle> different;
+    std::set_symmetric_difference(old_ones.begin(), old_ones.end(), new_ones.begin(), new_ones.end(),
+                                  std::back_inserter(different), isBefore);
+    Eigen::AlignedBox3f box;
+    for (const Triangle& triangle : different)
+        for (const Corner& corner : triangle) box.extend(positionOf(after, corner.vertex));
+    return box;
+}
+
+SortedTriangles sortedByPlace(const NodeMesh& mesh) {
+    const PlaceGrid grid(mesh);
+    const size_t count = mesh.indices.size() / 3;
+    std::vector<uint8_t> cells(count);
+    std::array<uint32_t, kAllCells + 1> first{};
+    for (size_t t = 0; t < count; ++t) {
+        cells[t] = uint8_t(grid.cellOf(mesh.indices[3 * t]));
+        first[cells[t] + size_t(1)] += 3;
+    }
+    for (size_t cell = 0; cell < kAllCells; ++cell) first[cell + 1] += first[cell];
+    SortedTriangles sorted;
+    sorted.indices.resize(3 * count);
+    std::array<Eigen::AlignedBox3f, kAllCells> boxes;
+    auto place = first;
+    for (size_t t = 0; t < count; ++t)
+        for (size_t i = 3 * t; i < 3 * t + 3; ++i) {
+            sorted.indices[place[cells[t]]++] = mesh.indices[i];
+            boxes[cells[t]].extend(positionOf(mesh, mesh.vertices[mesh.indices[i]]));
+        }
+    for (size_t cell = 0; cell < kAllCells; ++cell)
+        if (first[cell + 1] > first[cell])
+            sorted.parts.push_back({first[cell], first[cell + 1] - first[cell], boxes[cell]});
+    return sorted;
+}
 
 void NodeStore::set(const NodeMesh& mesh) {
     if (mesh.isEmpty()) return remove(mesh.leaf);

@@ -5,16 +5,44 @@
 // order they arrived.
 #pragma once
 
+#include <Eigen/Geometry>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "common/geometry/node_mesh.h"
-#include "render_client/look/gl/gl_object.h"
-#include "render_client/look/gl/program.h"
-#include "render_client/look/model/node_parts.h"
+#include "render_client/look/gl/gl_api.h"
 
 namespace bonemill {
+
+// Returns the box (V, m) around the triangles that only one of them has; it is empty when both show the same.
+Eigen::AlignedBox3f differenceBox(const NodeMesh& before, const NodeMesh& after);
+
+// Returns where a vertex of this mesh lies (V, m).
+inline Eigen::Vector3f positionOf(const NodeMesh& mesh, const PackedVertex& v) {
+    return mesh.origin + mesh.step.cwiseProduct(Eigen::Vector3f(v.x, v.y, v.z));
+}
+
+// Returns the box (V, m) around all triangles.
+Eigen::AlignedBox3f boxOf(const NodeMesh& mesh);
+
+// A node's triangles by place, so that a picture of a small part of the bone need not draw whole nodes. It is
+// for any thread.
+struct NodePart {
+    uint32_t first = 0, count = 0;  // of the sorted indices
+    Eigen::AlignedBox3f box;        // around them (V, m)
+};
+
+struct SortedTriangles {
+    std::vector<uint32_t> indices;  // 3 per triangle: those of the mesh in another order
+    std::vector<NodePart> parts;    // one after the other, without gaps; none is empty
+};
+
+// Sorts the triangles by the cell of a coarse grid that their first vertex lies in, and keeps their order
+// within a cell. Each index must have its vertex.
+SortedTriangles sortedByPlace(const NodeMesh& mesh);
 
 // This went to the graphics card since the start.
 struct UploadCount {

@@ -1,7 +1,4 @@
-// It is an OpenGL 3.3 core context in memory, which needs no display and no graphics card
-// (Mesa's software renderer).
-//
-// It belongs to the thread that made it, and there is one at a time per thread.
+// Pictures out of OpenGL, also without a display. All belongs to the thread of the context.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +9,12 @@
 
 namespace bonemill {
 
+// Waits for the drawing and copies the default framebuffer of this size (pixels) out of the current context.
+// Throws GlError.
+Picture readPicture(const GlApi& gl, int width, int height);
+
+// It is an OpenGL 3.3 core context in memory, which needs no display and no graphics card (Mesa's software
+// renderer). There is one at a time per thread.
 class OsmesaContext {
   public:
     // Makes the context current, with a default framebuffer of this size (pixels). Throws GlError.

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <string>
 
-#include "render_client/look/paint/clip_planes.h"
+#include "render_client/look/model/material_palette.h"
+#include "render_client/look/paint/frame.h"
 #include "render_client/look/shaders/shaders.h"
+#include "render_client/look/structures/structure_set.h"
 
 namespace bonemill {
 namespace {
+
+constexpr GLenum kUnit = 1;  // of the texture; 0 is the shadow's
 
 constexpr double kGrain = 0.045;  // size of the mottling over the bone's radius
 constexpr GLuint kAllBits = 0xff;
@@ -24,6 +28,89 @@ const Eigen::Vector3f kInsideSolid(0.42f, 0.16f, 0.12f);
 const Eigen::Vector3f kInsideGlass(0.85f, 0.22f, 0.10f);
 
 }  // namespace
+
+FilmPainter::FilmPainter(const GlApi& gl, bool has_materials) : gl_(gl), texture_(gl) {
+    setMaterials(has_materials);
+    constexpr int kCells = SurfaceFilm::kCells;
+    gl_.ActiveTexture(GL_TEXTURE0 + kUnit);
+    gl_.BindTexture(GL_TEXTURE_3D, texture_.name());
+    gl_.TexImage3D(GL_TEXTURE_3D, 0, GL_RG8, kCells, kCells, kCells, 0, GL_RG, GL_UNSIGNED_BYTE, nullptr);
+    gl_.setSampling(GL_TEXTURE_3D, GL_LINEAR, GL_REPEAT);
+    gl_.ActiveTexture(GL_TEXTURE0);
+    gl_.check("making the film's texture");
+}
+
+void FilmPainter::setMaterials(bool has_materials) {
+    const std::string define = has_materials ? MaterialPalette::kDefine : "";
+    surface_ = std::make_unique<Program>(gl_, "bone with a film", define + shaders::kMeshVertex,
+                                         define + "#define FILM\n" + shaders::kBoneFragment);
+}
+
+Eigen::AlignedBox3f FilmPainter::update(const EffectPicture& picture) {
+    SurfaceFilm& film = *picture.film;
+    const Eigen::Vector2f strength(picture.shows_blood, picture.shows_water);
+    if (!film.takeDue() && strength == strength_) return {};
+    Eigen::AlignedBox3f changed = film.takeChanged();
+    if (strength != strength_) changed.extend(film.shownBox());
+    strength_ = strength;
+    blood_colour_ = picture.blood_colour;
+    period_ = film.extent();
+    shown_ = film.shownBox();
+    const auto slices = film.takeChangedSlices();
+    if (slices.none()) return changed;
+    constexpr int kCells = SurfaceFilm::kCells;
+    gl_.ActiveTexture(GL_TEXTURE0 + kUnit);
+    gl_.BindTexture(GL_TEXTURE_3D, texture_.name());
+    gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    for (int z = 0; z < kCells; ++z)
+        if (slices[size_t(z)])
+            gl_.TexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, z, kCells, kCells, 1, GL_RG, GL_UNSIGNED_BYTE,
+                              film.slice(z).data());
+    gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    gl_.ActiveTexture(GL_TEXTURE0);
+    return changed;
+}
+
+void FilmPainter::setUniforms() const {
+    gl_.bindTexture(kUnit, GL_TEXTURE_3D, texture_.name());
+    surface_->set("film", int(kUnit));
+    surface_->set("film_period", period_);
+    const bool is_anywhere = !shown_.isEmpty();
+    surface_->set("film_low", is_anywhere ? shown_.min() : Eigen::Vector3f::Ones().eval());
+    surface_->set("film_high", is_anywhere ? shown_.max() : Eigen::Vector3f::Zero().eval());
+    surface_->set("film_strength", strength_);
+    surface_->set("blood_colour", blood_colour_);
+}
+
+ThicknessPainter::ThicknessPainter(const GlApi& gl, const ThicknessField& field)
+    : gl_(gl),
+      surface_(gl, "bone of thickness", std::string("#define THICKNESS\n") + shaders::kMeshVertex,
+               std::string("#define THICKNESS\n") + shaders::kBoneFragment),
+      texture_(gl),
+      // A texture's corner is half a sample before its first one.
+      first_V_(field.first_V - Eigen::Vector3f::Constant(0.5f * field.step)),
+      extent_(field.step * field.size.cast<float>()) {
+    constexpr uint8_t kFar = 255;
+    const bool is_empty = field.shares.empty();
+    gl_.ActiveTexture(GL_TEXTURE0 + GLenum(kUnit));
+    gl_.BindTexture(GL_TEXTURE_3D, texture_.name());
+    gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gl_.TexImage3D(GL_TEXTURE_3D, 0, GL_R8, is_empty ? 1 : field.size.x(), is_empty ? 1 : field.size.y(),
+                   is_empty ? 1 : field.size.z(), 0, GL_RED, GL_UNSIGNED_BYTE,
+                   is_empty ? &kFar : field.shares.data());
+    gl_.setSampling(GL_TEXTURE_3D, GL_LINEAR);
+    gl_.ActiveTexture(GL_TEXTURE0);
+    if (is_empty) extent_.setOnes();
+}
+
+void ThicknessPainter::setUniforms() const {
+    gl_.bindTexture(GLenum(kUnit), GL_TEXTURE_3D, texture_.name());
+    surface_.set("thickness", kUnit);
+    for (int i = 0; i < kThicknessColours; ++i)
+        surface_.set(("thickness_colours[" + std::to_string(i) + "]").c_str(), thicknessColours()[size_t(i)]);
+    surface_.set("thickness_first", first_V_);
+    surface_.set("thickness_extent", extent_);
+}
 
 BonePainter::BonePainter(const GlApi& gl)
     : gl_(gl),

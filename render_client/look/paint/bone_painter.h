@@ -15,14 +15,63 @@
 #include <memory>
 #include <optional>
 
+#include "render_client/look/gl/gl_api.h"
 #include "render_client/look/model/material_palette.h"
 #include "render_client/look/model/node_store.h"
-#include "render_client/look/paint/ct_faces.h"
-#include "render_client/look/paint/film_painter.h"
 #include "render_client/look/paint/frame.h"
-#include "render_client/look/paint/thickness_painter.h"
+#include "render_client/look/paint/scan_painters.h"
+#include "render_client/look/structures/structure_set.h"
+#include "render_client/look/visual_effects/surface_film.h"
 
 namespace bonemill {
+
+// Draws the bone with blood and water on it, with a surface shader of its own and the film as a texture.
+//
+// It belongs to the thread of the context.
+class FilmPainter {
+  public:
+    // has_materials says whether bone has its materials' colours (MaterialPalette). Throws GlError with the
+    // compiler's log when the driver refuses the shader.
+    FilmPainter(const GlApi& gl, bool has_materials);
+    void setMaterials(bool has_materials);
+
+    // Uploads the slices that changed. Returns the box (V) in which the bone looks different now.
+    Eigen::AlignedBox3f update(const EffectPicture& picture);
+    // surface() draws bone in place of the plain surface's program. While it is in use setUniforms() sets the
+    // film's uniforms; the film takes texture unit 1.
+    const Program& surface() const { return *surface_; }
+    void setUniforms() const;
+
+  private:
+    const GlApi& gl_;
+    std::unique_ptr<Program> surface_;
+    GlTexture texture_;
+    float period_ = 1;
+    Eigen::AlignedBox3f shown_;
+    Eigen::Vector2f strength_ = Eigen::Vector2f::Zero();
+    Eigen::Vector3f blood_colour_ = Eigen::Vector3f::Zero();
+};
+
+// Bone is drawn with this program while it shows how far it is to the next structure.
+//
+// It belongs to the thread of the context.
+class ThicknessPainter {
+  public:
+    // Throws GlError with the compiler's log when the driver refuses the shader.
+    ThicknessPainter(const GlApi& gl, const ThicknessField& field);
+
+    const Program& surface() const { return surface_; }
+    // The program must be in use.
+    void setUniforms() const;
+
+  private:
+    static constexpr GLint kUnit = 3;  // 0 is the shadow's, 1 the film's, 2 the palette's
+
+    const GlApi& gl_;
+    Program surface_;
+    GlTexture texture_;
+    Eigen::Vector3f first_V_, extent_;  // m, of the texture
+};
 
 class BonePainter {
   public:

@@ -4,18 +4,29 @@
 // are plain values.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
 #include "common/geometry/pose.h"
 #include "render_client/look/camera/camera.h"
-#include "render_client/look/camera/cut_planes.h"
 #include "render_client/look/camera/view_settings.h"
-#include "render_client/look/gl/program.h"
-#include "render_client/look/hud/burr_work.h"
-#include "render_client/look/paint/effect_picture.h"
+#include "render_client/look/gl/gl_api.h"
+#include "render_client/look/hud/device_lines.h"
+#include "render_client/look/visual_effects/burr_effects.h"
+#include "render_client/look/visual_effects/effect_input.h"
+#include "render_client/look/visual_effects/surface_film.h"
 
 namespace bonemill {
+
+// Visual effects add this to one picture. They are plain values in the frame V, with units m and rad.
+struct EffectPicture {
+    Particles particles;           // dust, water
+    std::optional<BurrTurn> turn;  // of the burr's flutes
+    bool shows_blood = false, shows_water = false;
+    Eigen::Vector3f blood_colour = Eigen::Vector3f::Zero();  // linear
+    SurfaceFilm* film = nullptr;  // where blood and water lie on the bone; its changes are taken
+};
 
 // The user wants the tool there; the line to it shows how hard the hand presses.
 struct Pull {
@@ -141,5 +152,33 @@ struct Frame {
 };
 
 Eigen::Matrix4f matrixOf(const Pose& X_AB);
+
+// Switches OpenGL's clip planes on for as long as it lives.
+//
+// It belongs to the thread of the context.
+class ClipPlanes {
+  public:
+    ClipPlanes(const GlApi& gl, const CutPlanes& cuts) : gl_(gl), is_on_(cuts.is_on) {
+        for (GLenum i = 0; i < is_on_.size(); ++i)
+            if (is_on_[i]) gl_.Enable(GL_CLIP_DISTANCE0 + i);
+    }
+    ClipPlanes(const ClipPlanes&) = delete;
+    ClipPlanes& operator=(const ClipPlanes&) = delete;
+    ~ClipPlanes() {
+        for (GLenum i = 0; i < is_on_.size(); ++i)
+            if (is_on_[i]) gl_.Disable(GL_CLIP_DISTANCE0 + i);
+    }
+
+  private:
+    const GlApi& gl_;
+    std::array<bool, CutPlanes::kMax> is_on_;
+};
+
+// Sets the uniforms of the mesh shaders.
+inline void setCutPlanes(const Program& program, const CutPlanes& cuts_model) {
+    program.set("cut_planes[0]", cuts_model.planes[0]);
+    program.set("cut_planes[1]", cuts_model.planes[1]);
+    program.set("cut_planes[2]", cuts_model.planes[2]);
+}
 
 }  // namespace bonemill

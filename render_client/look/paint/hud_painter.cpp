@@ -4,8 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "render_client/look/hud/help_page.h"
-#include "render_client/look/hud/orientation_marker.h"
+#include "render_client/look/hud/hud_signs.h"
 #include "render_client/look/shaders/shaders.h"
 
 namespace bonemill {
@@ -25,19 +24,10 @@ HudPainter::HudPainter(const GlApi& gl)
     using Vertex = HudCanvas::Vertex;
     gl_.BindVertexArray(layout_.name());
     gl_.BindBuffer(GL_ARRAY_BUFFER, buffer_.name());
-    constexpr struct {
-        GLuint index;
-        GLint size;
-        size_t offset;
-    } kAttributes[] = {{0, 2, offsetof(Vertex, x)},
-                       {1, 2, offsetof(Vertex, u)},
-                       {2, 4, offsetof(Vertex, r)},
-                       {3, 3, offsetof(Vertex, half_width)}};
-    for (const auto& a : kAttributes) {
-        gl_.VertexAttribPointer(a.index, a.size, GL_FLOAT, GL_FALSE, sizeof(Vertex),
-                                reinterpret_cast<const void*>(a.offset));
-        gl_.EnableVertexAttribArray(a.index);
-    }
+    gl_.setFloats(0, 2, sizeof(Vertex), offsetof(Vertex, x));
+    gl_.setFloats(1, 2, sizeof(Vertex), offsetof(Vertex, u));
+    gl_.setFloats(2, 4, sizeof(Vertex), offsetof(Vertex, r));
+    gl_.setFloats(3, 3, sizeof(Vertex), offsetof(Vertex, half_width));
     gl_.BindVertexArray(0);
 }
 
@@ -46,10 +36,7 @@ HudPainter::Font::Font(const GlApi& gl, float pixel_height) : atlas(pixel_height
     gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     gl.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, atlas.size(), atlas.size(), 0, GL_RED, GL_UNSIGNED_BYTE,
                   atlas.pixels().data());
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    gl.setSampling(GL_TEXTURE_2D, GL_LINEAR);
 }
 
 const FontAtlas& HudPainter::usualFont(float ui_scale) {

@@ -6,10 +6,9 @@
 #include <map>
 #include <vector>
 
-#include "render_client/look/gl/gl_object.h"
-#include "render_client/look/gl/program.h"
+#include "render_client/look/gl/gl_api.h"
 #include "render_client/look/hud/hud_layout.h"
-#include "render_client/look/hud/pane_layout.h"
+#include "render_client/look/hud/hud_signs.h"
 
 namespace bonemill {
 

@@ -95,13 +95,9 @@ MarkerPainter::MarkerPainter(const GlApi& gl)
       buffer_(gl) {
     gl_.BindVertexArray(layout_.name());
     gl_.BindBuffer(GL_ARRAY_BUFFER, buffer_.name());
-    constexpr size_t kOffsets[] = {offsetof(Vertex, p_C), offsetof(Vertex, n_C), offsetof(Vertex, colour)};
-    constexpr GLint kSizes[] = {3, 3, 4};
-    for (GLuint i = 0; i < 3; ++i) {
-        gl_.VertexAttribPointer(i, kSizes[i], GL_FLOAT, GL_FALSE, sizeof(Vertex),
-                                reinterpret_cast<const void*>(kOffsets[i]));
-        gl_.EnableVertexAttribArray(i);
-    }
+    gl_.setFloats(0, 3, sizeof(Vertex), offsetof(Vertex, p_C));
+    gl_.setFloats(1, 3, sizeof(Vertex), offsetof(Vertex, n_C));
+    gl_.setFloats(2, 4, sizeof(Vertex), offsetof(Vertex, colour));
     gl_.BindVertexArray(0);
 }
 

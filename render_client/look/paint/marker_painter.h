@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "render_client/look/gl/gl_object.h"
+#include "render_client/look/gl/gl_api.h"
 #include "render_client/look/paint/frame.h"
 
 namespace bonemill {

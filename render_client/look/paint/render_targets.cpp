@@ -1,8 +1,110 @@
 #include "render_client/look/paint/render_targets.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace bonemill {
+namespace {
+
+constexpr double kLoosest = 2;        // a range that is N times too wide is made anew
+constexpr double kRangeMargin = 0.1;  // of the near and far distance: room for the tool to move
+
+bool isSame(const Camera& a, const Camera& b) {
+    return a.eye_W == b.eye_W && a.R_WC == b.R_WC && a.field_of_view == b.field_of_view &&
+           a.focus == b.focus && a.shift == b.shift;
+}
+
+template <class Matrix>
+void append(std::vector<float>& signature, const Matrix& matrix) {
+    signature.insert(signature.end(), matrix.data(), matrix.data() + matrix.size());
+}
+
+std::vector<float> signatureOf(const Frame& frame, int width, int height) {
+    std::vector<float> signature{float(width),       float(height), frame.bone_radius, frame.key.reach,
+                                 frame.field_radius, frame.focus,   frame.blur_per_m};
+    append(signature, frame.clip_from_camera);
+    append(signature, frame.X_CV);
+    append(signature, frame.key.direction);
+    for (const Eigen::Vector4f& plane : frame.cuts_V.planes) append(signature, plane);
+    append(signature, frame.bone_V.min());
+    append(signature, frame.bone_V.max());
+    return signature;
+}
+
+}  // namespace
+
+DepthRange PictureChanges::range(const Camera& camera, const DepthRange& needed) {
+    const bool is_tight = needed.far * kLoosest > range_.far && needed.near < range_.near * kLoosest;
+    if (isSame(camera, camera_) && is_tight) {
+        range_ = {std::min(range_.near, needed.near), std::max(range_.far, needed.far)};
+    } else {
+        range_ = {needed.near * (1 - kRangeMargin), needed.far * (1 + kRangeMargin)};
+        camera_ = camera;
+    }
+    return range_;
+}
+
+PictureChanges::Dirty PictureChanges::next(const Frame& frame, int width, int height,
+                                           const Eigen::AlignedBox3f& changed_V, const PixelBox& moving,
+                                           std::vector<float> still_like) {
+    const bool stands_still = !still_like.empty() && still_like == still_like_;
+    still_like_ = std::move(still_like);
+    const PixelBox moved = std::exchange(moving_, moving);
+    const PixelBox whole = PixelBox::whole(width, height);
+    std::vector<float> signature = signatureOf(frame, width, height);
+    if (signature != signature_) {
+        signature_ = std::move(signature);
+        return {whole, whole};
+    }
+    const PixelBox bone = PixelBox::around(changed_V, frame.clip_from_camera * frame.X_CV, width, height);
+    if (stands_still) return {bone, bone};
+    return {bone, bone.joined(moved).joined(moving)};
+}
+
+PixelBox PixelBox::joined(const PixelBox& other) const {
+    if (isEmpty()) return other;
+    if (other.isEmpty()) return *this;
+    return {std::min(x0, other.x0), std::min(y0, other.y0), std::max(x1, other.x1), std::max(y1, other.y1)};
+}
+
+PixelBox PixelBox::within(const PixelBox& other) const {
+    return {std::max(x0, other.x0), std::max(y0, other.y0), std::min(x1, other.x1), std::min(y1, other.y1)};
+}
+
+PixelBox PixelBox::around(const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& clip_from_model, int width,
+                          int height) {
+    if (box.isEmpty()) return {};
+    Eigen::AlignedBox2f ndc;
+    for (int i = 0; i < 8; ++i) {
+        const Eigen::Vector4f corner =
+            clip_from_model * box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(i)).homogeneous();
+        if (!(corner.w() > 0) || !(corner.z() >= -corner.w()) || !corner.allFinite())
+            return whole(width, height);
+        ndc.extend(Eigen::Vector2f(corner.head<2>() / corner.w()));
+    }
+    const auto pixel = [](float value, int size) {
+        return std::clamp((value + 1) / 2 * float(size), -1.0f, float(size) + 1);
+    };
+    constexpr int kRounding = 1;  // rasterisation may round either way
+    const PixelBox touched{
+        int(std::floor(pixel(ndc.min().x(), width))), int(std::floor(pixel(ndc.min().y(), height))),
+        int(std::ceil(pixel(ndc.max().x(), width))), int(std::ceil(pixel(ndc.max().y(), height)))};
+    return touched.grown(kRounding).within(whole(width, height));
+}
+
+Eigen::Matrix4f PixelBox::zoom(int picture_width, int picture_height) const {
+    const float scale_x = float(picture_width) / float(width()),
+                scale_y = float(picture_height) / float(height());
+    const float middle_x = float(x0 + x1) / float(picture_width) - 1;
+    const float middle_y = float(y0 + y1) / float(picture_height) - 1;
+    Eigen::Matrix4f zoom = Eigen::Matrix4f::Identity();
+    zoom(0, 0) = scale_x;
+    zoom(1, 1) = scale_y;
+    zoom(0, 3) = -middle_x * scale_x;
+    zoom(1, 3) = -middle_y * scale_y;
+    return zoom;
+}
 
 RenderTargets::RenderTargets(const GlApi& gl, int width, int height, Quality quality)
     : gl_(gl),
@@ -98,10 +200,7 @@ void RenderTargets::makeTexture(const GlTexture& texture, GLint format, int widt
                                 GLenum type, GLint filter) const {
     gl_.BindTexture(GL_TEXTURE_2D, texture.name());
     gl_.TexImage2D(GL_TEXTURE_2D, 0, format, width, height, 0, layout, type, nullptr);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    gl_.setSampling(GL_TEXTURE_2D, filter);
 }
 
 void RenderTargets::copy(GLuint from, GLuint to, const PixelBox& part, GLbitfield what) const {

@@ -1,18 +1,76 @@
-// A frame passes through these buffers: multisampled scene, its resolved copy, half-size occlusion, shadow
-// map. In quick quality the scene is not multisampled and has no shadow; the bone alone and the finished
-// picture are kept for the next frame.
-//
-// It belongs to the thread of the context.
+// The buffers that a frame passes through, and which pixels of them are drawn anew. The buffers belong to the
+// thread of the context.
 #pragma once
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
+#include <vector>
 
 #include "render_client/look/camera/view_settings.h"
-#include "render_client/look/gl/gl_object.h"
-#include "render_client/look/paint/pixel_box.h"
+#include "render_client/look/gl/gl_api.h"
+#include "render_client/look/paint/frame.h"
 
 namespace bonemill {
 
+// It is a rectangle of pixels, half open, counted from the picture's lower left corner as OpenGL does.
+struct PixelBox {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+    static PixelBox whole(int width, int height) { return {0, 0, width, height}; }
+
+    bool isEmpty() const { return x1 <= x0 || y1 <= y0; }
+    int width() const { return x1 - x0; }
+    int height() const { return y1 - y0; }
+    bool operator==(const PixelBox&) const = default;
+
+    // joined() is the smallest box around both, within() the part in the other one, grown() wider by so
+    // many pixels on each side.
+    PixelBox joined(const PixelBox& other) const;
+    PixelBox within(const PixelBox& other) const;
+    PixelBox grown(int pixels) const { return {x0 - pixels, y0 - pixels, x1 + pixels, y1 + pixels}; }
+
+    // Returns every pixel that the box (in the frame that clip_from_model takes) may touch in a picture of
+    // this size; this is the whole picture when part of the box is at or behind the eye.
+    static PixelBox around(const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& clip_from_model, int width,
+                           int height);
+
+    // Returns what scales clip space so that this box fills it, to leave out what lies beside it.
+    Eigen::Matrix4f zoom(int picture_width, int picture_height) const;
+};
+
+// Finds which pixels of a resting view have to be drawn anew. It is a plain value, for one thread.
+class PictureChanges {
+  public:
+    struct Dirty {
+        PixelBox bone;  // bone and background
+        PixelBox all;   // and what moves before them
+    };
+
+    // Returns a range that holds the needed one, and stays the same as long as it can while the camera rests.
+    DepthRange range(const Camera& camera, const DepthRange& needed);
+
+    // Returns what the next picture of this size must draw: all of it when anything but nodes and
+    // moving things has changed. changed_V is the box around the nodes that changed, `moving` are the
+    // pixels of what moves now, and still_like are numbers that are the same only while all of it stands
+    // still as it is (empty: it does not).
+    Dirty next(const Frame& frame, int width, int height, const Eigen::AlignedBox3f& changed_V,
+               const PixelBox& moving, std::vector<float> still_like);
+
+    // The next picture is drawn whole.
+    void forget() { signature_.clear(); }
+
+  private:
+    std::vector<float> signature_;  // of the last view
+    Camera camera_;
+    DepthRange range_;
+    PixelBox moving_;                // in the last picture
+    std::vector<float> still_like_;  // in the last picture
+};
+
+// A frame passes through these buffers: multisampled scene, its resolved copy, half-size occlusion, shadow
+// map. In quick quality the scene is not multisampled and has no shadow; the bone alone and the finished
+// picture are kept for the next frame.
 class RenderTargets {
   public:
     static constexpr int kShadowSize = 2048;  // texels per side

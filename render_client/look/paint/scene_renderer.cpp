@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "render_client/look/paint/clip_planes.h"
+#include "render_client/look/paint/frame.h"
 #include "render_client/look/shaders/shaders.h"
 
 namespace bonemill {

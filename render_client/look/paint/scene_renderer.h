@@ -8,17 +8,14 @@
 #include <optional>
 #include <utility>
 
-#include "render_client/look/gl/program.h"
+#include "render_client/look/gl/gl_api.h"
 #include "render_client/look/model/node_store.h"
 #include "render_client/look/model/tool_mesh.h"
 #include "render_client/look/paint/bone_painter.h"
 #include "render_client/look/paint/frame.h"
 #include "render_client/look/paint/frame_passes.h"
 #include "render_client/look/paint/marker_painter.h"
-#include "render_client/look/paint/particle_painter.h"
-#include "render_client/look/paint/picture_changes.h"
 #include "render_client/look/paint/render_targets.h"
-#include "render_client/look/paint/stroke_painter.h"
 #include "render_client/look/paint/structure_painter.h"
 #include "render_client/look/paint/tool_painter.h"
 

@@ -5,20 +5,37 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "render_client/link/density_store/density_store.h"
-#include "render_client/look/camera/cut_planes.h"
-#include "render_client/look/hud/pane_layout.h"
+#include "render_client/look/camera/view_settings.h"
+#include "render_client/look/hud/hud_signs.h"
 #include "render_client/look/model/material_palette.h"
-#include "render_client/look/paint/ct_faces.h"
-#include "render_client/look/paint/slice_painter.h"
-#include "render_client/look/render_scene/milled_scan.h"
-#include "render_client/look/slices/panes.h"
+#include "render_client/look/model/node_store.h"
+#include "render_client/look/paint/scan_painters.h"
+#include "render_client/look/slices/slice_image.h"
+#include "render_client/look/slices/slice_plane.h"
 
 namespace bonemill {
+
+// Gives the vertices of nodes that were milled what the scan measured there, as its densities come.
+//
+// It belongs to the thread of the context. The frame is V; the units are m.
+class MilledScan {
+  public:
+    // Samples the nodes that changed, or whose bricks did. The sampler reads that store, which has a grid.
+    void update(const DensitySampler& sampler, const DensityStore& store, NodeStore& nodes);
+    void clear() { bricks_.clear(); }
+
+    // Returns the bricks around all milled nodes.
+    const std::vector<uint32_t>& bricks() const { return bricks_; }
+
+  private:
+    std::vector<uint32_t> bricks_;
+};
 
 // One plane through the scan, and what of it was there when it was looked at last.
 struct ShownSlice {

@@ -5,11 +5,10 @@
 #include <stdexcept>
 
 #include "common/base/units.h"
-#include "render_client/look/camera/endoscope.h"
-#include "render_client/look/camera/microscope.h"
+#include "render_client/look/camera/camera.h"
 #include "render_client/look/hud/figure_text.h"
-#include "render_client/look/render_scene/burr_gap.h"
-#include "render_client/look/visual_effects/wire_pose.h"
+#include "render_client/look/render_scene/bone_marks.h"
+#include "render_client/look/visual_effects/effect_input.h"
 
 namespace bonemill {
 namespace {
@@ -209,8 +208,7 @@ std::optional<Pose> RenderScene::devicePose() const {
 }
 
 bool RenderScene::followsTool() const {
-    if (settings_.camera != CameraMode::kEndoscope || !hud_input_.tool || tool_.isEmpty()) return false;
-    return readPose(hud_input_.tool->p_wt_m(), hud_input_.tool->q_wt()).has_value();
+    return settings_.camera == CameraMode::kEndoscope && !tool_.isEmpty() && toolPose();
 }
 
 FrameView RenderScene::makeView() const {
@@ -291,9 +289,7 @@ void RenderScene::draw(int full_width, int height, float ui_scale, GLuint target
 
 void RenderScene::updateCt(int width, int height) {
     CtShow::View view{settings_, X_WV_, bone_W(), std::nullopt, width, height};
-    if (hud_input_.tool)
-        if (const auto X_WT = readPose(hud_input_.tool->p_wt_m(), hud_input_.tool->q_wt()))
-            view.burr = SliceBurr{X_WT->position, burrRadius()};
+    if (const auto X_WT = toolPose()) view.burr = SliceBurr{X_WT->position, burrRadius()};
     renderer_.hasChanged(ct_.update(view, nodes_));
     renderer_.setFaces(ct_.faces());
     renderer_.setMilledGrey(ct_.milledGrey());

@@ -7,6 +7,10 @@
 namespace bonemill {
 namespace {
 
+constexpr float kSurfaceFound = 0.6e-3f;  // m: farther off there is no surface
+constexpr float kLevel = 0.06f;           // sine of the slope on which a drop rests
+constexpr float kOverhang = -0.85f;       // cosine to `up` of a surface that holds no drop
+
 constexpr int kBuckets = 8;                  // per axis of a leaf
 constexpr float kFocusStep = 0.002f;         // m that the focus moves before leaves are looked for again
 constexpr uint64_t kPlace = 0xffffffffffff;  // of a packed vertex: without its normal
@@ -23,6 +27,20 @@ std::vector<uint64_t> sortedPlaces(const std::vector<PackedVertex>& vertices) {
 }
 
 }  // namespace
+
+Walk walkDown(const BoneSurface& surface, const Eigen::Vector3f& up_V, float distance, SurfacePoint& at) {
+    if (at.n_V.dot(up_V) < kOverhang) return Walk::kFallsOff;
+    const Eigen::Vector3f along = -up_V + at.n_V.dot(up_V) * at.n_V;
+    const float slope = along.norm();
+    if (slope < kLevel) return Walk::kRests;
+    const Eigen::Vector3f moved = at.p_V + along * distance;  // slower where it is less steep
+    const auto found = surface.nearest(moved, kSurfaceFound + distance);
+    if (!found) return Walk::kFallsOff;
+    at.n_V = (at.n_V + found->n_V).normalized();
+    if (!at.n_V.allFinite()) return Walk::kFallsOff;
+    at.p_V = moved - found->heightOf(moved) * found->n_V;
+    return Walk::kGoesOn;
+}
 
 static_assert(std::endian::native == std::endian::little, "placeOf() reads x, y, z as the low bytes");
 

@@ -4,16 +4,28 @@
 // thread and allocates.
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "common/geometry/node_mesh.h"
-#include "render_client/look/visual_effects/surface_point.h"
 
 namespace bonemill {
+
+// It is a place on the bone's surface. The frame is V, the unit m.
+struct SurfacePoint {
+    Eigen::Vector3f p_V = Eigen::Vector3f::Zero();
+    Eigen::Vector3f n_V = Eigen::Vector3f::UnitZ();  // unit, out of the bone
+
+    uint8_t material = 0;  // as NodeMesh::materials
+
+    // Returns the height (m) of p above the tangent plane; it is negative in the bone.
+    float heightOf(const Eigen::Vector3f& p) const { return n_V.dot(p - p_V); }
+};
 
 class BoneSurface {
   public:
@@ -57,5 +69,13 @@ class BoneSurface {
     bool tracks_fresh_ = false;
     std::vector<SurfacePoint> fresh_;
 };
+
+// Gravity draws a drop down on the bone's surface. The frame is V, the unit m. Any thread may
+// call the functions.
+enum class Walk { kGoesOn, kRests, kFallsOff };
+
+// Moves `at` along the surface by at most `distance`: less on level ground. Where the surface overhangs or
+// ends the drop falls off, and `at` stays.
+Walk walkDown(const BoneSurface& surface, const Eigen::Vector3f& up_V, float distance, SurfacePoint& at);
 
 }  // namespace bonemill

@@ -5,7 +5,6 @@
 
 #include "common/base/units.h"
 #include "common/device_messages/device_messages.h"
-#include "render_client/look/visual_effects/wire_pose.h"
 
 namespace bonemill {
 namespace {

@@ -9,10 +9,8 @@
 #include <memory>
 #include <optional>
 
-#include "render_client/look/visual_effects/bleeding.h"
-#include "render_client/look/visual_effects/bone_dust.h"
-#include "render_client/look/visual_effects/burr_spin.h"
-#include "render_client/look/visual_effects/irrigation.h"
+#include "render_client/look/visual_effects/burr_effects.h"
+#include "render_client/look/visual_effects/liquids.h"
 
 namespace bonemill {
 

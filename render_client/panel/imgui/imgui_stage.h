@@ -1,20 +1,23 @@
-// A context of Dear ImGui with our font and look, fed with the events of a window.
-//
-// It needs no OpenGL; ImGuiPainter draws what it has. Positions are pixels from the picture's upper left
-// corner. It belongs to the render thread.
+// Dear ImGui in our windows: its context, and how it is drawn. It belongs to the render thread.
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 
 #include "render_client/hand/controls/window_event.h"
+#include "render_client/look/gl/gl_api.h"
 
 struct ImDrawData;
 struct ImGuiContext;
 
 namespace bonemill {
 
+// A context of Dear ImGui with our font and look, fed with the events of a window.
+//
+// It needs no OpenGL; ImGuiPainter draws what it has. Positions are pixels from the picture's upper left
+// corner.
 class ImGuiStage {
   public:
     // Throws UserError (font).
@@ -63,6 +66,36 @@ class ImGuiStage {
     std::unique_ptr<Clipboard> clipboard_;
     float scale_ = 0;
     int font_version_ = 0;
+};
+
+// Draws what Dear ImGui has laid out over a finished picture, in any OpenGL 3.3 core context.
+//
+// It belongs to the thread of the context, which must be current for every call. Leaves blending and scissors
+// off.
+//
+// Where a drawing names one of these numbers it shows this texture; any other number is the font.
+using ImGuiTextures = std::map<int, GLuint>;
+
+class ImGuiPainter {
+  public:
+    // Throws GlError.
+    explicit ImGuiPainter(const GlApi& gl);
+
+    // Draws into the bound framebuffer of this size (pixels).
+    void paint(const ImDrawData& drawing, const ImGuiStage::FontPixels& font, const ImGuiTextures& textures,
+               int width, int height);
+
+  private:
+    void uploadFont(const ImGuiStage::FontPixels& font);
+    void prepare(int width, int height);
+
+    const GlApi& gl_;
+    Program program_;
+    GlVertexArray layout_;
+    GlBuffer vertices_;
+    GlBuffer indices_;
+    GlTexture font_;
+    int font_version_ = 0;  // of the pixels in the texture; 0: none
 };
 
 }  // namespace bonemill

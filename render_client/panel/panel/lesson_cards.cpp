@@ -8,8 +8,7 @@
 #include "common/attempts_csv/attempts_csv.h"
 #include "render_client/look/hud/effect_lines.h"
 #include "render_client/look/hud/figure_text.h"
-#include "render_client/look/hud/hud_colours.h"
-#include "render_client/look/hud/session_text.h"
+#include "render_client/look/hud/hud_canvas.h"
 
 namespace bonemill {
 namespace {

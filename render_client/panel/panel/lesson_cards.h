@@ -6,7 +6,7 @@
 #include <string>
 
 #include "render_client/hand/controls/viewer_controls.h"
-#include "render_client/panel/panel/lesson_draft.h"
+#include "render_client/panel/panel/panel_memory.h"
 
 namespace bonemill {
 

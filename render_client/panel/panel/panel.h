@@ -11,12 +11,19 @@
 #include <string>
 
 #include "render_client/hand/controls/viewer_controls.h"
+#include "render_client/look/gl/gl_api.h"
 #include "render_client/panel/imgui/imgui_stage.h"
-#include "render_client/panel/panel/lesson_draft.h"
-#include "render_client/panel/panel/remark_draft.h"
-#include "render_client/panel/panel/scene_pictures.h"
+#include "render_client/panel/panel/panel_memory.h"
 
 namespace bonemill {
+
+// Several sessions are there and none was asked for: the user chooses one, as a window of ImGui. It
+// is called between ImGui::NewFrame() and ImGui::Render(). `places` takes where each control is.
+void buildSessionChoice(const SessionView& session, Wishes& wishes, std::map<std::string, PixelPoint>& places,
+                        float scale);
+
+// Returns the session that this key chooses, 1 the first that is offered; none if it chooses none.
+std::optional<uint32_t> sessionOfKey(const WindowEvent& event, const SessionView& session);
 
 class Panel {
   public:
@@ -61,6 +68,26 @@ class Panel {
     LessonDraft lesson_;
     RemarkDraft remark_;
     ScenePictures pictures_;
+};
+
+// Draws the control panel over a finished picture, in any OpenGL 3.3 core context.
+//
+// It belongs to the thread of the context, which must be current for every call. Leaves blending
+// and scissors off.
+class PanelPainter {
+  public:
+    // Throws GlError.
+    explicit PanelPainter(const GlApi& gl) : gl_(gl), painter_(gl) {}
+
+    // Draws into the bound framebuffer of this size (pixels). A closed panel draws nothing.
+    void paint(const Panel& panel, int width, int height);
+
+  private:
+    void uploadPictures(const Panel& panel);
+
+    const GlApi& gl_;
+    ImGuiPainter painter_;
+    std::map<int, GlTexture> pictures_;  // by number
 };
 
 }  // namespace bonemill

@@ -8,10 +8,6 @@
 namespace bonemill {
 namespace {
 
-bool isOpen(const char* title) {
-    return ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen);
-}
-
 ImVec4 imColour(const HudColour& colour) {
     return {colour[0], colour[1], colour[2], colour[3]};
 }
@@ -27,41 +23,25 @@ void PanelContent::build() {
                  ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
                      ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
     if (std::exchange(draft_.scrolls_to_top, false)) ImGui::SetScrollY(0);
-    if (controls_.toolHold().isHolding() || isHeldByMouse(session_)) {
-        if (isOpen("Tool in the mouse")) buildHold();
-        gap();
-    }
-    if (isReplay(session_)) {
-        if (isOpen("Replay")) buildReplay();
-        gap();
-    }
-    if (session_.lesson && session_.lesson->scenes_size() > 0) {
-        if (isOpen("Lesson")) buildLesson();
-        gap();
-    }
-    if (isOpen("View")) buildView();
-    gap();
-    if (hasStructures()) {
-        if (isOpen("Structures")) buildStructures();
-        gap();
-    }
-    if (hasEffects()) {
-        if (isOpen("Effects")) buildEffects();
-        gap();
-    }
-    if (isOpen("Session")) isReplay(session_) ? buildEnd() : buildSession();
-    if (session_.status && session_.status->has_training()) {
-        gap();
-        if (isOpen("Training")) buildTraining();
-    }
-    if (!session_.faults.empty()) {
-        gap();
-        if (isOpen("Faults")) buildFaults();
-    }
-    gap();
-    if (isOpen("Notes and strokes")) buildRemarks();
-    gap();
-    if (isOpen("Who is watching")) buildWatchers();
+    bool is_first = true;
+    const auto section = [&](bool is_there, const char* name, void (PanelContent::*build_it)()) {
+        if (!is_there) return;
+        if (!std::exchange(is_first, false)) gap();
+        if (ImGui::CollapsingHeader(name, ImGuiTreeNodeFlags_DefaultOpen)) (this->*build_it)();
+    };
+    using Content = PanelContent;
+    section(controls_.toolHold().isHolding() || isHeldByMouse(session_), "Tool in the mouse",
+            &Content::buildHold);
+    section(isReplay(session_), "Replay", &Content::buildReplay);
+    section(session_.lesson && session_.lesson->scenes_size() > 0, "Lesson", &Content::buildLesson);
+    section(true, "View", &Content::buildView);
+    section(hasStructures(), "Structures", &Content::buildStructures);
+    section(hasEffects(), "Effects", &Content::buildEffects);
+    section(true, "Session", isReplay(session_) ? &Content::buildEnd : &Content::buildSession);
+    section(session_.status && session_.status->has_training(), "Training", &Content::buildTraining);
+    section(!session_.faults.empty(), "Faults", &Content::buildFaults);
+    section(true, "Notes and strokes", &Content::buildRemarks);
+    section(true, "Who is watching", &Content::buildWatchers);
     ImGui::End();
 }
 
@@ -80,6 +60,12 @@ void PanelContent::sayQuietly(const std::string& text) {
 
 void PanelContent::say(const std::string& text, HudTone tone) {
     ImGui::TextColored(imColour(colourOf(tone)), "%s", text.c_str());
+}
+
+void PanelContent::sayWrapped(const std::string& text, HudTone tone) {
+    ImGui::PushTextWrapPos();
+    say(text, tone);
+    ImGui::PopTextWrapPos();
 }
 
 void PanelContent::note(const std::string& label, const char* what) {

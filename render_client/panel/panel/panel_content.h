@@ -8,10 +8,8 @@
 #include "proto/topics.pb.h"
 #include "render_client/hand/controls/viewer_controls.h"
 #include "render_client/look/camera/view_settings.h"
-#include "render_client/look/hud/hud_colours.h"
-#include "render_client/panel/panel/lesson_draft.h"
-#include "render_client/panel/panel/remark_draft.h"
-#include "render_client/panel/panel/scene_pictures.h"
+#include "render_client/look/hud/hud_canvas.h"
+#include "render_client/panel/panel/panel_memory.h"
 
 namespace bonemill {
 
@@ -52,7 +50,7 @@ class PanelContent {
     void buildScan();
     void buildStereo();
     void buildSigns();
-    // These say which structures are seen, and how (panel_structures.cpp).
+    // These say which structures are seen, and how (panel_view.cpp).
     bool hasStructures() const;
     void buildStructures();
     bool hasEffects() const;
@@ -67,7 +65,7 @@ class PanelContent {
     bool isRowClicked(const std::string& name);
     void buildAttempts(const topics::Lesson& lesson);
     void buildAttempt(const topics::Lesson& lesson, const topics::Attempt& attempt);
-    // This leads a replay (panel_replay.cpp).
+    // This leads a replay (panel_session.cpp).
     void buildReplay();
     // These say how the session goes (panel_session.cpp).
     void buildSession();
@@ -78,7 +76,7 @@ class PanelContent {
     void buildTraining();
     void buildFaults();
     void buildWatchers();
-    // These are about what people write and draw (panel_remarks.cpp).
+    // These are about what people write and draw (panel_session.cpp).
     void buildRemarks();
     void buildNote();
     void sendNote();
@@ -99,6 +97,7 @@ class PanelContent {
     void gap();
     void sayQuietly(const std::string& text);
     void say(const std::string& text, HudTone tone);
+    void sayWrapped(const std::string& text, HudTone tone);
     void send(const topics::Command& command) { controls_.request(command, session_, wishes_); }
     void act(Action action) { controls_.act(action, session_, wishes_); }
 

@@ -6,7 +6,6 @@
 
 #include "common/attempts_csv/attempts_csv.h"
 #include "render_client/look/hud/figure_text.h"
-#include "render_client/look/hud/session_text.h"
 #include "render_client/panel/panel/panel_content.h"
 
 namespace bonemill {
@@ -39,11 +38,7 @@ std::string detailsOf(const topics::SceneChoice& scene) {
 void PanelContent::buildLesson() {
     const topics::Lesson& lesson = *session_.lesson;
     const std::string why_not = whyNotCommand(session_);
-    if (!why_not.empty()) {
-        ImGui::PushTextWrapPos();
-        say(why_not, HudTone::kWarning);
-        ImGui::PopTextWrapPos();
-    }
+    if (!why_not.empty()) sayWrapped(why_not, HudTone::kWarning);
     ImGui::BeginDisabled(!why_not.empty());
     buildTrainee(lesson);
     ImGui::EndDisabled();

@@ -1,22 +1,37 @@
-// Here are the panel's parts about the session: commands, training and who is watching.
+// Here are the panel's parts about the session: commands, replay, training, who is watching, and what people
+// write and draw.
 #include <imgui.h>
 
+#include <algorithm>
+#include <functional>
 #include <iterator>
 
 #include "render_client/look/hud/effect_lines.h"
 #include "render_client/look/hud/figure_text.h"
-#include "render_client/look/hud/session_text.h"
 #include "render_client/panel/panel/panel_content.h"
 
 namespace bonemill {
+namespace {
+
+constexpr size_t kMaxListed = 40;
+
+ImVec4 strokeColour(uint32_t colour) {
+    const auto part = [colour](int shift) { return float(colour >> shift & 0xff) / 255; };
+    return {part(16), part(8), part(0), 1};
+}
+
+std::vector<const topics::Remark*> newestFirst(const std::map<uint32_t, topics::Remark>& remarks) {
+    std::vector<const topics::Remark*> listed;
+    for (const auto& [place, remark] : remarks) listed.push_back(&remark);
+    std::ranges::sort(listed, std::greater{}, [](const topics::Remark* remark) { return remark->number(); });
+    return listed;
+}
+
+}  // namespace
 
 void PanelContent::buildSession() {
     const std::string why_not = whyNotCommand(session_);
-    if (!why_not.empty()) {
-        ImGui::PushTextWrapPos();
-        say(why_not, HudTone::kWarning);
-        ImGui::PopTextWrapPos();
-    }
+    if (!why_not.empty()) sayWrapped(why_not, HudTone::kWarning);
     ImGui::BeginDisabled(!why_not.empty());
     const bool is_paused = session_.status && session_.status->is_milling_paused();
     box("Pause milling", Action::kPauseMilling, is_paused,
@@ -50,11 +65,8 @@ void PanelContent::buildCheckpoints() {
             checkpoint == checkpoints.rbegin()
                 ? withKey("The bone as it was at the last checkpoint", Action::kLastCheckpoint)
                 : "The bone as it was at this checkpoint";
-        if (button(label, what.c_str())) {
-            topics::Command command;
-            command.set_restore_checkpoint(checkpoint->id());
-            send(command);
-        }
+        if (button(label, what.c_str()))
+            send(commandWith(&topics::Command::set_restore_checkpoint, checkpoint->id()));
         ImGui::SameLine();
         say(clockText(checkpoint->session_s()), HudTone::kPlain);
         ImGui::SameLine();
@@ -68,11 +80,8 @@ void PanelContent::buildTools() {
     if (count == 0) ImGui::TextUnformatted("the scene's only one");
     for (int i = 0; i < count; ++i) {
         const std::string label = session_.info->tool_names(i) + "##tool " + std::to_string(i);
-        if (!choice(label, session_.info->tool_index() == uint32_t(i), "Puts this tool into the hand"))
-            continue;
-        topics::Command command;
-        command.set_select_tool(uint32_t(i));
-        send(command);
+        if (choice(label, session_.info->tool_index() == uint32_t(i), "Puts this tool into the hand"))
+            send(commandWith(&topics::Command::set_select_tool, uint32_t(i)));
     }
 }
 
@@ -98,9 +107,7 @@ void PanelContent::buildEnd() {
     } else {
         say("Bone and checkpoints go with it. End it?", HudTone::kWarning);
         if (button("End", "Stops the server, for everybody")) {
-            topics::Command command;
-            command.set_shut_down(true);
-            send(command);
+            send(commandWith(&topics::Command::set_shut_down, true));
             is_ending_ = false;
         }
         ImGui::SameLine();
@@ -147,6 +154,106 @@ void PanelContent::buildWatchers() {
     self.set_is_holding(controls_.toolHold().isHolding());
     row(session_.name + " (you)", self);
     for (const topics::Viewer& other : session_.others) row(other.name(), other);
+}
+
+void PanelContent::buildReplay() {
+    const topics::Replay& replay = session_.status->replay();
+    const std::string why_not = whyNotCommand(session_);
+    if (!why_not.empty()) say(why_not, HudTone::kWarning);
+    ImGui::BeginDisabled(!why_not.empty());
+    const double now_s = session_.status->session_s(), length_s = std::max(replay.length_s(), 1e-3);
+    say(clockText(now_s) + " of " + clockText(replay.length_s()), HudTone::kPlain);
+    ImGui::SameLine();
+    sayQuietly(replay.is_seeking() ? "on its way" : replay.is_playing() ? "plays" : "paused");
+    if (const auto to = slider("Moment", now_s / length_s, 0, "Leads to that part of the recording")) {
+        topics::Command command;
+        command.mutable_replay()->set_seek_s(*to * length_s);
+        send(command);
+    }
+    button(replay.is_playing() ? "Pause" : "Play", Action::kPauseMilling, "Holds the recording, or goes on");
+    ImGui::SameLine();
+    button("-5 s", Action::kReplayBack, "Back");
+    ImGui::SameLine();
+    button("+5 s", Action::kReplayAhead, "Ahead");
+    button("Slower", Action::kReplaySlower, "Half as fast");
+    ImGui::SameLine();
+    button("Faster", Action::kReplayFaster, "Twice as fast");
+    ImGui::SameLine();
+    sayQuietly(readableText(replay.speed(), " \u00d7"));
+    button("Event before", Action::kPreviousEvent, "To what happened before this moment");
+    button("Next event", Action::kNextEvent, "To what happens next");
+    if (!replay.event().empty()) sayWrapped(replay.event(), HudTone::kGood);
+    ImGui::PushTextWrapPos();
+    sayQuietly(keyLabelOf(Action::kRemovalHere) +
+               " or a right click on the bone: when was it removed there?");
+    ImGui::PopTextWrapPos();
+    ImGui::EndDisabled();
+}
+
+void PanelContent::buildRemarks() {
+    ImGui::BeginDisabled(!whyNotCommand(session_).empty());
+    buildNote();
+    box("Draw", Action::kDraw, controls_.isDrawing(), "Left drags draw on the bone, for everyone to see");
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    box("Show", Action::kRemarks, settings_.show_remarks, "Notes and strokes on the bone");
+    if (!session_.remarks || session_.remarks->empty()) return;
+    const std::vector<const topics::Remark*> listed = newestFirst(*session_.remarks);
+    for (size_t n = 0; n < std::min(listed.size(), kMaxListed); ++n) buildRemark(*listed[n]);
+    if (listed.size() > kMaxListed)
+        sayQuietly("and " + std::to_string(listed.size() - kMaxListed) + " older ones");
+    ImGui::BeginDisabled(!whyNotCommand(session_).empty());
+    if (button("Erase all", "Takes all notes and strokes away, for everybody"))
+        send(commandWith(&topics::Command::set_erase_remark, 0));
+    ImGui::EndDisabled();
+}
+
+void PanelContent::buildNote() {
+    if (remark_draft_.wants_keyboard) ImGui::SetKeyboardFocusHere();
+    remark_draft_.wants_keyboard = false;
+    ImGui::PushItemWidth(-1);
+    const bool is_entered = ImGui::InputTextWithHint(
+        "##note", withKey("Note for everyone", Action::kNote).c_str(), remark_draft_.note.data(),
+        remark_draft_.note.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+    note("##note", "Enter shows it to everyone, with the session's clock");
+    ImGui::PopItemWidth();
+    if (remark_draft_.place &&
+        box("at the place on the bone", true, "Where the mouse was; otherwise nowhere"))
+        remark_draft_.place.reset();
+    if (is_entered) sendNote();
+}
+
+void PanelContent::sendNote() {
+    const std::string typed = remark_draft_.note.data();
+    if (typed.find_first_not_of(' ') != std::string::npos) {
+        topics::Command command;
+        topics::Remark& remark = *command.mutable_add_remark();
+        remark.set_note(typed);
+        if (remark_draft_.place)
+            for (const double value : *remark_draft_.place) remark.add_points_m(float(value));
+        send(command);
+    }
+    remark_draft_ = {.place = {}, .leaves_keyboard = true};
+}
+
+void PanelContent::buildRemark(const topics::Remark& remark) {
+    const std::string number = std::to_string(remark.number());
+    ImGui::BeginDisabled(!whyNotCommand(session_).empty());
+    if (button("Erase " + number, "Takes it away, for everybody"))
+        send(commandWith(&topics::Command::set_erase_remark, remark.number()));
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    const std::string author = remark.author().empty() ? roleName(remark.role()) : remark.author();
+    ImGui::PushTextWrapPos();
+    if (remark.note().empty()) {
+        ImGui::ColorButton(("##colour" + number).c_str(), strokeColour(remark.color()),
+                           ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoPicker,
+                           ImVec2(ImGui::GetFontSize(), ImGui::GetFontSize()));
+        ImGui::SameLine();
+    }
+    sayQuietly(clockText(remark.session_s()) + " " + author);
+    if (!remark.note().empty()) say(remark.note(), HudTone::kPlain);
+    ImGui::PopTextWrapPos();
 }
 
 }  // namespace bonemill

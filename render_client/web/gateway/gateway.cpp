@@ -16,11 +16,6 @@ constexpr size_t kMaxAddresses = 4096;  // that failed
 constexpr double kBitsPerByte = 8;
 constexpr std::chrono::seconds kLookEvery{1};
 
-int64_t unixSeconds() {
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    return std::chrono::duration_cast<std::chrono::seconds>(now).count();
-}
-
 const char* wordOf(topics::Viewer::Role role) {
     switch (role) {
         case topics::Viewer::OPERATOR:

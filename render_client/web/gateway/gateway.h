@@ -11,10 +11,10 @@
 #include <string_view>
 
 #include "common/dds/participant.h"
-#include "render_client/link/subscribe/silence_monitor.h"
+#include "render_client/link/subscribe/heard_peers.h"
 #include "render_client/web/gateway/gateway_options.h"
 #include "render_client/web/gateway/guest.h"
-#include "render_client/web/gateway/guest_origin.h"
+#include "render_client/web/gateway/guest_list.h"
 #include "render_client/web/gateway/session_mirror.h"
 
 namespace bonemill::gateway {
@@ -38,7 +38,6 @@ class Gateway {
     // Takes what is new from the session, and looks after the guests: often.
     void step(Clock::time_point now);
 
-    size_t guestCount() const { return guests_.size(); }
     const SessionMirror& mirror() const { return mirror_; }
     const GuestList& list() const { return list_; }
     // How often it has joined the domain anew, as nothing was heard there.

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "render_client/link/subscribe/silence_monitor.h"
-#include "render_client/web/relay/relay_options.h"
+#include "render_client/link/subscribe/heard_peers.h"
+#include "render_client/web/relay/relay_greeting.h"
 
 namespace bonemill::gateway {
 

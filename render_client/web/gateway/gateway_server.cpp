@@ -17,7 +17,6 @@
 #include "common/base/user_error.h"
 #include "common/tcp/listen.h"
 #include "render_client/web/gateway/gateway.h"
-#include "render_client/web/gateway/http_answer.h"
 #include "render_client/web/gateway/relayed_guests.h"
 #include "render_client/web/gateway/static_pages.h"
 

@@ -7,15 +7,10 @@
 #include <utility>
 
 #include "common/commands/role_rules.h"
-#include "render_client/link/subscribe/remote_session.h"
+#include "render_client/link/subscribe/wire.h"
 
 namespace bonemill::gateway {
 namespace {
-
-int64_t unixNowSeconds() {
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    return std::chrono::duration_cast<std::chrono::seconds>(now).count();
-}
 
 uint64_t randomGuestSender() {
     std::random_device device;
@@ -37,6 +32,11 @@ std::unordered_set<uint32_t> bricksOf(const topics::DensityWish& wish) {
 }
 
 }  // namespace
+
+int64_t unixSeconds() {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    return std::chrono::duration_cast<std::chrono::seconds>(now).count();
+}
 
 Guest::Guest(Hall& hall, GuestOrigin origin, Clock::time_point now)
     : hall_(hall), origin_(std::move(origin)), came_(now), talked_(now) {}
@@ -95,7 +95,7 @@ void Guest::receive(std::string_view frame, Clock::time_point now) {
 void Guest::greet(const Hello& hello, Clock::time_point now) {
     if (hello.version() != kProtocolVersion)
         return refuse("The gateway is of another version; reload the page, or update the viewer.", true);
-    Admission admission = hall_.guests.admit(hello.token(), unixNowSeconds());
+    Admission admission = hall_.guests.admit(hello.token(), unixSeconds());
     if (!admission.refusal.empty()) {
         has_failed_ = admission.is_unknown;
         return refuse(admission.refusal, admission.is_final, now + kRefusalDelay);

@@ -11,13 +11,13 @@
 #include <string>
 #include <string_view>
 
-#include "render_client/web/gateway/guest_frames.h"
 #include "render_client/web/gateway/guest_list.h"
-#include "render_client/web/gateway/guest_origin.h"
 #include "render_client/web/gateway/guest_stream.h"
 #include "render_client/web/gateway/guest_voice.h"
 
 namespace bonemill::gateway {
+
+int64_t unixSeconds();
 
 // What all guests share. It outlives them.
 struct Hall {

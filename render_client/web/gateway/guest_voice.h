@@ -1,11 +1,14 @@
-// Says in the session, by DDS, what guests ask for, as the guest list knows them. For one thread.
+// What guests say: reads their frames, and says in the session, by DDS, what they ask for, as the guest list
+// knows them. For one thread.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 
-#include "common/dds/endpoint.h"
 #include "proto/topics.pb.h"
+#include "render_client/link/subscribe/wire.h"
 
 namespace bonemill::gateway {
 
@@ -38,14 +41,23 @@ class GuestVoice {
         explicit Mouth(const dds::Participant& participant)
             : viewers(participant), hands(participant), commands(participant), wishes(participant) {}
 
-        dds::Writer<dds::ViewerSample> viewers;
-        dds::Writer<dds::HandPointerSample> hands;
-        dds::Writer<dds::CommandSample> commands;
-        dds::Writer<dds::DensityWishSample> wishes;
+        Outlet<dds::ViewerSample> viewers;
+        Outlet<dds::HandPointerSample> hands;
+        Outlet<dds::CommandSample> commands;
+        Outlet<dds::DensityWishSample> wishes;
     };
 
     const uint32_t session_;
     std::optional<Mouth> mouth_;
 };
+
+inline constexpr size_t kMaxFrameBytes = 16 << 10;
+// A guest that comes again lists what it holds.
+inline constexpr size_t kMaxHelloBytes = 256 << 10;
+inline constexpr size_t kMaxTokenBytes = 128;
+
+// Reads what guests send: any bytes. Returns what the frame says if its numbers are ones to compute with;
+// nothing for all else. Thread-safe; never throws on any bytes (other than std::bad_alloc).
+std::optional<FromGuest> parseFromGuest(std::string_view frame);
 
 }  // namespace bonemill::gateway

@@ -5,7 +5,7 @@
 #include <mutex>
 #include <vector>
 
-#include "render_client/web/gateway/guest_origin.h"
+#include "render_client/web/gateway/guest_list.h"
 #include "render_client/web/relay/relay_dialer.h"
 
 namespace bonemill::gateway {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "render_client/link/subscribe/density_payloads.h"
+#include "render_client/link/subscribe/payloads.h"
 
 namespace bonemill::gateway {
 namespace {

@@ -17,7 +17,6 @@
 #include "common/tcp/descriptor.h"
 #include "common/tcp/listen.h"
 #include "render_client/web/relay/relay_greeting.h"
-#include "render_client/web/relay/relay_options.h"
 
 namespace bonemill {
 

@@ -39,4 +39,17 @@ RelayProof proofOf(std::string_view secret, std::string_view greeting, const Rel
 // letters, without blanks at its ends. Throws UserError.
 std::string readRelaySecret(const std::string& path);
 
+// What a relay is to do (render_client --relay), and what a gateway must know of its relay (--via).
+struct RelayOptions {
+    std::string address = "127.0.0.1";  // it listens there
+    uint16_t port = 0;                  // 0: any
+    std::string secret;                 // shared with the gateway
+};
+
+struct RelayPlace {
+    std::string host;
+    uint16_t port = 0;
+    std::string secret;
+};
+
 }  // namespace bonemill

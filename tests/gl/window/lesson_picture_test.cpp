@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "render_client/look/offscreen/osmesa_context.h"
-#include "render_client/panel/panel/panel_painter.h"
+#include "render_client/panel/panel/panel.h"
 #include "tests/gl/golden.h"
 #include "tests/support/class_lesson.h"
 #include "tests/support/controlled_panel.h"

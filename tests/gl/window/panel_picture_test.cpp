@@ -4,7 +4,7 @@
 #include <cstdlib>
 
 #include "render_client/look/offscreen/osmesa_context.h"
-#include "render_client/panel/panel/panel_painter.h"
+#include "render_client/panel/panel/panel.h"
 #include "tests/support/controlled_panel.h"
 
 namespace bonemill {

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "render_client/link/subscribe/scene_subscriber.h"
-#include "render_client/look/hud/text_scale.h"
+#include "render_client/look/hud/hud_canvas.h"
 #include "tests/gl/golden.h"
 #include "tests/gl/window/shown_session.h"
 #include "tests/gl/window/virtual_display.h"

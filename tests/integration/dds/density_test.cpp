@@ -11,6 +11,7 @@
 #include "tests/integration/dds/child_process.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/scanned_bone.h"
+#include "tests/support/stored_density.h"
 #include "tests/support/synthetic_nodes.h"
 
 namespace bonemill {
@@ -82,7 +83,7 @@ bool isExact(const DensityServer& server, const DensityStore& store) {
     std::mt19937 random(10000);
     for (int n = 0; n < 10000; ++n) {
         const Vector3i v = test::randomVoxel(server.scan.bone.volume, random);
-        if (store.scannedAt(v) != server.scan.scannedAt(v) || store.presentAt(v) != server.scan.at(v))
+        if (scannedAt(store, v) != server.scan.scannedAt(v) || presentAt(store, v) != server.scan.at(v))
             return false;
     }
     return true;

@@ -17,7 +17,7 @@
 #include "common/web_socket/web_socket_client.h"
 #include "haptic_server/server/publish/publisher.h"
 #include "proto/gateway.pb.h"
-#include "render_client/link/subscribe/remote_session.h"
+#include "render_client/link/subscribe/wire.h"
 #include "render_client/web/gateway/gateway.h"
 #include "render_client/web/gateway/gateway_server.h"
 #include "render_client/web/gateway/guest.h"

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "haptic_server/surface/density_stream/density_stream.h"
-#include "render_client/link/subscribe/density_payloads.h"
+#include "render_client/link/subscribe/payloads.h"
 #include "tests/support/mutated_bytes.h"
 
 namespace bonemill {

@@ -1,7 +1,5 @@
 // Hears what really leaves OpenAL: its "wave" backend writes a file in real time, as a sound card would
 // play it.
-#include "render_client/sound/sound_player.h"
-
 #include <gtest/gtest.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -18,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "render_client/sound/sound_output.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tone.h"
 

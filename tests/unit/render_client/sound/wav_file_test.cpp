@@ -1,11 +1,10 @@
-#include "render_client/sound/wav_file.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <iterator>
 
 #include "common/base/user_error.h"
+#include "render_client/sound/sound_output.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bonemill {

@@ -39,7 +39,7 @@ export function announcementOf(message: ToLink & { kind: 'announce' }) {
 }
 
 // Where the mouse wants the tool: with every picture, and again while pictures are slow; that it has let go, for half a
-// second (render_client/link/subscribe/hand_speaker.h).
+// second (render_client/link/subscribe/viewer_voice.h).
 const kRepeatMs = 50, kLongestPictureMs = 1000, kFarewellMs = 500;
 
 export class HandSpeaker {

@@ -1,5 +1,5 @@
 // A structure's colour (sRGB): the scene's, or what its name asks for by the custom of anatomy books, or one of a row
-// that people who see no red or no green can tell apart; as render_client/look/structures/structure_colours.cpp.
+// that people who see no red or no green can tell apart; as render_client/look/structures/structure_set.cpp.
 import type { Vec3 } from '../math/linear';
 import type { SceneView } from '../shared/messages';
 

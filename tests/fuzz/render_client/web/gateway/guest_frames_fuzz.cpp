@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "render_client/web/gateway/guest_frames.h"
+#include "render_client/web/gateway/guest_voice.h"
 #include "tests/support/mutated_bytes.h"
 
 namespace bonemill::gateway {

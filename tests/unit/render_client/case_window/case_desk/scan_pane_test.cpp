@@ -1,6 +1,6 @@
-#include "render_client/case_window/case_desk/scan_pane.h"
-
 #include <gtest/gtest.h>
+
+#include "render_client/case_window/case_desk/scan_slice.h"
 
 namespace bonemill {
 namespace {

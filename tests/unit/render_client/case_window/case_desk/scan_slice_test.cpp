@@ -4,7 +4,6 @@
 
 #include <numbers>
 
-#include "render_client/case_window/case_desk/scan_pane.h"
 #include "tests/unit/haptic_server/scans/import/grid_scan.h"
 
 namespace bonemill {

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "render_client/case_window/case_screen/case_screen.h"
-#include "render_client/look/hud/text_scale.h"
+#include "render_client/look/hud/hud_canvas.h"
 #include "tests/support/places.h"
 #include "tests/unit/render_client/case_window/case_desk/desk_scan.h"
 

@@ -1,6 +1,6 @@
-#include "render_client/hand/controls/eye_reporter.h"
-
 #include <gtest/gtest.h>
+
+#include "render_client/hand/controls/announcing.h"
 
 namespace bonemill {
 namespace {

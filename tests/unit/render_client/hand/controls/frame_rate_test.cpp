@@ -1,6 +1,6 @@
-#include "render_client/hand/controls/frame_rate.h"
-
 #include <gtest/gtest.h>
+
+#include "render_client/hand/controls/announcing.h"
 
 namespace bonemill {
 namespace {

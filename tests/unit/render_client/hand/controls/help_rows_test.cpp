@@ -1,4 +1,3 @@
-#include "render_client/hand/controls/help_rows.h"
 
 #include <gtest/gtest.h>
 

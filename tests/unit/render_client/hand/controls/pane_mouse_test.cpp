@@ -1,7 +1,6 @@
-#include "render_client/hand/controls/pane_mouse.h"
-
 #include <gtest/gtest.h>
 
+#include "render_client/hand/controls/mouse_modes.h"
 #include "tests/support/controlled_viewer.h"
 
 namespace bonemill {

@@ -1,7 +1,6 @@
-#include "render_client/hand/controls/question.h"
-
 #include <gtest/gtest.h>
 
+#include "render_client/hand/controls/session_view.h"
 #include "tests/support/controlled_viewer.h"
 
 namespace bonemill {

@@ -1,10 +1,9 @@
-#include "render_client/hand/controls/stroke_pen.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "common/dds/remark_bounds.h"
+#include "render_client/hand/controls/mouse_modes.h"
 #include "tests/support/controlled_viewer.h"
 
 namespace bonemill {

@@ -8,8 +8,7 @@
 #include <random>
 
 #include "common/device_messages/device_messages.h"
-#include "render_client/hand/controls/hold_monitor.h"
-#include "render_client/look/camera/orbit_camera.h"
+#include "render_client/look/camera/camera.h"
 #include "tests/support/controlled_viewer.h"
 
 namespace bonemill {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/stored_density.h"
+
 namespace bonemill {
 namespace {
 
@@ -34,20 +36,20 @@ TEST(DensityStore, HasWhatArrived) {
     DensityStore store;
     store.setGrid(smallGrid());
     EXPECT_EQ(store.find(5), nullptr);
-    EXPECT_EQ(store.scannedAt({8, 4, 0}), std::nullopt);
+    EXPECT_EQ(scannedAt(store, {8, 4, 0}), std::nullopt);
     store.put(5, brickOf(100));  // its first voxel is (8, 4, 0)
     ASSERT_NE(store.find(5), nullptr);
-    EXPECT_EQ(store.scannedAt({8, 4, 0}), 100);
-    EXPECT_EQ(store.scannedAt({9, 6, 3}), 100 + 1 + 4 * 2 + 16 * 3);
-    EXPECT_EQ(store.presentAt({9, 6, 3}), 100 + 1 + 4 * 2 + 16 * 3);
-    EXPECT_EQ(store.scannedAt({10, 6, 3}), std::nullopt) << "outside of the grid";
-    EXPECT_EQ(store.scannedAt({-1, 0, 0}), std::nullopt);
+    EXPECT_EQ(scannedAt(store, {8, 4, 0}), 100);
+    EXPECT_EQ(scannedAt(store, {9, 6, 3}), 100 + 1 + 4 * 2 + 16 * 3);
+    EXPECT_EQ(presentAt(store, {9, 6, 3}), 100 + 1 + 4 * 2 + 16 * 3);
+    EXPECT_EQ(scannedAt(store, {10, 6, 3}), std::nullopt) << "outside of the grid";
+    EXPECT_EQ(scannedAt(store, {-1, 0, 0}), std::nullopt);
     DensityBrick milled = brickOf(100);
     milled.present.assign(64, 7);
     milled.materials.assign(64, 3);
     store.put(5, milled);
-    EXPECT_EQ(store.scannedAt({9, 4, 0}), 101);
-    EXPECT_EQ(store.presentAt({9, 4, 0}), 7);
+    EXPECT_EQ(scannedAt(store, {9, 4, 0}), 101);
+    EXPECT_EQ(presentAt(store, {9, 4, 0}), 7);
     EXPECT_EQ(store.bytes(), 2 * kBrickBytes + 64);
 }
 

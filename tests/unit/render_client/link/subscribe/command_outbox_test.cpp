@@ -1,6 +1,6 @@
-#include "render_client/link/subscribe/command_outbox.h"
-
 #include <gtest/gtest.h>
+
+#include "render_client/link/subscribe/viewer_voice.h"
 
 namespace bonemill {
 namespace {

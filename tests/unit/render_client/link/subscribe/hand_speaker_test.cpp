@@ -1,6 +1,4 @@
 // A viewer's wishes reach the device while pictures are slow, and end when it hangs, lets go or is gone.
-#include "render_client/link/subscribe/hand_speaker.h"
-
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -8,6 +6,7 @@
 
 #include "common/device_messages/device_messages.h"
 #include "device_daemon/hands/pointer/hand_wish.h"
+#include "render_client/link/subscribe/viewer_voice.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/process.h"
 

@@ -1,6 +1,6 @@
-#include "render_client/link/subscribe/viewer_list.h"
-
 #include <gtest/gtest.h>
+
+#include "render_client/link/subscribe/heard_peers.h"
 
 namespace bonemill {
 namespace {

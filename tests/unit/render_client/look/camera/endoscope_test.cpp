@@ -1,8 +1,8 @@
-#include "render_client/look/camera/endoscope.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "render_client/look/camera/camera.h"
 
 namespace bonemill {
 namespace {

@@ -1,8 +1,8 @@
-#include "render_client/look/camera/first_view.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "render_client/look/camera/camera.h"
 
 namespace bonemill {
 namespace {

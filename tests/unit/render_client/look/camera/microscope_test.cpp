@@ -1,8 +1,6 @@
-#include "render_client/look/camera/microscope.h"
-
 #include <gtest/gtest.h>
 
-#include "render_client/look/camera/orbit_camera.h"
+#include "render_client/look/camera/camera.h"
 
 namespace bonemill {
 namespace {

@@ -1,11 +1,9 @@
-#include "render_client/look/camera/orbit_camera.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-#include "render_client/look/camera/microscope.h"
+#include "render_client/look/camera/camera.h"
 
 namespace bonemill {
 namespace {

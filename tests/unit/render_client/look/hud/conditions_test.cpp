@@ -7,7 +7,6 @@
 #include "common/device_messages/device_messages.h"
 #include "haptic_server/core/telemetry/fault_names.h"
 #include "haptic_server/core/telemetry/tick_record.h"
-#include "render_client/look/hud/fault_words.h"
 #include "tests/support/hud_rows.h"
 
 namespace bonemill {
@@ -127,7 +126,7 @@ TEST(FaultWords, EveryFaultOfTheServerHasWords) {
     for (uint32_t fault = 1; fault <= kLastFault; fault <<= 1) {
         const auto words = faultWords(faultNames(fault));
         ASSERT_EQ(words.size(), 1u);
-        EXPECT_EQ(words[0].text.find(words[0].name), std::string::npos) << words[0].text;
+        EXPECT_EQ(words[0].text.find(words[0].id), std::string::npos) << words[0].text;
         EXPECT_EQ(words[0].text.find('_'), std::string::npos) << words[0].text;
     }
     EXPECT_EQ(faultWords(faultNames(2 * kLastFault - 1)).size(), faultList(2 * kLastFault - 1).size());

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "render_client/look/hud/event_latch.h"
 #include "tests/support/hud_rows.h"
 
 namespace bonemill {

@@ -1,6 +1,6 @@
-#include "render_client/look/hud/fault_list.h"
-
 #include <gtest/gtest.h>
+
+#include "render_client/look/hud/conditions.h"
 
 namespace bonemill {
 namespace {

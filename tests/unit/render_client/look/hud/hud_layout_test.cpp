@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "render_client/look/hud/help_page.h"
+#include "render_client/look/hud/hud_signs.h"
 
 namespace bonemill {
 namespace {

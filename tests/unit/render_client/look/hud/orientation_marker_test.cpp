@@ -1,11 +1,10 @@
-#include "render_client/look/hud/orientation_marker.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numbers>
 
 #include "common/geometry/view_axes.h"
+#include "render_client/look/hud/hud_signs.h"
 
 namespace bonemill {
 namespace {

@@ -1,6 +1,6 @@
-#include "render_client/look/hud/scale_bar.h"
-
 #include <gtest/gtest.h>
+
+#include "render_client/look/hud/hud_layout.h"
 
 namespace bonemill {
 namespace {

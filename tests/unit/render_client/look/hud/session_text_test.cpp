@@ -1,8 +1,8 @@
-#include "render_client/look/hud/session_text.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
+
+#include "render_client/look/hud/figure_text.h"
 
 namespace bonemill {
 namespace {

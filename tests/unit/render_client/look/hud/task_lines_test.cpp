@@ -1,7 +1,6 @@
-#include "render_client/look/hud/task_lines.h"
-
 #include <gtest/gtest.h>
 
+#include "render_client/look/hud/effect_lines.h"
 #include "tests/support/hud_rows.h"
 
 namespace bonemill {

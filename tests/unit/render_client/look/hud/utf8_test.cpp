@@ -1,6 +1,6 @@
-#include "render_client/look/hud/utf8.h"
-
 #include <gtest/gtest.h>
+
+#include "render_client/look/hud/hud_canvas.h"
 
 namespace bonemill {
 namespace {

@@ -1,10 +1,10 @@
-#include "render_client/look/model/handpiece.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <map>
+
+#include "render_client/look/model/tool_mesh.h"
 
 namespace bonemill {
 namespace {

@@ -1,8 +1,8 @@
-#include "render_client/look/model/mesh_difference.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
+
+#include "render_client/look/model/node_store.h"
 
 namespace bonemill {
 namespace {

@@ -1,11 +1,9 @@
-#include "render_client/look/model/node_parts.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 
-#include "render_client/look/model/mesh_difference.h"
+#include "render_client/look/model/node_store.h"
 
 namespace bonemill {
 namespace {

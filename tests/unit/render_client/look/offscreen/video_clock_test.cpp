@@ -1,6 +1,6 @@
-#include "render_client/look/offscreen/video_clock.h"
-
 #include <gtest/gtest.h>
+
+#include "render_client/look/offscreen/video_file.h"
 
 namespace bonemill {
 namespace {

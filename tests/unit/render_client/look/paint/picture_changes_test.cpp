@@ -1,8 +1,7 @@
-#include "render_client/look/paint/picture_changes.h"
-
 #include <gtest/gtest.h>
 
-#include "render_client/look/camera/orbit_camera.h"
+#include "render_client/look/camera/camera.h"
+#include "render_client/look/paint/render_targets.h"
 
 namespace bonemill {
 namespace {

@@ -1,10 +1,9 @@
-#include "render_client/look/paint/pixel_box.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "render_client/look/camera/orbit_camera.h"
+#include "render_client/look/camera/camera.h"
+#include "render_client/look/paint/render_targets.h"
 
 namespace bonemill {
 namespace {

@@ -1,6 +1,6 @@
-#include "render_client/look/slices/grey_window.h"
-
 #include <gtest/gtest.h>
+
+#include "render_client/look/slices/slice_image.h"
 
 namespace bonemill {
 namespace {

@@ -1,7 +1,6 @@
-#include "render_client/look/slices/panes.h"
-
 #include <gtest/gtest.h>
 
+#include "render_client/look/slices/slice_plane.h"
 #include "tests/unit/render_client/look/slices/sliced_volume.h"
 
 namespace bonemill {

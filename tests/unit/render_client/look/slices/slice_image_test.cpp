@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-#include "render_client/look/slices/grey_window.h"
-#include "render_client/look/slices/panes.h"
+#include "render_client/look/slices/slice_plane.h"
 #include "tests/unit/render_client/look/slices/sliced_volume.h"
 
 namespace bonemill {

@@ -1,6 +1,6 @@
-#include "render_client/look/structures/structure_colours.h"
-
 #include <gtest/gtest.h>
+
+#include "render_client/look/structures/structure_set.h"
 
 namespace bonemill {
 namespace {

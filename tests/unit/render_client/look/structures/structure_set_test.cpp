@@ -9,7 +9,6 @@
 #include "haptic_server/core/effects/burr_probes.h"
 #include "haptic_server/scans/densify/distance_transform.h"
 #include "haptic_server/surface/mesh/structure_mesher.h"
-#include "render_client/look/structures/thickness_field.h"
 #include "tests/support/structure_shapes.h"
 
 namespace bonemill {

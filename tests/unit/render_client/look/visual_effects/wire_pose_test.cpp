@@ -1,9 +1,9 @@
-#include "render_client/look/visual_effects/wire_pose.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
+
+#include "render_client/look/visual_effects/effect_input.h"
 
 namespace bonemill {
 namespace {

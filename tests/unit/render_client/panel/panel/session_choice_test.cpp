@@ -1,8 +1,7 @@
 // Several sessions are offered: the user chooses one by mouse or by key.
-#include "render_client/panel/panel/session_choice.h"
-
 #include <gtest/gtest.h>
 
+#include "render_client/panel/panel/panel.h"
 #include "tests/support/controlled_panel.h"
 
 namespace bonemill {

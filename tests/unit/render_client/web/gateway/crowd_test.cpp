@@ -1,7 +1,7 @@
 // How many may come from where.
 #include <gtest/gtest.h>
 
-#include "render_client/web/gateway/guest_origin.h"
+#include "render_client/web/gateway/guest_list.h"
 
 namespace bonemill::gateway {
 namespace {

@@ -1,0 +1,93 @@
+// What the panel keeps between two pictures: what is being typed, and decoded pictures. It belongs to the
+// render thread.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "common/picture/picture.h"
+#include "proto/topics.pb.h"
+#include "render_client/hand/controls/session_view.h"
+
+namespace bonemill {
+
+// Of a note.
+struct RemarkDraft {
+    std::array<char, 301> note{};          // as typed so far, zero-terminated UTF-8
+    std::optional<Eigen::Vector3d> place;  // W; nothing: the note belongs to no place
+    bool wants_keyboard = false;           // it is to be typed from now on
+    bool leaves_keyboard = false;          // it was sent: keys are the viewer's again
+};
+
+// Of the user's side of a lesson: a name that is being typed, which task and which summary are on the screen.
+class LessonDraft {
+  public:
+    // Takes what the server tells: an attempt that begins and a new scene show the task for a while, one that
+    // ends its summary.
+    void follow(const SessionView& session);
+
+    // How much of the task is to be seen, 0 to 1: it fades.
+    float taskOpacity(double time_s) const;
+    // Returns the attempt whose summary is open; null if none.
+    const topics::Attempt* summary(const SessionView& session) const;
+    void closeSummary() { summary_ = 0; }
+    void showSummary(uint32_t attempt) { summary_ = attempt; }
+    // Returns the clock (s) of the attempt under way, without pauses; it counts what this viewer has seen,
+    // and takes an attempt that had begun before for one without pauses. Nothing while none is under way.
+    std::optional<double> attemptTime() const { return attempt_s_; }
+    // Something stands over the picture, or can be clicked there, while the panel is closed.
+    bool isOnScreen(const SessionView& session) const {
+        return session.lesson && session.lesson->scenes_size() > 0;
+    }
+
+    std::array<char, 64> trainee{};  // as typed so far, zero-terminated UTF-8
+    bool scrolls_to_top = false;     // the panel, in a new scene
+    bool wants_keyboard = false;     // the name is to be typed from now on
+    bool has_entered = false;        // the name was entered, and its attempt is to begin
+    bool leaves_keyboard = false;    // it has begun: keys are the viewer's again
+
+  private:
+    void countTime(const SessionView& session, bool has_looked);
+
+    static constexpr double kTaskTime = 12, kFadeTime = 2;  // s
+
+    bool has_looked_ = false;
+    std::string scene_id_;
+    bool was_running_ = false;
+    uint32_t last_attempt_ = 0;  // that was told
+    uint32_t summary_ = 0;       // number of the attempt whose summary is open; 0: none
+    std::optional<double> task_since_s_;
+    int64_t start_stamp_ns_ = 0;  // of the attempt under way
+    std::optional<double> attempt_s_;
+    double counted_s_ = 0;  // SessionView::time_s until which it is counted
+};
+
+// Returns the scene of this id in what the server can teach; null if it is none of them.
+const topics::SceneChoice* sceneOf(const topics::Lesson& lesson, const std::string& id);
+// Returns what the panel is called, and the button that opens it.
+std::string panelTitle(const SessionView& session);
+
+// The pictures of the scenes that can be chosen, decoded from PNG once.
+struct ScenePicture {
+    std::string png;  // that it was decoded from
+    int number = 0;   // the panel's picture of this number; 0: there is none
+    RgbaPixels pixels;
+};
+
+class ScenePictures {
+  public:
+    // Decodes what is new; a picture that is none, or larger than 512 pixels, is left out.
+    void follow(const topics::Lesson& lesson);
+    // By the scene's id. Numbers are never used again.
+    const std::map<std::string, ScenePicture>& all() const { return pictures_; }
+
+  private:
+    std::map<std::string, ScenePicture> pictures_;
+    int last_number_ = 0;
+};
+
+}  // namespace bonemill
