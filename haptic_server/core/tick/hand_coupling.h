@@ -10,8 +10,8 @@
 #pragma once
 
 #include "haptic_server/core/equilibrium/spo_model.h"
-#include "haptic_server/core/tick/hand_side.h"
 #include "haptic_server/core/tick/energy_tank.h"
+#include "haptic_server/core/tick/hand_side.h"
 
 namespace bonemill {
 

@@ -47,7 +47,8 @@ TEST_F(RoomTests, ARoomHasItsQuickTests) {
 }
 
 TEST_F(RoomTests, AChangedFileHasTheTestsOfItsRoom) {
-    expectTests({"--changed", "haptic_server/core/milling/burr_limit.cpp"}, "milling_properties\nmilling_tests\n");
+    expectTests({"--changed", "haptic_server/core/milling/burr_limit.cpp"},
+                "milling_properties\nmilling_tests\n");
     expectTests({"--changed", "common/base/units.h"}, "rt_tests\n");
     expectTests({"--changed", "proto/topics.proto", "README.md"}, "topics_tests\n");
 }
