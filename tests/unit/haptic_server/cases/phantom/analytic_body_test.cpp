@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "haptic_server/core/volume/surface_ramp.h"
 #include "tests/support/sampled_body.h"
 
 namespace bonemill {
