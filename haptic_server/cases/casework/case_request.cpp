@@ -10,7 +10,6 @@
 #include "haptic_server/scans/labels/labels.h"
 
 namespace bonemill {
-namespace {
 
 void addCaseOptions(CLI::App& app, CaseRequest& request) {
     app.add_option("scan", request.scan, "folder of a DICOM series or of images, or a file")->required();
@@ -51,6 +50,8 @@ void addCaseOptions(CLI::App& app, CaseRequest& request) {
            "does")
         ->type_name("DIR");
 }
+
+namespace {
 
 // As short as reads back the same.
 std::string numberText(double value) {
