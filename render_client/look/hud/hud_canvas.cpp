@@ -1,8 +1,5 @@
 #include "render_client/look/hud/hud_canvas.h"
 
-#include <stb/stb_rect_pack.h>
-#include <stb/stb_truetype.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -21,8 +18,10 @@
 #endif
 #define STB_RECT_PACK_IMPLEMENTATION
 #define STBRP_STATIC
+#include <stb/stb_rect_pack.h>
 #define STB_TRUETYPE_IMPLEMENTATION
 #define STBTT_STATIC
+#include <stb/stb_truetype.h>
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
 #endif
