@@ -49,11 +49,8 @@ constexpr double kStep = 0.92;          // from stiffness to stiffness
 // A larger share is felt in the flicker of the encoders: it must be worth so much stiffness per unit.
 constexpr double kShareIsWorth = 1.03;
 
-// Returns by which factor per tick of dt the slowest motion of the sampled loop shrinks (below 1) or grows,
-// when the hand holds nothing but the device: device, amplifier, delay, hold, relaxing spring and lagging
-// tool as one linear difference equation per degree of freedom. `wall` times k is behind the tool; infinity
-// stands for a wall that never gives way, 0 for free air. Beyond the linear equation, a spring that saturates
-// and a wall that ends only take stiffness away.
+}  // namespace
+
 double growthPerTick(const HandleAxis& axis, const LoopSprings& springs, double wall, double dt) noexcept {
     const int whole = std::clamp(int(axis.delay_s / dt + 1e-9), 0, kMaxDelay - 1);
     const double part = std::clamp(axis.delay_s - whole * dt, 0.0, dt);
@@ -124,8 +121,6 @@ double growthPerTick(const HandleAxis& axis, const LoopSprings& springs, double 
     }
     return pinned::exp((log_size - log_before) / double(1 << (kSquarings - 1)));
 }
-
-}  // namespace
 
 LoopFit::LoopFit(const HandleAxis& axis, const LoopSprings& wish, double most_quick, double dt) noexcept
     : axis_(axis), wish_(wish), best_(wish), most_quick_(most_quick), dt_(dt) {

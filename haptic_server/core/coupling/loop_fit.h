@@ -24,6 +24,13 @@ struct LoopSprings {
     double damping_time = 1e-3;  // τ, s: of the tool
 };
 
+// Returns by which factor per tick of dt the slowest motion of the sampled loop shrinks (below 1) or grows,
+// when the hand holds nothing but the device: device, amplifier, delay, hold, relaxing spring and lagging
+// tool as one linear difference equation per degree of freedom. `wall` times k is behind the tool; infinity
+// stands for a wall that never gives way, 0 for free air. Beyond the linear equation, a spring that saturates
+// and a wall that ends only take stiffness away.
+double growthPerTick(const HandleAxis& axis, const LoopSprings& springs, double wall, double dt) noexcept;
+
 class LoopFit {
   public:
     // A lightly damped swing shrinks at least by this damping ratio. Every eigenvalue of the sampled loop is

@@ -39,12 +39,6 @@ Vector6d minusGradient(Energy&& energy, const Pose& at) {
     return w;
 }
 
-Vector6d stacked(const Wrench& wrench) {
-    Vector6d w;
-    w << wrench.force, wrench.torque;
-    return w;
-}
-
 TEST(EnergyCoupling, WrenchesOnToolAndDeviceAreTheEnergysGradients) {
     const EnergyCoupling config = couplingWithGrip();
     const ContinuousRotation way;
