@@ -5,8 +5,11 @@
 // are plain values; any thread may hold its own.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace bonemill {
@@ -21,6 +24,18 @@ struct Figure {
     std::string unit;   // "mm3", "percent", "s", "N", "mm", "N s", "mm/s", "deg", ...; "" for a plain number
 };
 using Figures = std::vector<Figure>;
+
+// Units for people: figures have them in ASCII, as "mm3", and texts as "mm³".
+inline std::string_view writtenUnit(std::string_view unit) {
+    using Pair = std::pair<std::string_view, std::string_view>;
+    static constexpr std::array kWritten = {
+        Pair("mm3", "mm³"),     Pair("mm2", "mm²"),     Pair("percent", "%"),
+        Pair("degC", "°C"),     Pair("deg", "°"),       Pair("N s", "N·s"),
+        Pair("mm3/s", "mm³/s"), Pair("J/mm3", "J/mm³"), Pair("mm/mm3", "mm/mm³")};
+    for (const auto& [plain, with_signs] : kWritten)
+        if (unit == plain) return with_signs;
+    return unit;
+}
 
 // Returns null if there is none of that id. With `version` 0 any version will do.
 inline const Figure* findFigure(const Figures& figures, const std::string& id, int version = 0) {

@@ -1,15 +1,56 @@
-// Cuts a session into strokes, by the three definitions in use: by turns of the way, by contact, and by
-// minima of speed. A definition's name goes with each figure, for their counts differ. SI, frame W. One
-// normal thread; what is kept is bounded.
+// Cuts a session into strokes and measures them, by the three definitions in use: by turns of the way, by
+// contact, and by minima of speed. A definition's name goes with each figure, for their counts differ. SI,
+// frame W. One normal thread; what is kept is bounded.
 #pragma once
 
+#include <Eigen/Core>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "haptic_server/assessment/measures/distribution.h"
-#include "haptic_server/assessment/measures/stroke.h"
+#include "haptic_server/assessment/measures/motion.h"
 #include "haptic_server/assessment/measures/tick_step.h"
 
 namespace bonemill {
+
+inline constexpr double kShortestStroke = 1e-3;  // m: a shorter one is none
+
+// What is measured of a stroke of the burr, from one place where the hand turns to the next; NaN is what such
+// a stroke does not have.
+struct StrokeMeasures {
+    static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    double length = 0;      // m, of the way
+    double duration = 0;    // s
+    double mean_speed = 0;  // m/s
+    double mean_force = 0;  // N
+    double removed = 0;     // m³
+    double sparc = kNone, ldlj = kNone;
+    double f95 = kNone;  // Hz
+};
+
+// The samples follow one another; there are two at least.
+double wayOf(std::span<const MotionSample> samples) noexcept;
+StrokeMeasures measuresOf(std::span<const MotionSample> samples);
+
+// Of each definition of a stroke, those of a session: as many as this exactly, and of the rest their number.
+class StrokeList {
+  public:
+    static constexpr size_t kMaxKept = 20'000;
+
+    void add(const StrokeMeasures& stroke) {
+        ++count_;
+        if (kept_.size() < kMaxKept) kept_.push_back(stroke);
+    }
+    size_t count() const noexcept { return count_; }
+    // Of those that have it; NaN if none has.
+    double median(double StrokeMeasures::*measure) const;
+    std::span<const StrokeMeasures> kept() const noexcept { return kept_; }
+
+  private:
+    std::vector<StrokeMeasures> kept_;
+    size_t count_ = 0;
+};
 
 // Where the way of 60 ms before and that of 60 ms after make more than a right angle, a stroke ends; of
 // neighbours that do, at the slowest. Strokes are of periods of drilling, in which no 0.2 s pass without

@@ -1,12 +1,29 @@
-// One tick as the measures of technique look at it: its record, and the time since the one before. SI, frame
-// W. Plain values.
+// What the measures of technique look at: the scene, and one tick after the other, with the time since the
+// one before. SI, frame W. Plain values.
 #pragma once
 
 #include <Eigen/Geometry>
+#include <string>
+#include <vector>
 
+#include "haptic_server/core/telemetry/recorded_effects.h"
 #include "haptic_server/core/telemetry/tick_record.h"
 
 namespace bonemill {
+
+// What the measures of technique must know of the scene.
+struct TechniqueScene {
+    RecordedEffects recorded;            // what the records hold
+    std::vector<std::string> materials;  // names, in the scene's order
+    std::vector<bool> are_protected;     // of the materials; those that are not named here are not
+    std::vector<std::string> tools;      // names, in the scene's order
+    // In contact, a force beyond this is too much; 0: no such limit.
+    double force_limit = 0;  // N
+
+    bool isProtected(size_t material) const {
+        return material < are_protected.size() && are_protected[material];
+    }
+};
 
 struct TickStep {
     const TickRecord& record;

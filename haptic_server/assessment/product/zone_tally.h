@@ -1,14 +1,16 @@
-// Counts what is gone of each zone.
+// Counts what is gone of each zone, of a whole bone and while it is milled.
 //
 // A voxel was bone if its scanned density is at or above the iso-value, and is gone if it is below now.
 // Beside that, r = clip((before - now) / before, 0, 1) of what was bone tells how much of its density went.
 #pragma once
 
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "haptic_server/assessment/measures/figure.h"
 #include "haptic_server/assessment/product/judged_task.h"
+#include "haptic_server/core/volume/leaf_lattice.h"
 #include "haptic_server/core/volume/voxel_volume.h"
 
 namespace bonemill {
@@ -34,5 +36,46 @@ ProductCounts countProduct(const VoxelVolume& scanned, const VoxelVolume& now, c
 // Adds the figures "zone.*", those of each role ("target.*", ...), "outside.*" and "overlap.*".
 void addZoneFigures(const ProductCounts& counts, const JudgedTask& task, double voxel_volume,
                     Figures& figures);
+
+// Keeps the count of what is gone of each zone up with the bone while it is milled: looks only at leaves that
+// changed. It gives what countProduct() does.
+//
+// It belongs to one normal thread beside the tick, which writes voxels between LeafLattice::beginWrite and
+// endWrite; it takes no lock, and leaves that are being written wait for the next time. Not RT-safe: it
+// allocates.
+class RunningTally {
+  public:
+    // All must outlive this object. A leaf of version 0 was never written, and is as scanned; no other has
+    // been looked at yet.
+    RunningTally(const VoxelVolume& scanned, const VoxelVolume& now, const LeafLattice& lattice,
+                 const JudgedTask& task);
+
+    static constexpr uint32_t kLeavesAtOnce = 64;  // some milliseconds
+    // Looks at up to N leaves that changed since; false: others still wait.
+    bool update(uint32_t most_leaves = kLeavesAtOnce);
+
+    // Voxels that were bone and are gone, by ZoneId.
+    const std::vector<int64_t>& removed() const noexcept { return removed_; }
+    // The same of those that shall be gone.
+    int64_t idealRemoved() const noexcept { return ideal_removed_; }
+
+  private:
+    struct LeafCount {
+        std::vector<uint32_t> removed;  // by ZoneId
+        uint32_t ideal_removed = 0;
+    };
+    bool tryCount(LeafId leaf);
+    void count(LeafId leaf, LeafCount& counted) const;
+
+    const VoxelVolume& scanned_;
+    const VoxelVolume& now_;
+    const LeafLattice& lattice_;
+    const JudgedTask& task_;
+    std::vector<uint32_t> seen_version_;
+    std::unordered_map<LeafId, LeafCount> counted_;  // those with something gone
+    std::vector<int64_t> removed_;
+    int64_t ideal_removed_ = 0;
+    LeafId next_leaf_ = 0;  // where the next update starts, so that busy leaves do not starve the others
+};
 
 }  // namespace bonemill

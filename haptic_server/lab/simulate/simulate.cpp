@@ -17,7 +17,7 @@
 #include "haptic_server/lab/simulate/run_path.h"
 #include "haptic_server/lab/simulate/task_run.h"
 #include "haptic_server/lab/simulate/write_assessment.h"
-#include "haptic_server/recording/statistics/final_files.h"
+#include "haptic_server/recording/statistics/bone_files.h"
 #include "haptic_server/recording/statistics/run_statistics.h"
 #include "haptic_server/recording/statistics/state_hash.h"
 #include "haptic_server/recording/statistics/trace_writer.h"

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "common/base/user_error.h"
-#include "haptic_server/assessment/product/judge.h"
+#include "haptic_server/assessment/product/judged_task.h"
 #include "haptic_server/scene/setup/make_technique.h"
 
 namespace bonemill {

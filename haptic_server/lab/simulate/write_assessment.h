@@ -6,7 +6,7 @@
 
 #include "common/config/scene_file.h"
 #include "haptic_server/lab/simulate/task_run.h"
-#include "haptic_server/recording/statistics/final_files.h"
+#include "haptic_server/recording/statistics/bone_files.h"
 
 namespace bonemill {
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "common/rt/clock.h"
-#include "haptic_server/recording/journal/journal_schemas.h"
+#include "haptic_server/recording/journal/journal_topics.h"
 
 namespace bonemill {
 namespace {

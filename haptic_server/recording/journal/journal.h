@@ -19,8 +19,7 @@
 #include "haptic_server/recording/journal/journal_chain.h"
 #include "haptic_server/recording/journal/journal_file.h"
 #include "haptic_server/recording/journal/journal_topics.h"
-#include "haptic_server/recording/journal/result_columns.h"
-#include "haptic_server/recording/statistics/tick_hash.h"
+#include "haptic_server/recording/statistics/state_hash.h"
 
 namespace bonemill {
 

@@ -7,7 +7,7 @@
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/config/scene_tools.h"
-#include "haptic_server/assessment/measures/force_meter.h"
+#include "haptic_server/assessment/measures/meters.h"
 #include "haptic_server/scans/densify/protected_distance.h"
 #include "haptic_server/scans/densify/resample_labels.h"
 #include "haptic_server/scans/find_bone/volume_text.h"

@@ -10,7 +10,7 @@
 
 #include "common/rt/spsc_ring.h"
 #include "haptic_server/assessment/measures/technique.h"
-#include "haptic_server/assessment/product/breach_monitor.h"
+#include "haptic_server/assessment/product/breach.h"
 #include "haptic_server/recording/journal/journal.h"
 #include "haptic_server/recording/statistics/event_sum.h"
 #include "haptic_server/recording/statistics/run_statistics.h"

@@ -12,7 +12,7 @@
 #include "common/rt/clock.h"
 #include "common/rt/rt_guard.h"
 #include "haptic_server/core/telemetry/fault_names.h"
-#include "haptic_server/recording/statistics/final_files.h"
+#include "haptic_server/recording/statistics/bone_files.h"
 #include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "haptic_server/scene/setup/coupling_text.h"
 #include "haptic_server/scene/setup/make_technique.h"

@@ -11,7 +11,6 @@
 #include <string>
 
 #include "haptic_server/assessment/product/product.h"
-#include "haptic_server/assessment/product/running_tally.h"
 #include "haptic_server/assessment/product/zone_tally.h"
 #include "haptic_server/core/bone/bone_history.h"
 #include "proto/topics.pb.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptic_server/assessment/measures/moments.h"
+#include "haptic_server/assessment/measures/moment_finder.h"
 #include "haptic_server/teaching/attempt_report/charts.h"
 #include "haptic_server/teaching/attempt_report/report_style.h"
 #include "haptic_server/teaching/attempt_report/report_words.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "haptic_server/assessment/measures/written_unit.h"
+#include "haptic_server/assessment/measures/figure.h"
 
 namespace bonemill {
 namespace {

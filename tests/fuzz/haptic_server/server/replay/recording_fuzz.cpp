@@ -9,7 +9,7 @@
 
 #include "common/base/user_error.h"
 #include "common/mcap/mcap_writer.h"
-#include "haptic_server/recording/journal/journal_schemas.h"
+#include "haptic_server/recording/journal/journal_topics.h"
 #include "haptic_server/recording/rerun/recording.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "haptic_server/scene/trajectory/recorded_row.h"

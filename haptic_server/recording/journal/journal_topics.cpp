@@ -1,4 +1,4 @@
-#include "haptic_server/recording/journal/journal_schemas.h"
+#include "haptic_server/recording/journal/journal_topics.h"
 
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/descriptor.pb.h>

@@ -1,11 +1,11 @@
-#include "haptic_server/assessment/product/judge.h"
+#include "haptic_server/assessment/product/judged_task.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <string>
 #include <utility>
 
-#include "haptic_server/assessment/measures/written_unit.h"
+#include "haptic_server/assessment/measures/figure.h"
 
 namespace bonemill {
 namespace {
