@@ -4,7 +4,7 @@
 #include <exception>
 
 #include "common/text/hex_text.h"
-#include "haptic_server/teaching/attempt_report/deviation_caption.h"
+#include "haptic_server/teaching/attempt_report/report_words.h"
 #include "haptic_server/teaching/attempt_report/result_folder.h"
 
 namespace bonemill {

@@ -10,7 +10,7 @@
 #include "common/config/scene_file.h"
 #include "common/rt/clock.h"
 #include "haptic_server/scene/setup/scene_materials.h"
-#include "haptic_server/teaching/attempt_report/deviation_caption.h"
+#include "haptic_server/teaching/attempt_report/report_words.h"
 
 namespace bonemill {
 namespace {

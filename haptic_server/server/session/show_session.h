@@ -17,7 +17,7 @@
 #include "haptic_server/server/session/surroundings_feed.h"
 #include "haptic_server/surface/density_stream/density_publisher.h"
 #include "haptic_server/surface/mesh/mesh_outbox.h"
-#include "haptic_server/teaching/lessons/accuracy_figures.h"
+#include "haptic_server/teaching/lessons/scene_folder.h"
 
 namespace bonemill {
 

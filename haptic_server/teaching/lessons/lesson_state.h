@@ -15,7 +15,6 @@
 #include "common/commands/answer.h"
 #include "haptic_server/teaching/lessons/class_table.h"
 #include "haptic_server/teaching/lessons/scene_folder.h"
-#include "haptic_server/teaching/lessons/table_writer.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {

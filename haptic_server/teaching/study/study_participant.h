@@ -1,11 +1,12 @@
 // What a study keeps of a person: a pseudonym, a group, that there is consent, and sessions with their
-// answers. No name, no time of day. Who is who stands outside of the study's folder. Pure; any thread may
-// call the functions.
+// answers and runs. No name, no time of day. Who is who stands outside of the study's folder. For one thread;
+// pure, but for the reports that are read.
 #pragma once
 
+#include <optional>
+
 #include "haptic_server/teaching/study/form.h"
-#include "haptic_server/teaching/study/form_scoring.h"
-#include "haptic_server/teaching/study/order.h"
+#include "haptic_server/teaching/study/protocol.h"
 
 namespace bonemill::study {
 
@@ -52,5 +53,23 @@ std::string toJson(const Answers& answers);
 Answers parseAnswers(const Json& json, const std::string& file, const Form& form);
 // Which form these answers say that they are to.
 std::string formOfAnswers(const Json& json, const std::string& file);
+
+// What the study keeps of a run on the simulator: enough to say what was used, and no more.
+struct RunRecord {
+    std::string session, scene, scene_sha256, programs;
+    std::map<std::string, double> figures;  // those of the server's report that kRunFigures names
+    std::string recording;                  // the journal's or trace's file name, as told
+};
+
+// Taken from a report of haptic_server, when it has them.
+inline constexpr const char* kRunFigures[] = {
+    "duration_s",    "nominal_rate_hz", "mean_rate_hz", "slowest_second_hz",
+    "dropped_ticks", "force_max_n",     "removed_mm3",  "ticks"};
+
+// Reads the report that haptic_server wrote with --report. Throws UserError.
+std::map<std::string, double> figuresOfReport(const std::filesystem::path& report);
+
+std::string toJson(const RunRecord& run);
+RunRecord parseRun(const Json& json, const std::string& file);
 
 }  // namespace bonemill::study

@@ -4,7 +4,6 @@
 
 #include "common/base/user_error.h"
 #include "haptic_server/teaching/study/form_page.h"
-#include "haptic_server/teaching/study/form_scoring.h"
 #include "haptic_server/teaching/study/shipped_files.h"
 
 namespace bonemill::study {

@@ -4,7 +4,6 @@
 
 #include "common/base/user_error.h"
 #include "haptic_server/teaching/study_report/agreement.h"
-#include "haptic_server/teaching/study_report/checklist.h"
 #include "haptic_server/teaching/study_report/comparisons.h"
 #include "haptic_server/teaching/study_report/plan_text.h"
 #include "haptic_server/teaching/study_report/study_report_text.h"
