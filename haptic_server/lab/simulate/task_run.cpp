@@ -6,7 +6,7 @@
 
 #include "common/base/user_error.h"
 #include "haptic_server/assessment/product/judged_task.h"
-#include "haptic_server/scene/setup/make_technique.h"
+#include "haptic_server/scene/setup/scene_task.h"
 
 namespace bonemill {
 

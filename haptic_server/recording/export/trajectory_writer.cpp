@@ -12,7 +12,7 @@
 #include "common/rt/clock.h"
 #include "common/text/csv_text.h"
 #include "haptic_server/recording/rerun/recording.h"
-#include "haptic_server/scene/trajectory/recorded_row.h"
+#include "haptic_server/scene/trajectory/trajectory_reader.h"
 
 namespace bonemill {
 namespace {

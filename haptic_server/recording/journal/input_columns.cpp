@@ -9,7 +9,7 @@
 
 #include "common/base/units.h"
 #include "common/rt/clock.h"
-#include "haptic_server/scene/trajectory/recorded_row.h"
+#include "haptic_server/scene/trajectory/trajectory_reader.h"
 
 namespace bonemill {
 namespace {

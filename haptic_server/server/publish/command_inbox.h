@@ -1,5 +1,5 @@
-// Decides which received commands the server carries out: each (sender, sequence) once. A sender belongs to
-// the participant that used it first, for as long as that lives. It is for one thread and not RT-safe.
+// Whose commands the server carries out, and which: each (sender, sequence) once. It is for one thread and
+// not RT-safe.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,38 @@
 #include <utility>
 
 #include "common/commands/answer.h"
+#include "common/security/people.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {
+
+// Who really sends a command, where DDS Security proves it: what a command says of its sender counts only
+// from a gateway, which speaks for its guests.
+class ProvenSenders {
+  public:
+    // `find` returns whose participant it is; nothing if the session does not know it.
+    explicit ProvenSenders(std::function<std::optional<Identity>(const GuidPrefix&)> find)
+        : find_(std::move(find)) {}
+
+    // Returns false if this sender id is another participant's: who comes first has it. The participant is
+    // that of the sample's writer.
+    bool mayUse(uint64_t sender, const GuidPrefix& participant);
+    // Writes the participant's role and name into the command; an unknown one may only look.
+    void identify(topics::Command& command, const GuidPrefix& participant);
+    // Returns how it was proven who sent the command: "proven", or "says gateway NAME".
+    std::string proofOf(const topics::Command& command) const;
+
+  private:
+    std::function<std::optional<Identity>(const GuidPrefix&)> find_;
+    struct Sender {
+        GuidPrefix participant;
+        std::string proof;
+    };
+    std::unordered_map<uint64_t, Sender> senders_;
+};
+
+// Returns the role that stands in a certificate; VIEWER if it is none that commands.
+topics::Viewer::Role roleOfIdentity(const std::string& role);
 
 // Clients read this in Status about the last command.
 struct CommandAcknowledgement {
@@ -32,6 +61,7 @@ struct CommandOrigin {
     }
 };
 
+// A sender belongs to the participant that used it first, for as long as that lives.
 class CommandInbox {
   public:
     // Says what to do with one received payload: carry out `command`, or tell the sender `acknowledgement`,

@@ -11,7 +11,7 @@
 #include "common/commands/answer.h"
 #include "common/rt/spsc_ring.h"
 #include "haptic_server/server/replay/survey.h"
-#include "haptic_server/server/session/replay_orders.h"
+#include "haptic_server/server/session/session_commands.h"
 
 namespace bonemill {
 

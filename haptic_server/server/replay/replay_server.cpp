@@ -15,9 +15,9 @@
 #include "haptic_server/recording/rerun/verify_journal.h"
 #include "haptic_server/scene/setup/scene_effects.h"
 #include "haptic_server/scene/setup/scene_materials.h"
+#include "haptic_server/server/publish/other_server.h"
 #include "haptic_server/server/replay/player.h"
 #include "haptic_server/server/session/show_session.h"
-#include "haptic_server/server/session/sole_server.h"
 #include "haptic_server/surface/mesh/mesh_rounds.h"
 
 namespace bonemill {

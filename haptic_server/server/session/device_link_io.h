@@ -1,18 +1,83 @@
 // The tick sees the device of a live session through this: samples come from shared memory and wrenches go
-// there.
+// there, at the pace at which ticks may run. The classes are for one thread, and RT-safe; times are
+// CLOCK_MONOTONIC ns.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <cstdint>
 
 #include "common/geometry/hand_space.h"
 #include "common/ipc/device_link.h"
 #include "common/ipc/stale_ramp.h"
 #include "common/rt/seqlock.h"
 #include "haptic_server/core/tick/tick_io.h"
-#include "haptic_server/server/session/lived_periods.h"
-#include "haptic_server/server/session/tick_pace.h"
 
 namespace bonemill {
+
+// Says how many periods a tick lives through: a period in which no tick ran comes with the next one, so that
+// what happens at a rate per time (milling, heat, the spindle) is not late on a machine that is.
+class LivedPeriods {
+  public:
+    explicit LivedPeriods(int64_t period_ns) noexcept
+        : period_ns_(period_ns), most_(std::max<int64_t>(1, kMaxNs / period_ns)) {}
+
+    // A tick begins. On average the periods are as many as have passed, but for what a tick may not make up
+    // for, which is lost.
+    int begin(int64_t start_ns) noexcept {
+        const int64_t ahead = kMaxAhead * period_ns_;
+        lived_until_ns_ = std::clamp(lived_until_ns_, start_ns - most_ * period_ns_, start_ns + ahead);
+        const int64_t late = std::max<int64_t>(0, start_ns - lived_until_ns_) / period_ns_;
+        const int64_t periods = is_first_ ? 1 : std::clamp<int64_t>(late, 1, most_);
+        lived_until_ns_ = is_first_ ? start_ns : lived_until_ns_ + periods * period_ns_;
+        is_first_ = false;
+        return int(periods);
+    }
+
+    static constexpr int64_t kMaxNs = 20'000'000;  // more is not made up for: a hand cannot follow it
+
+  private:
+    static constexpr int64_t kMaxAhead = 2;  // periods that ticks which came too early may have lived
+
+    int64_t period_ns_, most_;
+    int64_t lived_until_ns_ = 0;
+    bool is_first_ = true;
+};
+
+// Says how early the next tick may start: one lives through a fixed time, so that ticks which come faster
+// than their period would mill and move too fast. Two ticks are at least half a period apart, so that one
+// that came late is soon caught up with; on average they are a period apart, but for the share by which
+// another machine's clock may be faster. After its work a tick rests for a quarter as long: a thread with
+// real-time priority that never rests is stopped by the kernel for some 50 ms in every second
+// (sched_rt_runtime_us), and the force goes to zero.
+class TickPace {
+  public:
+    explicit TickPace(int64_t period_ns) noexcept : period_ns_(period_ns) {}
+
+    void begin(int64_t start_ns) noexcept {
+        last_start_ns_ = start_ns;
+        due_ns_ =
+            std::max(due_ns_, start_ns - kMaxCaughtUp * period_ns_) + period_ns_ - period_ns_ / kFasterClock;
+    }
+    // The work of the tick that has begun is done.
+    void end(int64_t end_ns) noexcept { rested_ns_ = end_ns + (end_ns - last_start_ns_) / kWorkPerRest; }
+    int64_t earliestNs() const noexcept {
+        return std::max({last_start_ns_ + period_ns_ / 2, due_ns_, rested_ns_});
+    }
+    // Tells whether an instant is too early because too many ticks came before it, and not just because the
+    // last one was late.
+    bool isTooFast(int64_t now_ns) const noexcept { return now_ns < due_ns_; }
+
+  private:
+    static constexpr int64_t kMaxCaughtUp = 2;   // periods that silence leaves to be made up for
+    static constexpr int64_t kFasterClock = 64;  // 1/64, far more than crystals differ by
+    static constexpr int64_t kWorkPerRest = 4;   // the loop takes no more than 80 % of its processor
+
+    int64_t period_ns_;
+    int64_t last_start_ns_ = INT64_MIN / 2;
+    int64_t due_ns_ = INT64_MIN / 2;
+    int64_t rested_ns_ = INT64_MIN / 2;
+};
 
 struct DeviceLinkIoConfig {
     int64_t period_ns = 1'000'000;

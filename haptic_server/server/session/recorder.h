@@ -12,7 +12,7 @@
 #include "haptic_server/assessment/measures/technique.h"
 #include "haptic_server/assessment/product/breach.h"
 #include "haptic_server/recording/journal/journal.h"
-#include "haptic_server/recording/statistics/event_sum.h"
+#include "haptic_server/recording/statistics/effect_statistics.h"
 #include "haptic_server/recording/statistics/run_statistics.h"
 #include "haptic_server/recording/statistics/trace_writer.h"
 

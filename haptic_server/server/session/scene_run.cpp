@@ -15,12 +15,12 @@
 #include "haptic_server/recording/statistics/bone_files.h"
 #include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "haptic_server/scene/setup/coupling_text.h"
-#include "haptic_server/scene/setup/make_technique.h"
 #include "haptic_server/scene/setup/scene_effects.h"
 #include "haptic_server/scene/setup/scene_materials.h"
+#include "haptic_server/scene/setup/scene_task.h"
 #include "haptic_server/server/session/session_journal.h"
 #include "haptic_server/server/session/shown_device.h"
-#include "haptic_server/server/session/shown_zones.h"
+#include "haptic_server/server/session/shown_effects.h"
 #include "haptic_server/surface/mesh/mesh_rounds.h"
 
 namespace bonemill {

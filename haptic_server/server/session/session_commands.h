@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/commands/answer.h"
 #include "common/commands/order_limits.h"
 #include "common/commands/role_rules.h"
 #include "haptic_server/core/bone/checkpoints.h"
@@ -16,13 +17,24 @@
 #include "haptic_server/server/session/attempt_controller.h"
 #include "haptic_server/server/session/journal_recorder.h"
 #include "haptic_server/server/session/recorder.h"
-#include "haptic_server/server/session/replay_orders.h"
 #include "haptic_server/server/session/session_export.h"
 #include "haptic_server/teaching/lessons/lesson_state.h"
 #include "haptic_server/teaching/lessons/remark_list.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {
+
+// Who shows a recorded session answers these instead of a live one (replay/player.h). The publisher thread
+// calls all members; none waits.
+class ReplayOrders {
+  public:
+    virtual ~ReplayOrders() = default;
+    // Lets the recording go on, or holds it.
+    virtual void play(bool goes_on) = 0;
+    virtual Answer carryOut(const topics::ReplayOrder& order) = 0;
+    // Fills in how the replay stands.
+    virtual void describe(topics::Replay& replay) const = 0;
+};
 
 // The commands act on this; the tick takes each up by itself.
 struct SessionControls {

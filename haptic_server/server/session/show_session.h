@@ -9,7 +9,6 @@
 #include "common/base/units.h"
 #include "common/log/log_limit.h"
 #include "haptic_server/scene/setup/scene_setup.h"
-#include "haptic_server/server/publish/byte_budget.h"
 #include "haptic_server/server/publish/publisher.h"
 #include "haptic_server/server/session/recorder.h"
 #include "haptic_server/server/session/session_commands.h"

@@ -12,7 +12,6 @@
 #include "haptic_server/recording/journal/journal_topics.h"
 #include "haptic_server/recording/rerun/recording.h"
 #include "haptic_server/scene/setup/scene_setup.h"
-#include "haptic_server/scene/trajectory/recorded_row.h"
 #include "haptic_server/scene/trajectory/trajectory_reader.h"
 #include "tests/support/mutated_bytes.h"
 #include "tests/support/recorded_session.h"

@@ -1,10 +1,10 @@
-#include "haptic_server/scene/setup/zone_shapes.h"
+#include "haptic_server/scene/setup/scene_shapes.h"
 
 #include <algorithm>
 
 #include "common/base/user_error.h"
 #include "haptic_server/scene/setup/scene_shapes.h"
-#include "haptic_server/scene/tool_build/check_shape.h"
+#include "haptic_server/scene/tool_build/build_tool.h"
 
 namespace bonemill {
 namespace {
