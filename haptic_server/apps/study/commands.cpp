@@ -10,9 +10,8 @@
 #include "common/cli/version.h"
 #include "common/digest/sha256.h"
 #include "common/files/private_file.h"
-#include "haptic_server/teaching/study/form_page.h"
+#include "haptic_server/teaching/study/ask_form.h"
 #include "haptic_server/teaching/study/study_folder.h"
-#include "haptic_server/teaching/study/terminal_form.h"
 #include "haptic_server/teaching/study_report/agreement.h"
 #include "haptic_server/teaching/study_report/report.h"
 

@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <string>
 #include <utility>
-
-#include "haptic_server/assessment/measures/figure.h"
 
 namespace bonemill {
 namespace {

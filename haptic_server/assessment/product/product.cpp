@@ -4,15 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "common/base/units.h"
-#include "haptic_server/assessment/measures/figure.h"
 #include "haptic_server/assessment/product/breach.h"
-#include "haptic_server/assessment/product/cut_surface.h"
 #include "haptic_server/assessment/product/structures_left.h"
-#include "haptic_server/assessment/product/weighted_sample.h"
 #include "haptic_server/assessment/product/zone_tally.h"
 
 namespace bonemill {

@@ -48,11 +48,31 @@ class RunningTally {
     // All must outlive this object. A leaf of version 0 was never written, and is as scanned; no other has
     // been looked at yet.
     RunningTally(const VoxelVolume& scanned, const VoxelVolume& now, const LeafLattice& lattice,
-                 const JudgedTask& task);
+                 const JudgedTask& task)
+        : scanned_(scanned),
+          now_(now),
+          lattice_(lattice),
+          task_(task),
+          seen_version_(lattice.leafCount()),
+          removed_(task.zones.size() + 1) {}
 
     static constexpr uint32_t kLeavesAtOnce = 64;  // some milliseconds
     // Looks at up to N leaves that changed since; false: others still wait.
-    bool update(uint32_t most_leaves = kLeavesAtOnce);
+    bool update(uint32_t most_leaves = kLeavesAtOnce) {
+        const LeafId leaves = lattice_.leafCount();
+        bool is_all = true;
+        uint32_t looked_at = 0;
+        for (LeafId n = 0; n < leaves; ++n) {
+            const LeafId leaf = (next_leaf_ + n) % leaves;
+            if (lattice_.version(leaf) == seen_version_[leaf]) continue;
+            if (looked_at++ == most_leaves) {
+                next_leaf_ = leaf;
+                return false;
+            }
+            is_all &= tryCount(leaf);
+        }
+        return is_all;
+    }
 
     // Voxels that were bone and are gone, by ZoneId.
     const std::vector<int64_t>& removed() const noexcept { return removed_; }
@@ -64,8 +84,40 @@ class RunningTally {
         std::vector<uint32_t> removed;  // by ZoneId
         uint32_t ideal_removed = 0;
     };
-    bool tryCount(LeafId leaf);
-    void count(LeafId leaf, LeafCount& counted) const;
+    bool tryCount(LeafId leaf) {
+        const uint32_t version = lattice_.version(leaf);
+        if (version & 1) return false;
+        LeafCount counted;
+        counted.removed.resize(removed_.size());
+        count(leaf, counted);
+        // The voxels were read with acquire, so this read cannot be older than they are.
+        if (lattice_.version(leaf) != version) return false;
+        seen_version_[leaf] = version;
+        LeafCount& last = counted_[leaf];
+        last.removed.resize(removed_.size());
+        bool is_something = counted.ideal_removed > 0;
+        for (size_t zone = 0; zone < removed_.size(); ++zone) {
+            removed_[zone] += int64_t(counted.removed[zone]) - int64_t(last.removed[zone]);
+            is_something |= counted.removed[zone] > 0;
+        }
+        ideal_removed_ += int64_t(counted.ideal_removed) - int64_t(last.ideal_removed);
+        if (is_something)
+            last = std::move(counted);
+        else
+            counted_.erase(leaf);
+        return true;
+    }
+    // A leaf's voxels are those at the low corners of its cells.
+    void count(LeafId leaf, LeafCount& counted) const {
+        const Density iso = scanned_.iso();
+        const IndexBox voxels =
+            lattice_.cellsOf(leaf).clamped(Eigen::Vector3i::Zero(), scanned_.dims().array() - 1);
+        forEachIndex(voxels, [&](const Eigen::Vector3i& v) {
+            if (now_.at(v.x(), v.y(), v.z()) >= iso || scanned_.at(v.x(), v.y(), v.z()) < iso) return;
+            ++counted.removed[task_.map->at(v)];
+            counted.ideal_removed += task_.isIdeal(v);
+        });
+    }
 
     const VoxelVolume& scanned_;
     const VoxelVolume& now_;

@@ -2,10 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include <cmath>
-#include <filesystem>
 #include <optional>
-#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -20,8 +17,7 @@
 #include "haptic_server/recording/rerun/replay_events.h"
 #include "haptic_server/recording/rerun/rerun.h"
 #include "haptic_server/recording/statistics/tick_columns.h"
-#include "haptic_server/recording/statistics/trace_writer.h"
-#include "haptic_server/scene/setup/scene_effects.h"
+#include "haptic_server/scene/setup/scene_materials.h"
 
 namespace bonemill {
 namespace {

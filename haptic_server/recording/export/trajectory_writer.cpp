@@ -8,10 +8,8 @@
 #include <vector>
 
 #include "common/base/user_error.h"
-#include "common/files/whole_file.h"
 #include "common/rt/clock.h"
 #include "common/text/csv_text.h"
-#include "haptic_server/recording/rerun/recording.h"
 #include "haptic_server/scene/trajectory/trajectory_reader.h"
 
 namespace bonemill {

@@ -1,7 +1,5 @@
 #include "haptic_server/recording/journal/bone_states.h"
 
-#include <algorithm>
-#include <cstring>
 #include <utility>
 
 #include "haptic_server/core/bone/leaf_rows.h"

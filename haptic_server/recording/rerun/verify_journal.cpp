@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <Eigen/Core>
-#include <cmath>
 #include <deque>
 #include <map>
 #include <utility>
@@ -19,7 +18,7 @@
 #include "haptic_server/recording/journal/journal_reader.h"
 #include "haptic_server/recording/rerun/rerun.h"
 #include "haptic_server/recording/statistics/state_hash.h"
-#include "haptic_server/scene/setup/scene_effects.h"
+#include "haptic_server/scene/setup/scene_materials.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 
 namespace bonemill {

@@ -6,11 +6,8 @@
 #include <cmath>
 #include <functional>
 #include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "common/config/scene_file.h"
 #include "common/rt/clock.h"
 #include "haptic_server/core/volume/material_properties.h"
 #include "haptic_server/core/volume/raw_volume.h"
@@ -21,7 +18,6 @@
 #include "haptic_server/scans/find_bone/metal.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "haptic_server/scene/setup/refuse_field.h"
-#include "haptic_server/scene/setup/scene_pieces.h"
 #include "haptic_server/scene/setup/scene_region.h"
 #include "haptic_server/scene/setup/scene_shapes.h"
 

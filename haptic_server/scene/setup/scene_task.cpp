@@ -9,7 +9,6 @@
 #include "common/config/scene_tools.h"
 #include "common/text/hex_text.h"
 #include "haptic_server/scans/import/import_volume.h"
-#include "haptic_server/scene/setup/scene_effects.h"
 #include "haptic_server/scene/setup/scene_materials.h"
 #include "haptic_server/scene/setup/scene_shapes.h"
 #include "haptic_server/scene/trajectory/trajectory_reader.h"

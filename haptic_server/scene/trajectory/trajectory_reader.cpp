@@ -1,7 +1,6 @@
 #include "haptic_server/scene/trajectory/trajectory_reader.h"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -10,7 +9,6 @@
 #include <fstream>
 #include <istream>
 #include <limits>
-#include <string_view>
 
 #include "common/base/user_error.h"
 #include "common/files/require_file.h"

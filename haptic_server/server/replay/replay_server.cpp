@@ -13,7 +13,6 @@
 #include "common/rt/stop_signals.h"
 #include "common/text/printable_line.h"
 #include "haptic_server/recording/rerun/verify_journal.h"
-#include "haptic_server/scene/setup/scene_effects.h"
 #include "haptic_server/scene/setup/scene_materials.h"
 #include "haptic_server/server/publish/other_server.h"
 #include "haptic_server/server/replay/player.h"

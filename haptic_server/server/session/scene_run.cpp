@@ -15,11 +15,9 @@
 #include "haptic_server/recording/statistics/bone_files.h"
 #include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "haptic_server/scene/setup/coupling_text.h"
-#include "haptic_server/scene/setup/scene_effects.h"
 #include "haptic_server/scene/setup/scene_materials.h"
 #include "haptic_server/scene/setup/scene_task.h"
-#include "haptic_server/server/session/session_journal.h"
-#include "haptic_server/server/session/shown_device.h"
+#include "haptic_server/server/session/result_files.h"
 #include "haptic_server/server/session/shown_effects.h"
 #include "haptic_server/surface/mesh/mesh_rounds.h"
 

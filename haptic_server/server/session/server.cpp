@@ -14,12 +14,11 @@
 #include "common/rt/clock.h"
 #include "common/rt/stop_signals.h"
 #include "haptic_server/recording/journal/journal_reader.h"
-#include "haptic_server/recording/rerun/moment.h"
+#include "haptic_server/recording/rerun/rerun.h"
 #include "haptic_server/server/publish/other_server.h"
 #include "haptic_server/server/session/result_files.h"
 #include "haptic_server/server/session/resume.h"
 #include "haptic_server/server/session/scene_run.h"
-#include "haptic_server/server/session/session_journal.h"
 #include "haptic_server/teaching/lessons/lesson_state.h"
 #include "haptic_server/teaching/lessons/scene_folder.h"
 

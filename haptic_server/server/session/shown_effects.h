@@ -1,5 +1,5 @@
-// Viewers are told this of a scene's effects, materials and zones. Used at start-up and by the publisher
-// thread; allocates.
+// Viewers are told this of a scene's effects, materials and zones, and of the device. Used at start-up and by
+// normal threads; allocates.
 #pragma once
 
 #include <optional>
@@ -10,6 +10,7 @@
 #include "haptic_server/assessment/product/judged_task.h"
 #include "haptic_server/core/telemetry/effect_figure.h"
 #include "haptic_server/core/telemetry/recorded_effects.h"
+#include "haptic_server/core/telemetry/tick_record.h"
 #include "haptic_server/core/tool/burr.h"
 #include "haptic_server/recording/statistics/effect_statistics.h"
 #include "haptic_server/surface/mesh/zone_paint.h"
@@ -17,6 +18,12 @@
 #include "proto/topics.pb.h"
 
 namespace bonemill {
+
+// What clients are shown of the device; `capabilities` is null as long as no device has told of itself.
+topics::Device shownDevice(const TickRecord& record, const DeviceCapabilities* capabilities);
+
+// Says what the session adapts to: "Touch: 3.3 N, no torque".
+std::string deviceText(const DeviceCapabilities& capabilities);
 
 // Viewers see the zones of a task as materials: they have their colours beside those of the scene's
 // materials, and vertices their numbers. Adds the zones behind the scene's materials, if viewers may ever see

@@ -10,7 +10,6 @@
 
 #include "common/files/line_file.h"
 #include "common/files/private_file.h"
-#include "haptic_server/teaching/attempt_report/attempt_result.h"
 
 namespace bonemill {
 namespace {

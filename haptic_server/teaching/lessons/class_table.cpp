@@ -123,9 +123,34 @@ struct TableWriter::Shared {
         std::optional<topics::Command> order;
         std::optional<AttemptJudgement> judgement;
     };
-    Written write(const Line& line);
+    Written write(const Line& line) {
+        topics::Attempt attempt = line.attempt;
+        std::string files_problem;
+        if (line.judgement) files_problem = writeResults(*line.judgement, table.path(), line.scene, attempt);
+        if (!files_problem.empty())
+            spdlog::error("the results of attempt {} are not there: {}", attempt.number(), files_problem);
+        std::string problem = table.append(attempt, line.scene);
+        if (!problem.empty())
+            spdlog::error("attempt {} is not in the class table: {}", attempt.number(), problem);
+        Written written{line.order, attempt.number(), {}, problem.empty() ? files_problem : problem};
+        if (attempt.has_verdict() && line.judgement->is_told) written.verdict = attempt.verdict();
+        return written;
+    }
     explicit Shared(ClassTable of) : table(std::move(of)) {}
-    void work();
+    void work() {
+        std::unique_lock lock(mutex);
+        for (;;) {
+            has_changed.wait(lock, [this] { return is_ending || !waiting.empty(); });
+            if (waiting.empty()) return;
+            const Line line = waiting.front();
+            lock.unlock();
+            Written result = write(line);
+            lock.lock();
+            waiting.pop_front();
+            written.push_back(std::move(result));
+            has_changed.notify_all();
+        }
+    }
 
     ClassTable table;  // the thread's
     std::mutex mutex;  // guards what is below
@@ -134,35 +159,6 @@ struct TableWriter::Shared {
     std::vector<Written> written;
     bool is_ending = false;
 };
-
-TableWriter::Written TableWriter::Shared::write(const Line& line) {
-    topics::Attempt attempt = line.attempt;
-    std::string files_problem;
-    if (line.judgement) files_problem = writeResults(*line.judgement, table.path(), line.scene, attempt);
-    if (!files_problem.empty())
-        spdlog::error("the results of attempt {} are not there: {}", attempt.number(), files_problem);
-    std::string problem = table.append(attempt, line.scene);
-    if (!problem.empty())
-        spdlog::error("attempt {} is not in the class table: {}", attempt.number(), problem);
-    Written written{line.order, attempt.number(), {}, problem.empty() ? files_problem : problem};
-    if (attempt.has_verdict() && line.judgement->is_told) written.verdict = attempt.verdict();
-    return written;
-}
-
-void TableWriter::Shared::work() {
-    std::unique_lock lock(mutex);
-    for (;;) {
-        has_changed.wait(lock, [this] { return is_ending || !waiting.empty(); });
-        if (waiting.empty()) return;
-        const Line line = waiting.front();
-        lock.unlock();
-        Written result = write(line);
-        lock.lock();
-        waiting.pop_front();
-        written.push_back(std::move(result));
-        has_changed.notify_all();
-    }
-}
 
 TableWriter::TableWriter(ClassTable table) : shared_(std::make_shared<Shared>(std::move(table))) {
     if (shared_->table.hasFile()) std::thread([shared = shared_] { shared->work(); }).detach();

@@ -156,20 +156,6 @@ std::vector<Score> nasaTlxOf(const Form& form, const Values& values) {
 
 }  // namespace
 
-const Item* Form::find(const std::string& item_id) const {
-    for (const Block& block : blocks)
-        for (const Item& item : block.items)
-            if (item.id == item_id) return &item;
-    return nullptr;
-}
-
-std::vector<const Item*> Form::items() const {
-    std::vector<const Item*> all;
-    for (const Block& block : blocks)
-        for (const Item& item : block.items) all.push_back(&item);
-    return all;
-}
-
 Form parseForm(const std::string& text, const std::string& file) {
     const Json parsed = parseJson(text, file);
     const JsonObject json(parsed, file);

@@ -48,8 +48,18 @@ struct Form {
     std::vector<Block> blocks;
     std::string digest;  // of its text: answers say which one they were given to
 
-    const Item* find(const std::string& item_id) const;
-    std::vector<const Item*> items() const;
+    const Item* find(const std::string& item_id) const {
+        for (const Block& block : blocks)
+            for (const Item& item : block.items)
+                if (item.id == item_id) return &item;
+        return nullptr;
+    }
+    std::vector<const Item*> items() const {
+        std::vector<const Item*> all;
+        for (const Block& block : blocks)
+            for (const Item& item : block.items) all.push_back(&item);
+        return all;
+    }
 };
 
 // Throws UserError.

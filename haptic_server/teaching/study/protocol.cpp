@@ -81,20 +81,6 @@ std::mt19937_64 randomOf(uint64_t seed, const std::string& group, const std::str
 
 }  // namespace
 
-const Group* Protocol::findGroup(const std::string& group_id) const {
-    for (const Group& group : groups)
-        if (group.id == group_id) return &group;
-    return nullptr;
-}
-
-std::vector<std::string> Protocol::formIds() const {
-    std::vector<std::string> ids;
-    for (const auto* forms : {&forms_before, &forms_after_each, &forms_after})
-        for (const std::string& id : *forms)
-            if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
-    return ids;
-}
-
 Protocol parseProtocol(const std::string& text, const std::string& file) {
     const Json parsed = parseJson(text, file);
     const JsonObject json(parsed, file);

@@ -41,8 +41,18 @@ struct Protocol {
     // What a reporting checklist asks for and no program can know.
     std::string hypothesis, orientation, feedback, blinding, sample_size_reason, ethics, device;
 
-    const Group* findGroup(const std::string& group_id) const;
-    std::vector<std::string> formIds() const;
+    const Group* findGroup(const std::string& group_id) const {
+        for (const Group& group : groups)
+            if (group.id == group_id) return &group;
+        return nullptr;
+    }
+    std::vector<std::string> formIds() const {
+        std::vector<std::string> ids;
+        for (const auto* forms : {&forms_before, &forms_after_each, &forms_after})
+            for (const std::string& id : *forms)
+                if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
+        return ids;
+    }
 };
 
 // Throws UserError.

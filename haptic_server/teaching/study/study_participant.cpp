@@ -2,7 +2,6 @@
 
 #include <sys/random.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <set>
 #include <system_error>
@@ -28,12 +27,6 @@ std::map<std::string, double> figuresIn(const JsonObject& json) {
 }
 
 }  // namespace
-
-const Session* Participant::find(const std::string& uuid) const {
-    for (const Session& session : sessions)
-        if (session.uuid == uuid) return &session;
-    return nullptr;
-}
 
 std::string toJson(const Participant& participant) {
     Json sessions = Json::array();
@@ -96,15 +89,6 @@ std::string newUuid() {
         text += "0123456789abcdef"[bytes[i] & 15];
     }
     return text;
-}
-
-bool Answers::isAnswered(const std::string& item) const {
-    return values.contains(item) || std::find(left_out.begin(), left_out.end(), item) != left_out.end();
-}
-
-bool Answers::isFinished(const Form& to) const {
-    const std::vector<const Item*> items = to.items();
-    return std::all_of(items.begin(), items.end(), [&](const Item* item) { return isAnswered(item->id); });
 }
 
 std::string toJson(const Answers& answers) {

@@ -3,8 +3,6 @@
 // pure, but for the reports that are read.
 #pragma once
 
-#include <optional>
-
 #include "haptic_server/teaching/study/form.h"
 #include "haptic_server/teaching/study/protocol.h"
 
@@ -27,7 +25,11 @@ struct Participant {
     std::string withdrawal_reason;
     std::vector<Session> sessions;
 
-    const Session* find(const std::string& uuid) const;
+    const Session* find(const std::string& uuid) const {
+        for (const Session& session : sessions)
+            if (session.uuid == uuid) return &session;
+        return nullptr;
+    }
 };
 
 std::string toJson(const Participant& participant);
@@ -44,8 +46,14 @@ struct Answers {
     Values values;
     std::vector<std::string> left_out;  // asked, and no answer wished
 
-    bool isAnswered(const std::string& item) const;
-    bool isFinished(const Form& to) const;
+    bool isAnswered(const std::string& item) const {
+        return values.contains(item) || std::find(left_out.begin(), left_out.end(), item) != left_out.end();
+    }
+    bool isFinished(const Form& to) const {
+        const std::vector<const Item*> items = to.items();
+        return std::all_of(items.begin(), items.end(),
+                           [&](const Item* item) { return isAnswered(item->id); });
+    }
 };
 
 std::string toJson(const Answers& answers);

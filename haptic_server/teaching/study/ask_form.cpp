@@ -1,11 +1,31 @@
-#include "haptic_server/teaching/study/terminal_form.h"
+#include "haptic_server/teaching/study/ask_form.h"
 
 #include <algorithm>
 #include <istream>
 #include <ostream>
 
+#include "haptic_server/teaching/study/shipped_files.h"
+
 namespace bonemill::study {
 namespace {
+
+constexpr std::string_view kFormMark = "/*FORM*/", kAnswersMark = "/*ANSWERS*/";
+
+// JSON within a script: no text in it may end the script.
+std::string inScript(const std::string& json) {
+    std::string text;
+    for (const char c : json) {
+        if (c == '<')
+            text += "\\u003c";
+        else if (c == '>')
+            text += "\\u003e";
+        else if (c == '&')
+            text += "\\u0026";
+        else
+            text += c;
+    }
+    return text;
+}
 
 constexpr size_t kMaxLine = 4 * kMaxLetters;
 
@@ -76,6 +96,16 @@ bool take(const Item& item, const std::string& line, Answers& answers, std::ostr
 }
 
 }  // namespace
+
+std::string formPage(const std::string& form_text, const Answers& answers) {
+    std::string page(shippedPage());
+    const auto put = [&](std::string_view mark, const std::string& json) {
+        page.replace(page.find(mark), mark.size(), inScript(json));
+    };
+    put(kAnswersMark, Json::parse(toJson(answers)).dump());
+    put(kFormMark, parseJson(form_text, "form").dump());
+    return page;
+}
 
 bool fillInTerminal(const Form& form, Answers& answers, std::istream& in, std::ostream& out,
                     const std::function<void(const Answers&)>& save) {

@@ -1,4 +1,4 @@
-#include "haptic_server/assessment/measures/definitions.h"
+#include "haptic_server/assessment/measures/figure.h"
 
 #include <algorithm>
 #include <cmath>
