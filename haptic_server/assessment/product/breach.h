@@ -46,7 +46,6 @@ class BreachMeter {
     // The tool was there; it counts if it has come a quarter of a millimetre since.
     void add(const Pose& X_VT, const BurrProbes& burr) noexcept;
     double depth() const noexcept { return depth_; }  // m; 0: no breach
-    const Eigen::Vector3d& place() const noexcept { return place_V_; }
 
   private:
     bool isShaftInBone(const Pose& X_VT) const noexcept;
@@ -56,7 +55,6 @@ class BreachMeter {
     Eigen::Vector3d along_V_;
     std::optional<Eigen::Vector3d> last_V_;
     double depth_ = 0;
-    Eigen::Vector3d place_V_ = Eigen::Vector3d::Zero();
 };
 
 // 0 to 4 stands for A to E; `depth` in m.
