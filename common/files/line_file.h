@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -63,6 +64,25 @@ class LineFile {
     }
     // Another content takes its place, whole or not at all. Nothing more can be done with this object then.
     void replace(std::string_view content) const { writePrivateFile(path_, content); }
+    // Takes all lines out for which is_out(line, is_first) holds, as replace() does, and returns how many;
+    // with none the file stays as it is.
+    template <class IsOut>
+    size_t removeLines(const IsOut& is_out) const {
+        const std::string text = read(0, size_t(size()));
+        std::string kept;
+        size_t removed = 0;
+        for (size_t at = 0; at < text.size();) {
+            const size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
+            const std::string line = text.substr(at, end - at);
+            if (is_out(line, at == 0))
+                ++removed;
+            else
+                kept += line;
+            at = end;
+        }
+        if (removed > 0) replace(kept);
+        return removed;
+    }
 
   private:
     static constexpr int kLockPauseUs = 20'000;

@@ -10,7 +10,7 @@
 
 #include "common/rt/clock.h"
 #include "haptic_server/recording/rerun/rerun.h"
-#include "haptic_server/server/replay/keyframes.h"
+#include "haptic_server/server/replay/survey.h"
 #include "tests/bench/processor_time.h"
 #include "tests/support/recorded_session.h"
 #include "tests/support/temporary_folder.h"

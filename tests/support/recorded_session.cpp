@@ -13,7 +13,7 @@
 #include "haptic_server/recording/journal/journal.h"
 #include "haptic_server/recording/statistics/state_hash.h"
 #include "haptic_server/scans/nrrd/nrrd_writer.h"
-#include "haptic_server/scene/setup/scene_effects.h"
+#include "haptic_server/scene/setup/scene_materials.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/support/test_bodies.h"
 

@@ -10,7 +10,7 @@
 
 #include "common/mcap/mcap_writer.h"
 #include "haptic_server/recording/journal/journal_reader.h"
-#include "haptic_server/recording/journal/journal_schemas.h"
+#include "haptic_server/recording/journal/journal_topics.h"
 
 namespace bonemill::test {
 

@@ -5,8 +5,12 @@
 // are plain values; any thread may hold its own.
 #pragma once
 
+#include <array>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace bonemill {
@@ -21,6 +25,18 @@ struct Figure {
     std::string unit;   // "mm3", "percent", "s", "N", "mm", "N s", "mm/s", "deg", ...; "" for a plain number
 };
 using Figures = std::vector<Figure>;
+
+// Units for people: figures have them in ASCII, as "mm3", and texts as "mm³".
+inline std::string_view writtenUnit(std::string_view unit) {
+    using Pair = std::pair<std::string_view, std::string_view>;
+    static constexpr std::array kWritten = {
+        Pair("mm3", "mm³"),     Pair("mm2", "mm²"),     Pair("percent", "%"),
+        Pair("degC", "°C"),     Pair("deg", "°"),       Pair("N s", "N·s"),
+        Pair("mm3/s", "mm³/s"), Pair("J/mm3", "J/mm³"), Pair("mm/mm3", "mm/mm³")};
+    for (const auto& [plain, with_signs] : kWritten)
+        if (unit == plain) return with_signs;
+    return unit;
+}
 
 // Returns null if there is none of that id. With `version` 0 any version will do.
 inline const Figure* findFigure(const Figures& figures, const std::string& id, int version = 0) {
@@ -90,5 +106,21 @@ struct Assessment {
         return true;
     }
 };
+
+// The list of what is measured of technique: each figure's name, version, words and unit, once. What the
+// formulas are stands in docs/teach/assessment.md, and a definition that changes there gets another version
+// here.
+struct Definition {
+    const char* id;
+    int version;
+    const char* label;
+    const char* unit;
+};
+
+std::span<const Definition> techniqueDefinitions();
+
+// Adds the figure of this definition, whose value is in the definition's unit; `of` is the burr, structure or
+// range that it is about, if it is about one. A value that is not finite has nothing to say and is left out.
+void put(Figures& figures, std::string_view id, double value, const std::string& of = "");
 
 }  // namespace bonemill

@@ -1,11 +1,71 @@
 #include "haptic_server/assessment/measures/technique.h"
 
-#include <utility>
-
 #include "common/base/units.h"
-#include "haptic_server/assessment/measures/definitions.h"
 
 namespace bonemill {
+namespace {
+
+std::vector<Series> columnsOf(const std::vector<StepSums>& rows, const TechniqueScene& scene) {
+    std::vector<Series> columns;
+    const auto add = [&](const char* id, const char* label, const char* unit, auto value_of) {
+        Series column{id, label, unit, {}};
+        for (const StepSums& row : rows) column.values.push_back(value_of(row));
+        columns.push_back(std::move(column));
+    };
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const auto ifFinite = [](double value) { return std::isfinite(value) ? value : kNone; };
+    add("time", "Time", "s", [](const StepSums& row) { return row.time; });
+    add("contact", "In contact", "s", [](const StepSums& row) { return row.contact_time; });
+    add("force", "Force in contact, mean", "N",
+        [&](const StepSums& row) { return row.contact_time > 0 ? row.impulse / row.contact_time : kNone; });
+    add("force_max", "Force in contact, largest", "N",
+        [&](const StepSums& row) { return row.contact_time > 0 ? row.max_force : kNone; });
+    add("path", "Way of the burr", "mm", [](const StepSums& row) { return row.way * kPerMillimetre; });
+    add("removed", "Removed", "mm3", [](const StepSums& row) { return row.removed * kPerCubicMillimetre; });
+    add("unseen", "Removed out of sight", "percent",
+        [&](const StepSums& row) { return ifFinite(100 * row.unseen / (row.seen + row.unseen)); });
+    if (scene.recorded.protection)
+        add("distance", "Least distance to a structure", "mm",
+            [&](const StepSums& row) { return ifFinite(row.distance * kPerMillimetre); });
+    if (scene.recorded.heat)
+        add("temperature", "Hottest bone", "degC",
+            [&](const StepSums& row) { return ifFinite(row.temperature); });
+    return columns;
+}
+
+}  // namespace
+
+// Half a voxel per step misses no wall of a voxel's thickness.
+bool isHidden(const VoxelVolume& volume, const Eigen::Vector3d& p_eye_W, const Eigen::Vector3d& p_target_W,
+              double margin) {
+    const Pose X_VW = volume.geometry().X_WV.inverse();
+    const Eigen::Vector3d eye_I = (X_VW * p_eye_W).cwiseQuotient(volume.spacing());
+    const Eigen::Vector3d target_I = (X_VW * p_target_W).cwiseQuotient(volume.spacing());
+    const double distance = (p_target_W - p_eye_W).norm();
+    if (!(distance > margin)) return false;
+    const Eigen::Vector3d way = (target_I - eye_I) * (1 - margin / distance);
+    // Only the part in the volume is walked.
+    double first = 0, last = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double high = volume.dims()[axis] - 1;
+        if (std::abs(way[axis]) < 1e-12) {
+            if (eye_I[axis] < 0 || eye_I[axis] > high) return false;
+            continue;
+        }
+        const double a = -eye_I[axis] / way[axis], b = (high - eye_I[axis]) / way[axis];
+        first = std::max(first, std::min(a, b));
+        last = std::min(last, std::max(a, b));
+    }
+    if (first > last) return false;
+    const auto steps = std::max(1, int(std::ceil(2 * way.norm() * (last - first))));
+    for (int step = 0; step <= steps; ++step) {
+        const double share = first + (last - first) * step / steps;
+        const Eigen::Vector3i voxel = (eye_I + share * way).array().round().cast<int>();
+        const Eigen::Vector3i inside = voxel.cwiseMax(0).cwiseMin(volume.dims() - Eigen::Vector3i::Ones());
+        if (volume.at(inside.x(), inside.y(), inside.z()) >= volume.iso()) return true;
+    }
+    return false;
+}
 
 Technique::Technique(const TechniqueScene& scene, Sight::IsHidden is_hidden)
     : scene_(scene),
@@ -107,38 +167,6 @@ std::vector<StepSums> Technique::buckets() const {
     }
     return buckets;
 }
-
-namespace {
-
-std::vector<Series> columnsOf(const std::vector<StepSums>& rows, const TechniqueScene& scene) {
-    std::vector<Series> columns;
-    const auto add = [&](const char* id, const char* label, const char* unit, auto value_of) {
-        Series column{id, label, unit, {}};
-        for (const StepSums& row : rows) column.values.push_back(value_of(row));
-        columns.push_back(std::move(column));
-    };
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    const auto ifFinite = [](double value) { return std::isfinite(value) ? value : kNone; };
-    add("time", "Time", "s", [](const StepSums& row) { return row.time; });
-    add("contact", "In contact", "s", [](const StepSums& row) { return row.contact_time; });
-    add("force", "Force in contact, mean", "N",
-        [&](const StepSums& row) { return row.contact_time > 0 ? row.impulse / row.contact_time : kNone; });
-    add("force_max", "Force in contact, largest", "N",
-        [&](const StepSums& row) { return row.contact_time > 0 ? row.max_force : kNone; });
-    add("path", "Way of the burr", "mm", [](const StepSums& row) { return row.way * kPerMillimetre; });
-    add("removed", "Removed", "mm3", [](const StepSums& row) { return row.removed * kPerCubicMillimetre; });
-    add("unseen", "Removed out of sight", "percent",
-        [&](const StepSums& row) { return ifFinite(100 * row.unseen / (row.seen + row.unseen)); });
-    if (scene.recorded.protection)
-        add("distance", "Least distance to a structure", "mm",
-            [&](const StepSums& row) { return ifFinite(row.distance * kPerMillimetre); });
-    if (scene.recorded.heat)
-        add("temperature", "Hottest bone", "degC",
-            [&](const StepSums& row) { return ifFinite(row.temperature); });
-    return columns;
-}
-
-}  // namespace
 
 std::vector<SeriesTable> Technique::series() const {
     SeriesTable by_time{"second", {"t", "Time of the attempt", "s", {}}, columnsOf(seconds_.rows(), scene_)};

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "common/base/units.h"
 
@@ -95,16 +94,13 @@ void BreachMeter::add(const Pose& X_VT, const BurrProbes& burr) noexcept {
     last_V_ = X_VT.position;
     if (!bone_->isNear(X_VT.position)) return;
     double deepest = 0;
-    Eigen::Vector3d place_V = Eigen::Vector3d::Zero();
     for (const BurrProbe& probe : burr) {
         const Eigen::Vector3d p_V = X_VT * probe.center_T;
         if ((p_V - line_.entry_V).dot(along_V_) < line_.free) continue;
-        const double depth = probe.radius - bone_->depthAt(p_V);
-        if (depth > deepest) deepest = depth, place_V = p_V;
+        deepest = std::max(deepest, probe.radius - bone_->depthAt(p_V));
     }
     if (!(deepest > depth_) || !std::isfinite(deepest) || !isShaftInBone(X_VT)) return;
     depth_ = deepest;
-    place_V_ = place_V;
 }
 
 // A tool beside the bone has not come through it.

@@ -10,11 +10,14 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "haptic_server/assessment/measures/figure.h"
 #include "haptic_server/assessment/product/judged_task.h"
 #include "haptic_server/assessment/product/signed_field.h"
 #include "haptic_server/core/effects/burr_probes.h"
+#include "haptic_server/core/telemetry/tick_record.h"
 #include "haptic_server/core/volume/voxel_volume.h"
 
 namespace bonemill {
@@ -43,7 +46,6 @@ class BreachMeter {
     // The tool was there; it counts if it has come a quarter of a millimetre since.
     void add(const Pose& X_VT, const BurrProbes& burr) noexcept;
     double depth() const noexcept { return depth_; }  // m; 0: no breach
-    const Eigen::Vector3d& place() const noexcept { return place_V_; }
 
   private:
     bool isShaftInBone(const Pose& X_VT) const noexcept;
@@ -53,7 +55,6 @@ class BreachMeter {
     Eigen::Vector3d along_V_;
     std::optional<Eigen::Vector3d> last_V_;
     double depth_ = 0;
-    Eigen::Vector3d place_V_ = Eigen::Vector3d::Zero();
 };
 
 // 0 to 4 stands for A to E; `depth` in m.
@@ -61,5 +62,30 @@ int breachGrade(double depth) noexcept;
 
 // Adds the figures "breach.*".
 void addBreachFigures(double depth, Figures& figures);
+
+// Follows the tool through the ticks of an attempt for its breach. It is for one normal thread.
+class BreachMonitor {
+  public:
+    // `burrs` are the tools' in the scene's order. The bone is copied.
+    BreachMonitor(const VoxelVolume& scanned, const PlannedLine& line, std::vector<BurrProbes> burrs)
+        : X_VW_(scanned.geometry().X_WV.inverse()),
+          meter_(std::make_shared<const SolidBone>(scanned, line), line),
+          burrs_(std::move(burrs)) {}
+
+    void reset() noexcept { meter_.reset(); }
+    void add(const TickRecord& record) noexcept {
+        if (record.tool >= burrs_.size()) return;
+        const double(&p)[3] = record.p_WT;
+        const double(&q)[4] = record.q_WT;
+        const Pose X_WT{{p[0], p[1], p[2]}, Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
+        meter_.add(X_VW_ * X_WT, burrs_[record.tool]);
+    }
+    double depth() const noexcept { return meter_.depth(); }  // m
+
+  private:
+    Pose X_VW_;
+    BreachMeter meter_;
+    std::vector<BurrProbes> burrs_;
+};
 
 }  // namespace bonemill

@@ -2,17 +2,38 @@
 // It is made at the start (setup/scene_task.h) and never changes; any thread may read.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "haptic_server/assessment/measures/expert_path.h"
-#include "haptic_server/assessment/product/zones.h"
+#include "haptic_server/assessment/measures/figure.h"
 #include "haptic_server/core/volume/bone_properties.h"
 #include "haptic_server/core/volume/voxel_ids.h"
 
 namespace bonemill {
+
+// A task divides the scanned bone into zones: what shall go, what may, what must stay. In the order of
+// scene.Task.Role.
+enum class ZoneRole : uint8_t {
+    kTarget,
+    kLeewaySides,
+    kLeewayBottom,
+    kContainerSides,
+    kContainerBottom,
+    kProtected,
+    kContext
+};
+
+struct Zone {
+    std::string name;
+    ZoneRole role = ZoneRole::kContext;
+};
+
+using ZoneId = uint8_t;  // 1 + index in the task's list; 0: of no zone
+inline constexpr ZoneId kNoZone = 0;
 
 // A protected structure is a material of the scan or a zone; the other id is 0.
 struct Structure {
@@ -71,5 +92,10 @@ struct JudgedTask {
                                          : properties->material(voxel) == structure.material;
     }
 };
+
+// Turns figures into a judgement, by a task's gates and scales: gates first, then sub-scores, and a total
+// only where the teacher gave weights. A gate on a figure that was not measured is not passed. A sub-score on
+// one is left out; its weight then counts with a score of 0, so that what was not done gains nothing.
+Assessment judge(const JudgedTask& task, Figures figures);
 
 }  // namespace bonemill

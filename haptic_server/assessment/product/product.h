@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "haptic_server/assessment/measures/figure.h"
-#include "haptic_server/assessment/product/deviation_picture.h"
+#include "haptic_server/assessment/product/deviation.h"
 #include "haptic_server/core/volume/voxel_volume.h"
 
 namespace bonemill {

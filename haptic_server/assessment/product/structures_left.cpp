@@ -1,7 +1,5 @@
 #include "haptic_server/assessment/product/structures_left.h"
 
-#include <cmath>
-
 #include "common/base/units.h"
 
 namespace bonemill {

@@ -1,6 +1,5 @@
 #include "haptic_server/assessment/product/zone_tally.h"
 
-#include <algorithm>
 #include <array>
 
 #include "common/base/units.h"

@@ -1,7 +1,7 @@
 // Solid shapes a tool is made of, and their exact signed distances.
 //
 // The frame is T, the unit m; it is negative inside. The other functions take checked shapes
-// (tool_build/check_shape.h) only. It is not for the tick. Formulas: a solid of revolution's distance is that
+// (tool_build/build_tool.h) only. It is not for the tick. Formulas: a solid of revolution's distance is that
 // of its profile in the half-plane (along the axis, off the axis).
 #pragma once
 

@@ -5,8 +5,7 @@
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "haptic_server/lab/simulate/task_run.h"
-#include "haptic_server/recording/rerun/recorded_attempts.h"
-#include "haptic_server/recording/rerun/recorded_eyes.h"
+#include "haptic_server/recording/rerun/recording.h"
 #include "haptic_server/recording/rerun/rerun.h"
 
 namespace bonemill {

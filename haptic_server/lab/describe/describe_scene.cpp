@@ -18,7 +18,7 @@
 #include "haptic_server/recording/statistics/tick_times.h"
 #include "haptic_server/scans/find_bone/bone_pieces.h"
 #include "haptic_server/scene/setup/coupling_text.h"
-#include "haptic_server/scene/setup/scene_pieces.h"
+#include "haptic_server/scene/setup/scene_region.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "proto/scene.pb.h"
 

@@ -10,7 +10,7 @@
 #include "common/config/scene_file.h"
 #include "haptic_server/assessment/measures/technique.h"
 #include "haptic_server/assessment/product/product.h"
-#include "haptic_server/recording/statistics/final_files.h"
+#include "haptic_server/recording/statistics/bone_files.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 
 namespace bonemill {

@@ -2,27 +2,117 @@
 
 #include <spdlog/spdlog.h>
 
-#include <cmath>
-#include <filesystem>
 #include <optional>
+#include <type_traits>
+#include <vector>
 
 #include "common/base/user_error.h"
 #include "common/files/require_apart.h"
 #include "common/files/whole_file.h"
 #include "common/rt/clock.h"
 #include "common/text/foreign_text.h"
-#include "haptic_server/recording/export/eye_table.h"
 #include "haptic_server/recording/export/h5_file.h"
-#include "haptic_server/recording/export/tick_table.h"
-#include "haptic_server/recording/export/tool_path.h"
 #include "haptic_server/recording/export/trajectory_writer.h"
+#include "haptic_server/recording/rerun/recording.h"
 #include "haptic_server/recording/rerun/replay_events.h"
 #include "haptic_server/recording/rerun/rerun.h"
-#include "haptic_server/recording/statistics/trace_writer.h"
-#include "haptic_server/scene/setup/scene_effects.h"
+#include "haptic_server/recording/statistics/tick_columns.h"
+#include "haptic_server/scene/setup/scene_materials.h"
 
 namespace bonemill {
 namespace {
+
+constexpr size_t kMaxWaiting = 4096;  // rows
+
+// Ticks as the columns of an HDF5 file, with units and frames (docs/teach/replay.md lists them). It is for
+// one normal thread.
+class TickTable {
+  public:
+    // Adds the columns below "/tick/", those of effects as the scene records them. The file must outlive the
+    // table.
+    TickTable(H5File& file, const RecordedEffects& recorded) {
+        static const TickRecord kAny{};
+        for (const TickColumn& about : tickColumns(recorded)) {
+            if (!about.name) continue;
+            const ColumnValue value = about.in(kAny);
+            const auto* const vector = std::get_if<std::span<const double>>(&value);
+            const auto number =
+                std::holds_alternative<uint32_t>(value) ? H5File::Number::kUint32 : H5File::Number::kDouble;
+            columns_.push_back(
+                {about,
+                 &file.addColumn(std::string("/tick/") + about.name, vector ? vector->size() : 1, number,
+                                 {about.unit, about.description}),
+                 {},
+                 {}});
+        }
+    }
+
+    void add(const TickRecord& record) {
+        for (Column& column : columns_)
+            std::visit(
+                [&]<class Value>(const Value& value) {
+                    if constexpr (std::is_same_v<Value, uint32_t>)
+                        column.counts.push_back(value);
+                    else if constexpr (std::is_arithmetic_v<Value>)
+                        column.reals.push_back(double(value));
+                    else
+                        column.reals.insert(column.reals.end(), value.begin(), value.end());
+                },
+                column.about.in(record));
+        if (++rows_ == kMaxWaiting) flush();
+    }
+    // What waits; before the file is closed.
+    void flush() {
+        for (Column& column : columns_) {
+            if (column.counts.empty())
+                column.column->append(column.reals);
+            else
+                column.column->append(column.counts);
+            column.reals.clear();
+            column.counts.clear();
+        }
+        rows_ = 0;
+    }
+
+  private:
+    struct Column {
+        TickColumn about;
+        H5File::Column* column;
+        std::vector<double> reals;     // that wait,
+        std::vector<uint32_t> counts;  // or these
+    };
+    std::vector<Column> columns_;
+    size_t rows_ = 0;  // that wait
+};
+
+// What the trainee saw, as datasets of an HDF5 file.
+struct Eyes {
+    std::vector<double> t_s, p_m, q_wxyz, field_of_view_rad;
+
+    void add(double at_s, const RecordedEye& eye) {
+        t_s.push_back(at_s);
+        p_m.insert(p_m.end(), eye.p_WC.begin(), eye.p_WC.end());
+        for (const double part : {eye.q_WC.w(), eye.q_WC.x(), eye.q_WC.y(), eye.q_WC.z()})
+            q_wxyz.push_back(part);
+        field_of_view_rad.push_back(eye.field_of_view);
+    }
+};
+
+// Reads the journal once more; adds "/eye" where it holds any. Throws UserError.
+void writeEyes(const Recording& recording, H5File& file) {
+    Eyes eyes;
+    for (const RecordedEye& seen : recordedEyes(recording)) eyes.add(recording.secondsOf(seen.tick), seen);
+    if (eyes.t_s.empty()) return;
+    const auto write = [&](const char* place, size_t width, const H5About& about,
+                           const std::vector<double>& values) {
+        file.addColumn(place, width, H5File::Number::kDouble, about).append(values);
+    };
+    write("/eye/t_s", 1, {"s", "since the session's first tick"}, eyes.t_s);
+    write("/eye/p_m", 3, {"m", "where the trainee's eye was, world frame W"}, eyes.p_m);
+    write("/eye/q_wxyz", 4, {"1", "the camera's axes (x right, y up, z towards the eye) to W, w, x, y, z"},
+          eyes.q_wxyz);
+    write("/eye/field_of_view_rad", 1, {"rad", "vertical angle of view"}, eyes.field_of_view_rad);
+}
 
 std::string joined(const google::protobuf::RepeatedPtrField<std::string>& names) {
     std::string text;

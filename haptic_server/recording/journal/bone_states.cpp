@@ -1,7 +1,5 @@
 #include "haptic_server/recording/journal/bone_states.h"
 
-#include <algorithm>
-#include <cstring>
 #include <utility>
 
 #include "haptic_server/core/bone/bone_snapshot.h"
@@ -10,17 +8,6 @@ namespace bonemill {
 namespace {
 
 constexpr size_t kMaxDensityBytes = size_t(4) << 20;  // of a message, but for a leaf that is larger by itself
-
-std::vector<Density> scannedDensities(const ScannedBone& scanned, LeafId leaf) {
-    const IndexBox cells = scanned.lattice.cellsOf(leaf), voxels = voxelsOf(cells);
-    const int count = voxels.max.x() - voxels.min.x() + 1;
-    std::vector<Density> densities(size_t(voxels.count()) + VoxelVolume::kReadSlack);
-    forEachRow(voxels, [&](const Eigen::Vector3i& first) {
-        scanned.volume.readRow(first, count, densities.data() + placeOf(cells, first));
-    });
-    densities.resize(size_t(voxels.count()));
-    return densities;
-}
 
 uint16_t zigzagged(uint16_t difference) noexcept {
     return uint16_t(uint16_t(difference << 1) ^ uint16_t(int16_t(difference) >> 15));
@@ -78,6 +65,17 @@ bool isNothing(const std::vector<journal::Bone>& messages) {
 
 }  // namespace
 
+std::vector<Density> densitiesOf(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf) {
+    const IndexBox cells = lattice.cellsOf(leaf), voxels = voxelsOf(cells);
+    const int count = voxels.max.x() - voxels.min.x() + 1;
+    std::vector<Density> densities(size_t(voxels.count()) + VoxelVolume::kReadSlack);
+    forEachRow(voxels, [&](const Eigen::Vector3i& first) {
+        volume.readRow(first, count, densities.data() + placeOf(cells, first));
+    });
+    densities.resize(size_t(voxels.count()));
+    return densities;
+}
+
 std::vector<journal::Bone> BoneStateWriter::add(const BoneSnapshot& state, journal::Bone::Kind kind) {
     if (kind == journal::Bone::KEY) last_.clear();
     Messages messages(kind);
@@ -86,7 +84,8 @@ std::vector<journal::Bone> BoneStateWriter::add(const BoneSnapshot& state, journ
         const auto before = last_.find(copy->leaf);
         now.emplace_hint(now.end(), copy->leaf, copy);
         if (before == last_.end()) {
-            messages.add(copy->leaf, copy->densities, scannedDensities(scanned_, copy->leaf));
+            messages.add(copy->leaf, copy->densities,
+                         densitiesOf(scanned_.volume, scanned_.lattice, copy->leaf));
         } else if (before->second != copy && before->second->densities != copy->densities) {
             messages.add(copy->leaf, copy->densities, before->second->densities);
         }
@@ -134,8 +133,9 @@ bool BoneStateReader::take(const journal::Bone& bone) {
         if (voxels > codes - at) return false;
         const auto before = leaves_.find(LeafId(leaf));
         auto copy = std::make_shared<LeafCopy>(LeafCopy{LeafId(leaf), 0, {}});
-        copy->densities =
-            before == leaves_.end() ? scannedDensities(scanned_, LeafId(leaf)) : before->second->densities;
+        copy->densities = before == leaves_.end()
+                              ? densitiesOf(scanned_.volume, scanned_.lattice, LeafId(leaf))
+                              : before->second->densities;
         for (Density& density : copy->densities) {
             const auto code = uint16_t(uint8_t(bytes[at]) | uint8_t(bytes[codes + at]) << 8);
             density = Density(density + unzigzagged(code));

@@ -18,6 +18,9 @@ struct ScannedBone {
     const LeafLattice& lattice;
 };
 
+// Those of the leaf in this bone, in the order of LeafCopy::densities.
+std::vector<Density> densitiesOf(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf);
+
 class BoneStateWriter {
   public:
     explicit BoneStateWriter(const ScannedBone& scanned) : scanned_(scanned) {}

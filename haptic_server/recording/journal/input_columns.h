@@ -1,5 +1,5 @@
 // The input of many ticks as columns, some 40 bytes per tick when they are packed (proto/journal.proto,
-// Inputs), and back to the bit. It is for normal threads.
+// Inputs), and back to the bit; and what the ticks came to (Results). It is for normal threads.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,17 @@
 #include "proto/journal.pb.h"
 
 namespace bonemill {
+
+// What ticks came to, as columns of one message.
+class ResultColumns {
+  public:
+    void add(const TickRecord& record);
+    bool isEmpty() const noexcept { return results_.count() == 0; }
+    journal::Results take();
+
+  private:
+    journal::Results results_;
+};
 
 // One tick's input, as its TickRecord has it.
 struct JournalTick {

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "common/rt/clock.h"
-#include "haptic_server/recording/journal/journal_schemas.h"
 
 namespace bonemill {
 namespace {

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +18,7 @@
 #include "haptic_server/recording/journal/journal_chain.h"
 #include "haptic_server/recording/journal/journal_file.h"
 #include "haptic_server/recording/journal/journal_topics.h"
-#include "haptic_server/recording/journal/result_columns.h"
-#include "haptic_server/recording/statistics/tick_hash.h"
+#include "haptic_server/recording/statistics/state_hash.h"
 
 namespace bonemill {
 

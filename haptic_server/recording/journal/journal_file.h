@@ -4,7 +4,6 @@
 // open it is locked (flock), so that others see that somebody writes to it.
 #pragma once
 
-#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "common/mcap/mcap_writer.h"
+
 namespace bonemill {
 
 // Also the ids of channel and schema in the file, which start at 1.
@@ -50,5 +52,9 @@ inline constexpr std::array kJournalTopics = {
 inline constexpr uint32_t kJournalFormat = 1;
 // The profile in the MCAP file's header: what tells a journal from other MCAP files.
 inline constexpr std::string_view kJournalProfile = "bonemill.journal";
+
+// Schema and channel of the topic, whose number both have, so that stock tools read the file: Protobuf types
+// with all that they use. For normal threads.
+void addTopic(const JournalTopicName& topic, mcap::Writer& writer);
 
 }  // namespace bonemill

@@ -7,12 +7,27 @@
 #include <utility>
 
 #include "common/base/user_error.h"
+#include "common/config/scene_check.h"
+#include "common/config/scene_text.h"
 #include "common/rt/clock.h"
+#include "common/text/foreign_text.h"
 #include "haptic_server/recording/journal/bone_states.h"
-#include "haptic_server/recording/rerun/recorded_scene.h"
+#include "haptic_server/recording/journal/build_facts.h"
 
 namespace bonemill {
 namespace {
+
+const journal::File* listedFile(const journal::Manifest& manifest, const NamedFile& file) {
+    const std::string path = std::filesystem::absolute(file.path).lexically_normal();
+    for (const journal::File& listed : manifest.files())
+        if (listed.path() == path) return &listed;
+    return nullptr;
+}
+
+// Its text is in the journal.
+bool isSceneFile(const NamedFile& file, const LoadedScene& scene) {
+    return file.path == scene.file;
+}
 
 // Of the states of the bone a replay needs one in so long.
 constexpr double kKeyframesApartS = 1;
@@ -49,7 +64,56 @@ bool isSame(const DeviceReport& a, const DeviceReport& b) {
     return a.state == b.state && a.stop_cause == b.stop_cause;
 }
 
+bool areFinite(const auto& numbers) {
+    return std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); });
+}
+
 }  // namespace
+
+LoadedScene recordedScene(const journal::Manifest& manifest, const std::string& journal) {
+    const std::filesystem::path file = manifest.scene_path();
+    if (!file.is_absolute()) throw UserError(journal + ": does not say where its scene was; it is damaged");
+    const std::string name = "the scene in the journal, " + printableLine(file.string());
+    ParsedScene parsed = parseSceneText(manifest.scene_text(), name);
+    checkScene(parsed, name);
+    LoadedScene scene{std::move(parsed.scene), file.parent_path().lexically_normal(), file,
+                      std::move(parsed.lines)};
+    for (const NamedFile& read : filesOf(scene))
+        if (!isSceneFile(read, scene) && !listedFile(manifest, read))
+            throw UserError(journal + ": its scene reads " + read.name + " " +
+                            printableLine(read.path.string()) +
+                            ", which the session did not read; the journal is damaged or forged");
+    return scene;
+}
+
+std::vector<std::string> changedFiles(const journal::Manifest& manifest, const LoadedScene& scene) {
+    std::vector<std::string> changed;
+    for (const NamedFile& read : filesOf(scene)) {
+        if (isSceneFile(read, scene)) continue;
+        const journal::File* const listed = listedFile(manifest, read);
+        if (!listed || listed->sha256() != sha256Of(read.path))
+            changed.push_back(read.name + " " + printableLine(read.path.string()) + " is another file now");
+    }
+    return changed;
+}
+
+// Earlier releases did not say that they dropped one: it is there without its end, and another one begins.
+std::vector<RecordedAttempt> recordedAttempts(const JournalContent& content) {
+    std::vector<RecordedAttempt> attempts;
+    bool is_running = false;
+    for (const journal::Event& event : content.events) {
+        const bool begins = event.has_attempt_began();
+        if (is_running && (begins || event.has_attempt_dropped())) attempts.pop_back();
+        if (is_running && event.has_attempt_ended()) {
+            attempts.back().end = event.tick();
+            attempts.back().time_s = event.attempt_ended().time_s();
+        }
+        if (begins)
+            attempts.push_back({event.attempt_began(), event.bone_order(), event.tick(), UINT64_MAX, {}});
+        is_running = begins || (is_running && !event.has_attempt_ended() && !event.has_attempt_dropped());
+    }
+    return attempts;
+}
 
 Recording::Recording(const std::filesystem::path& path)
     : path_(path), content_(readJournalContent(path, KeepInputs::kYes)) {
@@ -182,6 +246,24 @@ const JournalTick& RecordedTicks::at(uint64_t tick) {
         !decoded_.empty() && tick >= decoded_.front().tick && tick <= decoded_.back().tick;
     if (!is_decoded) decoded_ = recording_.decode(recording_.blockOf(tick));
     return decoded_[size_t(tick - decoded_.front().tick)];
+}
+
+std::vector<RecordedEye> recordedEyes(const Recording& recording) {
+    std::vector<RecordedEye> eyes;
+    readJournal(recording.path(), [&](JournalTopic topic, const mcap::Message& message) {
+        journal::Camera camera;
+        if (topic != JournalTopic::kCamera ||
+            !camera.ParseFromArray(message.data.data(), int(message.data.size())))
+            return;
+        const topics::Eye& eye = camera.eye();
+        if (eye.p_wc_m_size() == 3 && eye.q_wc_size() == 4 && areFinite(eye.p_wc_m()) &&
+            areFinite(eye.q_wc()) && camera.tick() < recording.ticks())
+            eyes.push_back({camera.tick(), Eigen::Vector3d(eye.p_wc_m().data()),
+                            Eigen::Quaterniond(eye.q_wc(0), eye.q_wc(1), eye.q_wc(2), eye.q_wc(3)),
+                            eye.field_of_view_rad()});
+    });
+    std::ranges::stable_sort(eyes, {}, &RecordedEye::tick);
+    return eyes;
 }
 
 }  // namespace bonemill

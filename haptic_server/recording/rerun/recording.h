@@ -2,9 +2,12 @@
 // moments. It is read once and never changes; any thread may ask. An hour at 1 kHz takes some 200 MB.
 #pragma once
 
+#include <Eigen/Geometry>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,8 +15,29 @@
 #include "haptic_server/core/bone/bone_model.h"
 #include "haptic_server/core/bone/bone_snapshot.h"
 #include "haptic_server/recording/journal/journal_reader.h"
+#include "proto/journal.pb.h"
 
 namespace bonemill {
+
+// The scene whose text the journal has, its paths as of the file that it came from. A journal may come from a
+// stranger: what it does not list with its hash is not opened. `journal` names the file of the recording, for
+// messages. Throws UserError, also if the scene reads a file that the journal does not list.
+LoadedScene recordedScene(const journal::Manifest& manifest, const std::string& journal);
+
+// Which of the files that the scene reads are others now than the journal says, a sentence each.
+std::vector<std::string> changedFiles(const journal::Manifest& manifest, const LoadedScene& scene);
+
+struct RecordedAttempt {
+    std::string trainee;
+    uint64_t bone_order = 0;       // that puts the bone back for it
+    uint64_t begin = 0;            // tick
+    uint64_t end = UINT64_MAX;     // tick; UINT64_MAX: the recording ends before
+    std::optional<double> time_s;  // without pauses, if it has ended
+};
+
+// The attempts of a session in their order, which is their number from 1 on. One that was dropped counts as
+// none.
+std::vector<RecordedAttempt> recordedAttempts(const JournalContent& content);
 
 // The bone as the ticks before `tick` left it.
 struct Keyframe {
@@ -89,5 +113,16 @@ class RecordedTicks {
     const Recording& recording_;
     std::vector<JournalTick> decoded_;
 };
+
+// What the trainee saw in a recorded session, as its journal has it.
+struct RecordedEye {
+    uint64_t tick = 0;        // from which on it was known
+    Eigen::Vector3d p_WC;     // m
+    Eigen::Quaterniond q_WC;  // as it was written
+    double field_of_view;     // rad, vertical
+};
+
+// In the order of ticks, and of ticks that there are. Reads the journal once more. Throws UserError.
+std::vector<RecordedEye> recordedEyes(const Recording& recording);
 
 }  // namespace bonemill

@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <Eigen/Core>
-#include <cmath>
 #include <deque>
 #include <map>
 #include <utility>
@@ -18,8 +17,8 @@
 #include "haptic_server/recording/journal/journal_chain.h"
 #include "haptic_server/recording/journal/journal_reader.h"
 #include "haptic_server/recording/rerun/rerun.h"
-#include "haptic_server/recording/statistics/tick_hash.h"
-#include "haptic_server/scene/setup/scene_effects.h"
+#include "haptic_server/recording/statistics/state_hash.h"
+#include "haptic_server/scene/setup/scene_materials.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 
 namespace bonemill {
@@ -41,17 +40,6 @@ uint64_t hashOf(std::span<const Density> densities) noexcept {
     StateHash hash;
     hash.addBytes(densities.data(), densities.size_bytes());
     return hash.value();
-}
-
-// Of the leaf in this bone, as its copies have it.
-uint64_t leafHash(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf) {
-    const IndexBox cells = lattice.cellsOf(leaf), voxels = voxelsOf(cells);
-    const int count = voxels.max.x() - voxels.min.x() + 1;
-    std::vector<Density> densities(size_t(voxels.count()) + VoxelVolume::kReadSlack);
-    forEachRow(voxels, [&](const Eigen::Vector3i& first) {
-        volume.readRow(first, count, densities.data() + placeOf(cells, first));
-    });
-    return hashOf(std::span(densities).first(size_t(voxels.count())));
 }
 
 // What the leaves that changed were, after N ticks.
@@ -87,7 +75,7 @@ class BonePass {
             const auto voxels = size_t(voxelsOf(scanned_.lattice.cellsOf(id)).count());
             const Density* const densities = states_.state()->densitiesOf(id);
             hashes.emplace_back(id, densities ? hashOf({densities, voxels})
-                                              : leafHash(scanned_.volume, scanned_.lattice, id));
+                                              : hashOf(densitiesOf(scanned_.volume, scanned_.lattice, id)));
         }
         return hashes;
     }
@@ -146,7 +134,7 @@ class BitComparison {
         for (auto state = first; state != last; ++state) {
             ++verdict_.bones;
             for (const auto& [leaf, hash] : state->second)
-                if (leafHash(bone_.volume, bone_.lattice, leaf) != hash)
+                if (hashOf(densitiesOf(bone_.volume, bone_.lattice, leaf)) != hash)
                     differ(verdict_.ticks == 0 ? 0 : verdict_.ticks - 1, "the bone");
         }
     }

@@ -7,7 +7,6 @@
 
 #include "common/base/user_error.h"
 #include "common/files/require_file.h"
-#include "common/files/whole_file.h"
 #include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "haptic_server/surface/mesh/mesh_files.h"
 #include "haptic_server/surface/mesh/mesher.h"

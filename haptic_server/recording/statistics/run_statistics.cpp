@@ -61,6 +61,18 @@ nlohmann::ordered_json wordsOf(const EffectStatistics& effects) {
 
 }  // namespace
 
+std::string causeText(const DeviceReport& report) {
+    const auto cause = StopCause(report.stop_cause);
+    if (cause == StopCause::kNone) return "";
+    const std::string text = nameOf(cause);
+    return cause == StopCause::kDeviceFault ? text + " " + std::to_string(report.fault_code) : text;
+}
+
+std::string deviceText(const DeviceReport& report) {
+    const std::string text = nameOf(SafetyState(report.state)), cause = causeText(report);
+    return cause.empty() ? text : text + ": " + cause + ". " + whatToDo(StopCause(report.stop_cause));
+}
+
 void RunStatistics::add(const TickRecord& record) {
     addSchedule(record);
     ++records_;

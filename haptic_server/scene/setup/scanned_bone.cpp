@@ -2,21 +2,127 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <span>
 #include <utility>
 
 #include "common/rt/clock.h"
+#include "haptic_server/core/volume/material_properties.h"
+#include "haptic_server/core/volume/raw_volume.h"
+#include "haptic_server/core/volume/voxel_volume.h"
 #include "haptic_server/scans/confined/import_limits.h"
 #include "haptic_server/scans/densify/densify.h"
 #include "haptic_server/scans/densify/voxel_materials.h"
+#include "haptic_server/scans/find_bone/metal.h"
 #include "haptic_server/scans/import/import_volume.h"
-#include "haptic_server/scene/setup/kept_tissue.h"
 #include "haptic_server/scene/setup/refuse_field.h"
-#include "haptic_server/scene/setup/scene_metal.h"
-#include "haptic_server/scene/setup/scene_pieces.h"
 #include "haptic_server/scene/setup/scene_region.h"
+#include "haptic_server/scene/setup/scene_shapes.h"
 
 namespace bonemill {
 namespace {
+
+constexpr double kEndOfBoneHu = 3071, kStretched = 1.5;
+constexpr double kSlack = 1e-6;  // voxels
+
+bool meet(const IndexBox& a, const IndexBox& b) {
+    return ((a.min.array() <= b.max.array()) && (b.min.array() <= a.max.array())).all();
+}
+
+// What the streaks of a piece may spoil: they lie in its slices.
+IndexBox reachOf(const MetalPiece& piece, const Streaks& streaks, const Eigen::Vector3d& spacing) {
+    IndexBox box = piece.box;
+    for (int axis = 0; axis < 2; ++axis) {
+        const int steps = int(std::ceil(streaks.reach / spacing[axis]));
+        box.min[axis] -= steps;
+        box.max[axis] += steps;
+    }
+    return box;
+}
+
+bool isSpoilt(const Metal& metal, const IndexBox& used, const Eigen::Vector3d& spacing) {
+    if (!metal.streaks || metal.streaks->reach == 0) return false;
+    return std::ranges::any_of(metal.pieces, [&](const MetalPiece& piece) {
+        return meet(reachOf(piece, *metal.streaks, spacing), used);
+    });
+}
+
+// Says what metal there is in the scan, and warns where it spoils the bone that is milled. `bone` is that of
+// the whole scan, without the pieces that the scene drops; its voxels may be larger than
+// the scan's. `used` are the voxels of the scan that are milled.
+void remarkMetal(const LoadedScene& loaded, const Metal& metal, const VolumeGeometry& scan,
+                 const VoxelVolume& bone, const IndexBox& used, std::vector<std::string>& remarks,
+                 std::vector<std::string>& warnings) {
+    if (metal.pieces.empty()) return;
+    remarks.push_back(textOf(metal, scan));
+    const scene::Volume& volume = loaded.scene.volume();
+    const auto isMilled = [&](const MetalPiece& piece) {
+        const Eigen::Array3d place =
+            piece.first.cast<double>().array() * scan.spacing.array() / bone.spacing().array();
+        const Eigen::Vector3i v = (place + kSlack).cast<int>().min(bone.dims().array() - 1).matrix();
+        return meet(piece.box, used) && bone.at(v.x(), v.y(), v.z()) >= bone.iso();
+    };
+    if (std::ranges::any_of(metal.pieces, isMilled))
+        warnings.push_back(
+            std::string("metal would be milled as if it were bone; ") +
+            (volume.has_region() ? "choose another volume.region" : "choose a volume.region without it") +
+            ", or leave it out (volume.drop_piece) where it is a piece of its own");
+    if (isSpoilt(metal, used, scan.spacing))
+        warnings.push_back(
+            "streaks of metal cross what is milled: they make bone of tissue and gaps in bone; choose a "
+            "volume.region in other slices, or further from it");
+    if (!volume.has_window_high() && metal.highest > kStretched * kEndOfBoneHu)
+        warnings.push_back("metal stretches the scale of densities to " + std::to_string(int(metal.highest)) +
+                           " HU; volume.window_high: " + std::to_string(int(kEndOfBoneHu + metal.water)) +
+                           " ends it above all bone");
+}
+
+using IsOfMaterial = std::vector<bool>;  // by MaterialId
+
+bool isAskedFor(const scene::Task::Zone& zone) {
+    return zone.role() == scene::Task::PROTECTED || zone.role() == scene::Task::TARGET;
+}
+
+void addMaterialsOf(const scene::Scene& scene, const scene::Task::Zone& zone, IsOfMaterial& is_kept) {
+    for (int n = 0; n < scene.material_size(); ++n)
+        if (std::ranges::count(zone.material(), scene.material(n).name()) > 0) is_kept[size_t(n) + 1] = true;
+}
+
+IsOfMaterial protectedOf(const scene::Scene& scene) {
+    IsOfMaterial is_kept(size_t(scene.material_size()) + 1);
+    for (int n = 0; n < scene.material_size(); ++n) is_kept[size_t(n) + 1] = scene.material(n).is_protected();
+    return is_kept;
+}
+
+// Which voxels a scene asks about, whatever they are made of: its protected structures and its targets. Is
+// the voxel with this index (x fastest) of a protected material, or of a protected or target zone? It is
+// empty where none can be. `ids` has one of each voxel, or none if the scene has no materials, and must
+// outlive what is returned. Throws UserError for a zone whose shape is no solid.
+std::function<bool(size_t)> keptTissueOf(const LoadedScene& loaded, std::span<const MaterialId> ids,
+                                         const VolumeGeometry& geometry) {
+    const scene::Scene& scene = loaded.scene;
+    IsOfMaterial is_kept = protectedOf(scene);
+    std::vector<uint8_t> marks;  // of the zones with shapes; empty: there is none
+    for (int n = 0; n < scene.assessment().zone_size(); ++n) {
+        const scene::Task::Zone& zone = scene.assessment().zone(n);
+        if (!isAskedFor(zone)) continue;
+        if (zone.shape_size() == 0) {
+            addMaterialsOf(scene, zone, is_kept);
+            continue;
+        }
+        const auto inside =
+            voxelsInside(loaded, zone.shape(), geometry, "assessment.zone[" + std::to_string(n) + "]");
+        marks.resize(inside.size());
+        std::ranges::transform(inside, marks, marks.begin(), std::bit_or<>());
+    }
+    const bool has_materials = !ids.empty() && std::ranges::count(is_kept, true) > 0;
+    if (!has_materials && marks.empty()) return {};
+    return [=, is_kept = std::move(is_kept), marks = std::move(marks)](size_t at) {
+        return (has_materials && is_kept[ids[at]]) || (!marks.empty() && marks[at]);
+    };
+}
 
 constexpr int64_t kLongWithoutAWordNs = 2 * kNsPerSecond;
 

@@ -11,41 +11,17 @@
 namespace bonemill {
 namespace {
 
-Preset presetOf(scene::Accuracy::Preset preset) {
-    switch (preset) {
-        case scene::Accuracy::THESIS_2012:
-            return Preset::kThesis2012;
-        case scene::Accuracy::FAST:
-            return Preset::kFast;
-        case scene::Accuracy::EXACT:
-            return Preset::kExact;
-        case scene::Accuracy::PROXY_3DOF:
-            return Preset::kProxy3Dof;
-        case scene::Accuracy::VPS:
-            return Preset::kVps;
-        case scene::Accuracy::PENALTY_SDF:
-            return Preset::kPenaltySdf;
-        case scene::Accuracy::CONSTRAINT:
-            return Preset::kConstraint;
-        default:
-            return Preset::kBalanced;
-    }
-}
-
-constexpr std::pair<scene::Accuracy::ContactLaw, ContactLaw> kLaws[] = {
-    {scene::Accuracy::GRADIENT, ContactLaw::kGradient},
-    {scene::Accuracy::PENALTY_THESIS_2012, ContactLaw::kThesis2012},
-    {scene::Accuracy::BALL_PROXY, ContactLaw::kProxy3Dof},
-    {scene::Accuracy::VOXMAP_POINT_SHELL, ContactLaw::kVps},
-    {scene::Accuracy::POINT_PENALTY, ContactLaw::kPenaltySdf},
-    {scene::Accuracy::LEAST_CONSTRAINT, ContactLaw::kConstraint},
-};
-
-ContactLaw lawOf(scene::Accuracy::ContactLaw wanted) {
-    for (const auto& [name, law] : kLaws)
-        if (name == wanted) return law;
-    return ContactLaw::kGradient;
-}
+// Presets and laws have the scene's numbers.
+using A = scene::Accuracy;
+static_assert(int(Preset::kThesis2012) == A::THESIS_2012 && int(Preset::kFast) == A::FAST &&
+              int(Preset::kBalanced) == A::BALANCED && int(Preset::kExact) == A::EXACT &&
+              int(Preset::kProxy3Dof) == A::PROXY_3DOF && int(Preset::kVps) == A::VPS &&
+              int(Preset::kPenaltySdf) == A::PENALTY_SDF && int(Preset::kConstraint) == A::CONSTRAINT);
+static_assert(int(ContactLaw::kThesis2012) == A::PENALTY_THESIS_2012 &&
+              int(ContactLaw::kGradient) == A::GRADIENT && int(ContactLaw::kProxy3Dof) == A::BALL_PROXY &&
+              int(ContactLaw::kVps) == A::VOXMAP_POINT_SHELL &&
+              int(ContactLaw::kPenaltySdf) == A::POINT_PENALTY &&
+              int(ContactLaw::kConstraint) == A::LEAST_CONSTRAINT);
 
 ShellNormals givenNormals(scene::Accuracy::Normals normals) {
     return normals == scene::Accuracy::TRILINEAR ? ShellNormals::kTrilinear
@@ -59,16 +35,10 @@ GradientContactConfig contactConfigOf(const scene::Contact& contact) {
 
 }  // namespace
 
-scene::Accuracy::ContactLaw sceneLawOf(ContactLaw wanted) {
-    for (const auto& [name, law] : kLaws)
-        if (law == wanted) return name;
-    return scene::Accuracy::GRADIENT;
-}
-
 AccuracySettings accuracyOf(const scene::Scene& scene) {
     const scene::Accuracy& knobs = scene.accuracy();
-    AccuracySettings settings = presetSettings(presetOf(knobs.preset()));
-    if (knobs.has_contact_law()) settings.law = lawOf(knobs.contact_law());
+    AccuracySettings settings = presetSettings(Preset(knobs.preset()));
+    if (knobs.has_contact_law()) settings.law = ContactLaw(knobs.contact_law());
     if (knobs.has_shell_factor()) settings.shell_factor = int(knobs.shell_factor());
     if (knobs.has_sample_spacing_um()) settings.sample_spacing = knobs.sample_spacing_um() * kMicrometre;
     if (knobs.has_most_samples()) settings.most_samples = int(knobs.most_samples());

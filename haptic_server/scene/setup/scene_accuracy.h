@@ -10,9 +10,6 @@
 
 namespace bonemill {
 
-// Returns the scene's name of a contact law.
-scene::Accuracy::ContactLaw sceneLawOf(ContactLaw law);
-
 // The settings are the preset's, with the single knobs that the scene gives.
 AccuracySettings accuracyOf(const scene::Scene& scene);
 

@@ -1,4 +1,5 @@
-// Reads the materials of a scene: what they are, and which voxel is of which. It is for start-up only.
+// Reads what a scene's materials, effects and tools ask of the tick's effects: what they are, and which voxel
+// is of which material. It is for start-up only.
 #pragma once
 
 #include <memory>
@@ -7,11 +8,26 @@
 #include <vector>
 
 #include "common/config/scene_file.h"
+#include "haptic_server/core/effects/effect_configs.h"
+#include "haptic_server/core/telemetry/effect_record.h"
+#include "haptic_server/core/tool/burr.h"
 #include "haptic_server/core/volume/bone_properties.h"
 #include "haptic_server/core/volume/distance_field.h"
 #include "haptic_server/core/volume/raw_volume.h"
+#include "haptic_server/scans/densify/densify.h"
 
 namespace bonemill {
+
+Burr burrOf(const scene::Tool& tool);
+
+// The configuration lacks what depends on the volume.
+EffectConfigs effectConfigsOf(const scene::Scene& scene);
+
+// This is what traces, reports and hashes hold of these effects.
+RecordedEffects recordedEffectsOf(const scene::Effects& effects);
+
+// Raw values of the scene become densities. Throws UserError for one that is none.
+void mapRawValues(EffectConfigs& configs, const LoadedScene& loaded, const DensityMapping& mapping);
 
 MaterialTable materialTableOf(const scene::Scene& scene);
 

@@ -1,5 +1,5 @@
-// Gives the part of the scan that the scene names (volume.region) voxels that suit its burrs. It is for
-// start-up only.
+// The part of the scan that is milled: gives what the scene names (volume.region) voxels that suit its burrs,
+// and drops the pieces of bone that it does not want: head holder, cables, noise. It is for start-up only.
 #pragma once
 
 #include <string>
@@ -9,8 +9,26 @@
 #include "haptic_server/core/volume/index_box.h"
 #include "haptic_server/core/volume/surroundings.h"
 #include "haptic_server/scans/densify/densify.h"
+#include "haptic_server/scans/find_bone/bone_pieces.h"
 
 namespace bonemill {
+
+// Does the scene say anything of pieces?
+bool choosesPieces(const scene::Scene& scene);
+
+// How the pieces that go are told of.
+struct DroppedVoxels {
+    BonePieces::See see = {};  // gets each voxel that goes
+    int scan_voxels = 1;       // voxels of the scan per voxel of the volume, per axis
+};
+// By smallest_piece_voxels, keep_pieces and drop_piece; `region` is empty without a volume.region. The remark
+// lists the largest pieces that were kept and that were dropped, with number, size and place. Throws
+// UserError if none would be left, or a number is of no piece.
+void dropPieces(const LoadedScene& loaded, VoxelVolume& volume, const IndexBox& region,
+                std::vector<std::string>& remarks, const DroppedVoxels& of_dropped = {});
+
+// Lists the largest pieces, one line each, with the numbers that volume.drop_piece takes.
+std::string listPieces(const VoxelVolume& volume);
 
 // The voxels of the scan that the scene's bone comes from; empty: its region lies elsewhere.
 IndexBox usedVoxels(const LoadedScene& loaded, const VolumeGeometry& scan);

@@ -10,8 +10,6 @@
 #include "haptic_server/core/tick/tick_budget.h"
 #include "haptic_server/laws/all_laws.h"
 #include "haptic_server/scene/setup/scanned_bone.h"
-#include "haptic_server/scene/setup/scene_effects.h"
-#include "haptic_server/scene/setup/scene_materials.h"
 #include "haptic_server/scene/setup/scene_shapes.h"
 #include "haptic_server/scene/setup/scene_task.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/config/scene_file.h"
-#include "haptic_server/assessment/product/breach_monitor.h"
+#include "haptic_server/assessment/product/breach.h"
 #include "haptic_server/core/bone/bone_model.h"
 #include "haptic_server/core/tick/tick_config.h"
 #include "haptic_server/core/volume/surroundings.h"

@@ -1,10 +1,23 @@
 // A scene's shapes in SI: of tools in T, of zones in W. It is for start-up only.
 #pragma once
 
+#include <string>
+#include <vector>
+
+#include "common/config/scene_file.h"
 #include "common/config/scene_geometry.h"
 #include "haptic_server/core/tool/tool_shape.h"
+#include "haptic_server/core/volume/index_box.h"
+#include "haptic_server/core/volume/raw_volume.h"
 
 namespace bonemill {
+
+// Which voxels a zone's shapes hold: one byte per voxel of the volume, x fastest: 1 where its centre is
+// inside one of the shapes. `path` is their field in the scene. Throws UserError for a shape that is no
+// solid.
+std::vector<uint8_t> voxelsInside(const LoadedScene& loaded,
+                                  const google::protobuf::RepeatedPtrField<scene::Task::Shape>& shapes,
+                                  const VolumeGeometry& geometry, const std::string& path);
 
 // `Shape` is a message with these four kinds; any other is taken for a sphere.
 template <class Shape>

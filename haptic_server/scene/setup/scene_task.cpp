@@ -1,17 +1,26 @@
 #include "haptic_server/scene/setup/scene_task.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/config/scene_geometry.h"
+#include "common/config/scene_tools.h"
 #include "common/text/hex_text.h"
 #include "haptic_server/scans/import/import_volume.h"
-#include "haptic_server/scene/setup/zone_shapes.h"
+#include "haptic_server/scene/setup/scene_materials.h"
+#include "haptic_server/scene/setup/scene_shapes.h"
 #include "haptic_server/scene/trajectory/trajectory_reader.h"
 
 namespace bonemill {
 namespace {
+
+std::vector<bool> areProtectedOf(const scene::Scene& scene) {
+    std::vector<bool> are_protected;
+    for (const scene::Material& material : scene.material()) are_protected.push_back(material.is_protected());
+    return are_protected;
+}
 
 using ZoneShapes = google::protobuf::RepeatedPtrField<scene::Task::Shape>;
 
@@ -213,6 +222,30 @@ class TaskReader {
 };
 
 }  // namespace
+
+TechniqueScene techniqueSceneOf(const scene::Scene& scene) {
+    return {.recorded = recordedEffectsOf(scene.effects()),
+            .materials = materialNamesOf(scene),
+            .are_protected = areProtectedOf(scene),
+            .tools = toolNamesOf(scene),
+            .force_limit = scene.assessment().force_limit_n()};
+}
+
+// Bone that the burr touches hides nothing: the line of sight ends before it.
+std::function<std::unique_ptr<Technique>()> techniqueMaker(const scene::Scene& scene,
+                                                           const Simulation& simulation) {
+    std::vector<double> margins;
+    for (const SceneTool& tool : simulation.tools)
+        margins.push_back(tool.burr.radius + simulation.bone->volume.spacing().norm());
+    const VoxelVolume& volume = simulation.bone->volume;
+    const auto is_hidden = [&volume, margins](const Eigen::Vector3d& p_eye_W, const Eigen::Vector3d& p_burr_W,
+                                              uint32_t tool) {
+        return isHidden(volume, p_eye_W, p_burr_W, margins[std::min(size_t(tool), margins.size() - 1)]);
+    };
+    return [described = techniqueSceneOf(scene), is_hidden] {
+        return std::make_unique<Technique>(described, is_hidden);
+    };
+}
 
 std::shared_ptr<const JudgedTask> judgedTaskOf(const LoadedScene& loaded, const VoxelVolume& scanned,
                                                std::shared_ptr<const BoneProperties> properties) {

@@ -2,21 +2,37 @@
 
 #include <spdlog/fmt/chrono.h>
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <ctime>
 #include <thread>
 
 #include "common/base/units.h"
+#include "common/base/user_error.h"
 #include "common/dds/endpoint.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {
 namespace {
 
+using namespace std::chrono_literals;
+
+constexpr auto kLookForOthers = 300ms, kLookForSecuredOthers = 1500ms;  // who must prove itself takes longer
 constexpr size_t kLongestStatus = 1 << 20;
 
 }  // namespace
+
+PublisherOptions soleServerOf(uint32_t domain, uint32_t session, const dds::NetworkOptions& network) {
+    const auto patience = network.secure.empty() ? kLookForOthers : kLookForSecuredOthers;
+    if (const auto other = findOtherServer(dds::Participant(domain), session, patience))
+        throw UserError(refusalText(*other, domain, session));
+    if (dds::isOpenToOthers(network))
+        spdlog::warn(
+            "anyone in this network can watch this session and command it; --secure closes it "
+            "(docs/lab/security.md)");
+    return {.domain = domain, .session = session, .epoch = 0, .secure = network.secure};
+}
 
 std::string printableName(std::string name) {
     constexpr size_t kLongest = 80;

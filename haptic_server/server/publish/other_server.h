@@ -3,10 +3,13 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
 
+#include "common/dds/network.h"
 #include "common/dds/participant.h"
+#include "haptic_server/server/publish/publisher.h"
 
 namespace bonemill {
 
@@ -25,5 +28,9 @@ std::string printableName(std::string name);
 
 // Says who has the session, since when, and what to do.
 std::string refusalText(const OtherServer& other, uint32_t domain, uint32_t session);
+
+// What a server asks of the network before it shows anything: joins the domain for a moment. Throws UserError
+// if the session has a server already; says in the log if anyone in the network can join in.
+PublisherOptions soleServerOf(uint32_t domain, uint32_t session, const dds::NetworkOptions& network);
 
 }  // namespace bonemill

@@ -2,11 +2,9 @@
 
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <chrono>
 #include <utility>
 
-#include "common/rt/clock.h"
 #include "haptic_server/server/publish/other_server.h"
 
 namespace bonemill {

@@ -7,6 +7,7 @@
 // model on every client.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <set>
@@ -19,14 +20,36 @@
 #include "common/dds/node_digest.h"
 #include "common/geometry/node_mesh.h"
 #include "common/mesh_codec/mesh_codec.h"
+#include "common/rt/clock.h"
 #include "common/rt/latency_histogram.h"
 #include "haptic_server/core/telemetry/tick_record.h"
 #include "haptic_server/server/publish/command_inbox.h"
-#include "haptic_server/server/publish/proven_senders.h"
 #include "haptic_server/server/publish/trainee_eye.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {
+
+// Says how much may be written now, so that the mean stays below a rate. It is for one thread.
+class ByteBudget {
+  public:
+    static constexpr double kBurst_s = 0.05;  // of saved-up allowance at most
+
+    explicit ByteBudget(double bytes_per_s) : bytes_per_s_(bytes_per_s) {}
+
+    // It is negative after more was spent than there was, for a whole group may be larger than what is left.
+    int64_t available(int64_t now_ns) {
+        if (last_ns_ != 0) allowance_ += bytes_per_s_ * secondsOfNs(now_ns - last_ns_);
+        allowance_ = std::min(allowance_, bytes_per_s_ * kBurst_s);
+        last_ns_ = now_ns;
+        return int64_t(allowance_);
+    }
+    void spend(size_t bytes) { allowance_ -= double(bytes); }
+
+  private:
+    double bytes_per_s_;
+    double allowance_ = 0;
+    int64_t last_ns_ = 0;
+};
 
 struct PublisherOptions {
     uint32_t domain = 0;   // DDS domain, 0 to dds::kMaxDomain

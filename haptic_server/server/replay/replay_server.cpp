@@ -13,11 +13,10 @@
 #include "common/rt/stop_signals.h"
 #include "common/text/foreign_text.h"
 #include "haptic_server/recording/rerun/verify_journal.h"
-#include "haptic_server/scene/setup/scene_effects.h"
 #include "haptic_server/scene/setup/scene_materials.h"
+#include "haptic_server/server/publish/other_server.h"
 #include "haptic_server/server/replay/player.h"
 #include "haptic_server/server/session/show_session.h"
-#include "haptic_server/server/session/sole_server.h"
 #include "haptic_server/surface/mesh/mesh_rounds.h"
 
 namespace bonemill {

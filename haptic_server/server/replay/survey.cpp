@@ -8,7 +8,6 @@
 
 #include "common/base/units.h"
 #include "common/rt/clock.h"
-#include "haptic_server/recording/rerun/moment.h"
 
 namespace bonemill {
 namespace {

@@ -1,18 +1,88 @@
 // The tick sees the device of a live session through this: samples come from shared memory and wrenches go
-// there.
+// there, at the pace at which ticks may run. The classes are for one thread, and RT-safe; times are
+// CLOCK_MONOTONIC ns.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <utility>
 
 #include "common/geometry/hand_space.h"
 #include "common/ipc/device_link.h"
 #include "common/ipc/stale_ramp.h"
+#include "common/rt/clock.h"
 #include "common/rt/seqlock.h"
+#include "haptic_server/core/telemetry/tick_record.h"
 #include "haptic_server/core/tick/tick_io.h"
-#include "haptic_server/server/session/lived_periods.h"
-#include "haptic_server/server/session/tick_pace.h"
 
 namespace bonemill {
+
+// Says how many periods a tick lives through: a period in which no tick ran comes with the next one, so that
+// what happens at a rate per time (milling, heat, the spindle) is not late on a machine that is.
+class LivedPeriods {
+  public:
+    explicit LivedPeriods(int64_t period_ns) noexcept
+        : period_ns_(period_ns), most_(std::max<int64_t>(1, kMaxNs / period_ns)) {}
+
+    // A tick begins. On average the periods are as many as have passed, but for what a tick may not make up
+    // for, which is lost.
+    int begin(int64_t start_ns) noexcept {
+        const int64_t ahead = kMaxAhead * period_ns_;
+        lived_until_ns_ = std::clamp(lived_until_ns_, start_ns - most_ * period_ns_, start_ns + ahead);
+        const int64_t late = std::max<int64_t>(0, start_ns - lived_until_ns_) / period_ns_;
+        const int64_t periods = is_first_ ? 1 : std::clamp<int64_t>(late, 1, most_);
+        lived_until_ns_ = is_first_ ? start_ns : lived_until_ns_ + periods * period_ns_;
+        is_first_ = false;
+        return int(periods);
+    }
+
+    static constexpr int64_t kMaxNs = 20'000'000;  // more is not made up for: a hand cannot follow it
+
+  private:
+    static constexpr int64_t kMaxAhead = 2;  // periods that ticks which came too early may have lived
+
+    int64_t period_ns_, most_;
+    int64_t lived_until_ns_ = 0;
+    bool is_first_ = true;
+};
+
+// Says how early the next tick may start: one lives through a fixed time, so that ticks which come faster
+// than their period would mill and move too fast. Two ticks are at least half a period apart, so that one
+// that came late is soon caught up with; on average they are a period apart, but for the share by which
+// another machine's clock may be faster. After its work a tick rests for a quarter as long: a thread with
+// real-time priority that never rests is stopped by the kernel for some 50 ms in every second
+// (sched_rt_runtime_us), and the force goes to zero.
+class TickPace {
+  public:
+    explicit TickPace(int64_t period_ns) noexcept : period_ns_(period_ns) {}
+
+    void begin(int64_t start_ns) noexcept {
+        last_start_ns_ = start_ns;
+        due_ns_ =
+            std::max(due_ns_, start_ns - kMaxCaughtUp * period_ns_) + period_ns_ - period_ns_ / kFasterClock;
+    }
+    // The work of the tick that has begun is done.
+    void end(int64_t end_ns) noexcept { rested_ns_ = end_ns + (end_ns - last_start_ns_) / kWorkPerRest; }
+    int64_t earliestNs() const noexcept {
+        return std::max({last_start_ns_ + period_ns_ / 2, due_ns_, rested_ns_});
+    }
+    // Tells whether an instant is too early because too many ticks came before it, and not just because the
+    // last one was late.
+    bool isTooFast(int64_t now_ns) const noexcept { return now_ns < due_ns_; }
+
+  private:
+    static constexpr int64_t kMaxCaughtUp = 2;   // periods that silence leaves to be made up for
+    static constexpr int64_t kFasterClock = 64;  // 1/64, far more than crystals differ by
+    static constexpr int64_t kWorkPerRest = 4;   // the loop takes no more than 80 % of its processor
+
+    int64_t period_ns_;
+    int64_t last_start_ns_ = INT64_MIN / 2;
+    int64_t due_ns_ = INT64_MIN / 2;
+    int64_t rested_ns_ = INT64_MIN / 2;
+};
 
 struct DeviceLinkIoConfig {
     int64_t period_ns = 1'000'000;
@@ -27,7 +97,13 @@ struct DeviceLinkIoConfig {
 // All members but the constructor and stop() belong to the tick thread and are RT-safe; read() waits.
 class DeviceLinkIo final : public TickIo {
   public:
-    DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link);
+    DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link)
+        : config_(config),
+          link_(link),
+          ramp_(config.ramp),
+          R_DW_(config.X_WD.rotation.conjugate()),
+          pace_(config.period_ns),
+          lived_(config.period_ns) {}
 
     // Before the first read(): DeviceLink::announceScene() has given the scene this number.
     void beginScene(uint32_t revision) noexcept { config_.scene_revision = revision; }
@@ -36,9 +112,51 @@ class DeviceLinkIo final : public TickIo {
     // by itself: two periods after the last tick, and every period once the device counts as stale. Before
     // the very first sample there is nothing to simulate: it only waits. False after stop(), and when the
     // device has said goodbye while ends_with_device is set.
-    bool read(DeviceInput& input) noexcept override;
-    int64_t write(const Wrench& wrench_hand_W) noexcept override;
-    int64_t now() noexcept override;
+    bool read(DeviceInput& input) noexcept override {
+        if (first_start_ns_ == 0 && !waitForFirstSample()) return false;
+        if (is_stopping_.load(std::memory_order_relaxed) || hasDeviceLeft()) return false;
+        const bool is_first = first_start_ns_ == 0;
+        const int64_t due = is_first ? 0 : waitForDue();
+        const int64_t start = monotonicNowNs();
+        input.stale_factor = ramp_.update(start, sample_stamp_ns_) * fadedTo(start);
+        is_stale_ = ramp_.isStale();
+        input.is_stale = is_stale_;
+        input.X_WT_device = X_WT_device_;
+        input.is_repeated = sequence_ == told_sequence_;
+        told_sequence_ = sequence_;
+        input.buttons = fade_start_ns_ == 0 ? buttons_ : 0;  // nobody mills what resists no more
+        input.placements = placements_;
+        input.device = device_;
+        input.other_device = takeCapabilities() ? &capabilities_ : nullptr;
+        input.faults = std::exchange(faults_, 0);
+        if (is_first) first_start_ns_ = start;
+        input.t_s = secondsOfNs(start - first_start_ns_);
+        input.start_ns = start;
+        input.deadline_ns = start + config_.period_ns;
+        input.wakeup_latency_ns = is_first ? 0 : std::max<int64_t>(0, start - due);
+        input.periods = lived_.begin(start);
+        last_start_ns_ = start;
+        pace_.begin(start);
+        return true;
+    }
+    int64_t write(const Wrench& wrench_hand_W) noexcept override {
+        const Wrench wrench_hand_D = wrench_hand_W.rotatedBy(R_DW_);
+        WrenchCommand command{};
+        command.stamp_ns = monotonicNowNs();
+        Eigen::Map<Eigen::Vector3d>(command.f_hand_D) = wrench_hand_D.force;
+        Eigen::Map<Eigen::Vector3d>(command.t_hand_D) = wrench_hand_D.torque;
+        command.answers_sequence = sequence_;
+        command.reset_orders = reset_orders_.load(std::memory_order_relaxed);
+        command.scene_revision = config_.scene_revision;
+        link_.writeCommand(command);
+        if (is_faded_) has_faded_.store(true, std::memory_order_relaxed);
+        return monotonicNowNs();
+    }
+    int64_t now() noexcept override {
+        const int64_t now = monotonicNowNs();
+        pace_.end(now);
+        return now;
+    }
 
     // Any thread may order the force to fade, as before another scene; it does not come back.
     void fadeOut() noexcept { is_fading_.store(true, std::memory_order_relaxed); }
@@ -70,15 +188,104 @@ class DeviceLinkIo final : public TickIo {
     }
 
   private:
-    bool waitForFirstSample() noexcept;
-    double fadedTo(int64_t now_ns) noexcept;  // 1 to 0
+    // A healthy device is given this many periods before the tick goes on without it.
+    static constexpr int64_t kPatiencePeriods = 2;
+    static void sleepUntil(int64_t instant_ns) noexcept {
+        const timespec instant = timespecOfNs(instant_ns);
+        while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &instant, nullptr) == EINTR) {
+        }
+    }
+
+    bool waitForFirstSample() noexcept {
+        while (sequence_ == 0) {
+            if (is_stopping_.load(std::memory_order_relaxed) || hasDeviceLeft()) return false;
+            const int64_t now = monotonicNowNs();
+            link_.beat(now);
+            if (link_.waitForSample(now + kStopCheckNs) && !takeSample()) sleepUntil(now + config_.period_ns);
+        }
+        return true;
+    }
+    // 1 to 0
+    double fadedTo(int64_t now_ns) noexcept {
+        if (!is_fading_.load(std::memory_order_relaxed)) {
+            has_faded_.store(false, std::memory_order_relaxed);
+            return 1;
+        }
+        if (fade_start_ns_ == 0) fade_start_ns_ = now_ns;
+        const double whole_ns = double(std::max(kFadeNs, config_.ramp.ramp_down_ns));
+        const double factor = std::max(0.0, 1 - double(now_ns - fade_start_ns_) / whole_ns);
+        is_faded_ = factor == 0;
+        return factor;
+    }
     // Waits for the next tick and returns the instant that should have woken it.
-    int64_t waitForDue() noexcept;
+    int64_t waitForDue() noexcept {
+        const int64_t patience = is_stale_ ? config_.period_ns : kPatiencePeriods * config_.period_ns;
+        const int64_t deadline = last_start_ns_ + patience;
+        link_.waitForSample(deadline);
+        const int64_t held_until = holdBack();
+        if (!takeSample()) return std::max(deadline, held_until);
+        // The stamp comes from another process: never believe one from before the last tick or from the
+        // future.
+        const int64_t earliest = std::max(last_start_ns_, held_until);
+        return std::clamp(sample_stamp_ns_, earliest, std::max(earliest, monotonicNowNs()));
+    }
     // Sleeps until a tick may start. Returns that instant, or 0 if it has come already.
-    int64_t holdBack() noexcept;
-    bool takeSample() noexcept;        // false: there is none that is new and plausible
-    bool takeCapabilities() noexcept;  // likewise, for another device
-    void refuse() noexcept;
+    int64_t holdBack() noexcept {
+        const int64_t now = monotonicNowNs(), earliest = pace_.earliestNs();
+        if (now >= earliest) return 0;
+        if (pace_.isTooFast(now)) {
+            early_.fetch_add(1, std::memory_order_relaxed);
+            faults_ |= kFaultEarlySamples;
+        }
+        sleepUntil(earliest);
+        return earliest;
+    }
+    // false: there is none that is new and plausible
+    bool takeSample() noexcept {
+        DeviceSample sample;
+        if (!link_.readSample(sample) || sample.sequence == sequence_) return false;
+        if (sample.scene_revision != config_.scene_revision) {
+            if (sample.flags & kDeviceFlagLeaving) has_device_left_.store(true, std::memory_order_relaxed);
+            return false;
+        }
+        if (!isPlausible(sample) || (has_capabilities_ && !isWithinReach(sample, capabilities_))) {
+            refuse();
+            return false;
+        }
+        const Eigen::Map<const Eigen::Vector3d> p_DT(sample.p_DT);
+        const Eigen::Quaterniond q_DT(sample.q_DT[0], sample.q_DT[1], sample.q_DT[2], sample.q_DT[3]);
+        X_WT_device_ = config_.X_WD * config_.hand_space.poseAtTool({p_DT, q_DT.normalized()});
+        buttons_ = sample.buttons;
+        placements_ = sample.placements;
+        device_ = {sample.state, sample.stop_cause, sample.fault_code, sample.flags};
+        sequence_ = sample.sequence;
+        if (sample.flags & kDeviceFlagLeaving) has_device_left_.store(true, std::memory_order_relaxed);
+        sample_stamp_ns_ = sample.stamp_ns;
+        return true;
+    }
+    // likewise, for another device
+    // A daemon may say again and again what its device can do; the tick hears of it when that is something
+    // else.
+    bool takeCapabilities() noexcept {
+        DeviceCapabilities capabilities;
+        if (!link_.readCapabilities(capabilities)) return false;
+        if (!isPlausible(capabilities)) {
+            refuse();
+            return false;
+        }
+        // Equal numbers with other bytes are told once more, which does no harm.
+        // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
+        if (has_capabilities_ && std::memcmp(&capabilities, &capabilities_, sizeof capabilities) == 0)
+            return false;
+        capabilities_ = capabilities;
+        has_capabilities_ = true;
+        shown_.write(capabilities);
+        return true;
+    }
+    void refuse() noexcept {
+        implausible_.fetch_add(1, std::memory_order_relaxed);
+        faults_ |= kFaultImplausibleDevice;
+    }
 
     DeviceLinkIoConfig config_;
     DeviceLink& link_;

@@ -1,22 +1,14 @@
 #include "haptic_server/server/session/show_session.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <thread>
 
 #include "common/base/units.h"
 #include "common/commands/command_text.h"
 #include "common/config/scene_geometry.h"
-#include "common/rt/clock.h"
 #include "haptic_server/core/telemetry/fault_names.h"
 #include "haptic_server/scene/setup/scene_materials.h"
-#include "haptic_server/server/session/shown_device.h"
-#include "haptic_server/server/session/shown_zones.h"
 #include "haptic_server/surface/mesh/structure_mesher.h"
-#include "haptic_server/surface/mesh/surroundings_mesher.h"
 
 namespace bonemill {
 namespace {
@@ -53,17 +45,11 @@ void fillTool(const TriangleSurface& surface, topics::TriangleMesh* out) {
     for (const uint32_t index : surface.indices) out->add_indices(index);
 }
 
+// Both have the kinds in one order; AUTOMATIC is none that a tool has.
 topics::SceneInfo::Handpiece shownHandpiece(scene::Tool::Handpiece handpiece) {
-    switch (handpiece) {
-        case scene::Tool::STRAIGHT:
-            return topics::SceneInfo::STRAIGHT;
-        case scene::Tool::CONTRA_ANGLE:
-            return topics::SceneInfo::CONTRA_ANGLE;
-        case scene::Tool::DRILL_GUIDE:
-            return topics::SceneInfo::DRILL_GUIDE;
-        default:
-            return topics::SceneInfo::NO_HANDPIECE;
-    }
+    static_assert(scene::Tool::DRILL_GUIDE - scene::Tool::NONE == topics::SceneInfo::DRILL_GUIDE &&
+                  scene::Tool::STRAIGHT - scene::Tool::NONE == topics::SceneInfo::STRAIGHT);
+    return topics::SceneInfo::Handpiece(std::max(0, handpiece - scene::Tool::NONE));
 }
 
 // The camera has to show this box of all leaves with surface, in V.

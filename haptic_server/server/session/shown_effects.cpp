@@ -2,15 +2,50 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "common/base/units.h"
 #include "common/config/viewer_effects.h"
 #include "haptic_server/core/effects/burr_probes.h"
 #include "haptic_server/core/effects/effect_figures.h"
-#include "haptic_server/scene/setup/scene_effects.h"
+#include "haptic_server/scene/setup/scene_materials.h"
 
 namespace bonemill {
 namespace {
+
+constexpr double kMaxShown = 1e6;  // viewers refuse larger numbers
+
+// The name comes from another process, and messages hold UTF-8.
+std::string readableName(const char* name) {
+    std::string shown;
+    for (const char* c = name; *c != 0; ++c) shown += *c >= ' ' && *c <= '~' ? *c : '?';
+    return shown;
+}
+
+bool areEverShown(const scene::Task& task) {
+    return !task.exam() && task.feedback() != scene::Task::NEVER;
+}
+
+// A context has no colour unless the scene gives it one.
+bool hasColour(const scene::Task::Zone& zone) {
+    return zone.has_color() || zone.role() != scene::Task::CONTEXT;
+}
+
+scene::Color colourOf(const scene::Task::Zone& zone) {
+    if (zone.has_color()) return zone.color();
+    struct OfRole {
+        scene::Task::Role role;
+        double red, green, blue;
+    };
+    const OfRole kColours[] = {
+        {scene::Task::TARGET, 0.30, 0.72, 0.35},           {scene::Task::LEEWAY_SIDES, 0.95, 0.85, 0.25},
+        {scene::Task::LEEWAY_BOTTOM, 0.95, 0.65, 0.15},    {scene::Task::CONTAINER_SIDES, 0.90, 0.35, 0.15},
+        {scene::Task::CONTAINER_BOTTOM, 0.80, 0.12, 0.12}, {zone.role(), 0.75, 0.20, 0.65}};  // of any other
+    const OfRole& of = *std::ranges::find(kColours, zone.role(), &OfRole::role);
+    scene::Color colour;
+    colour.set_red(of.red), colour.set_green(of.green), colour.set_blue(of.blue);
+    return colour;
+}
 
 constexpr size_t kMaxWarnings = 32;  // in a status
 
@@ -37,6 +72,61 @@ bool isAnyListed(const scene::Effects& effects) {
 }
 
 }  // namespace
+
+topics::Device shownDevice(const TickRecord& record, const DeviceCapabilities* capabilities) {
+    const DeviceReport& report = record.device;
+    topics::Device device;
+    device.set_state(report.state);
+    device.set_stop_cause(report.stop_cause);
+    device.set_fault_code(report.fault_code);
+    device.set_is_simulated(report.flags & kDeviceFlagSimulated);
+    device.set_is_force_limited(report.flags & kDeviceFlagForceLimited);
+    device.set_is_enabled(report.flags & kDeviceFlagEnabled);
+    device.set_force_waits(report.flags & kDeviceFlagForceWaits);
+    device.set_coupling_share(record.coupling_share);
+    device.set_rotation_share(record.rotation_share);
+    if (!capabilities) return device;
+    device.set_name(readableName(capabilities->name));
+    device.set_kind(capabilities->kind);
+    device.set_abilities(capabilities->abilities);
+    device.set_max_force_n(std::min(capabilities->max_force, kMaxShown));
+    device.set_max_torque_nmm(std::min(capabilities->max_torque * kPerMilli, kMaxShown));
+    return device;
+}
+
+std::string deviceText(const DeviceCapabilities& capabilities) {
+    const auto most = [](bool is_able, double value, const char* unit, const char* none) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.3g %s", value, unit);
+        return std::string(is_able && value > 0 ? text : none);
+    };
+    return readableName(capabilities.name) + ": " +
+           most(capabilities.abilities & kAbilityForce, capabilities.max_force, "N", "no force") + ", " +
+           most(capabilities.abilities & kAbilityTorque, capabilities.max_torque * kPerMilli, "N·mm",
+                "no torque");
+}
+
+void describeZones(const scene::Scene& scene, topics::SceneInfo& info) {
+    if (!areEverShown(scene.assessment())) return;
+    for (const scene::Task::Zone& zone : scene.assessment().zone()) {
+        scene::Material& shown = *info.add_materials();
+        shown.set_name(zone.name());
+        if (hasColour(zone)) *shown.mutable_color() = colourOf(zone);
+    }
+}
+
+std::optional<ZonePaint> zonePaintOf(const scene::Scene& scene, const JudgedTask* task,
+                                     const VoxelVolume& scanned) {
+    if (task == nullptr || task->zones.empty() || !areEverShown(scene.assessment())) return std::nullopt;
+    ZonePaint paint{.zones = task->map, .scanned = &scanned};
+    for (int n = 0; n < scene.assessment().zone_size(); ++n) {
+        const scene::Task::Zone& zone = scene.assessment().zone(n);
+        if (!hasColour(zone)) continue;
+        const auto id = uint8_t(scene.material_size() + n + 1);
+        (zone.role() == scene::Task::TARGET ? paint.when_left : paint.when_gone)[size_t(n) + 1] = id;
+    }
+    return paint;
+}
 
 void describeToViewers(const scene::Scene& scene, topics::SceneInfo& info) {
     const scene::Effects effects = viewerEffectsOf(scene.effects());

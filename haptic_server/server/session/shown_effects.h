@@ -1,20 +1,39 @@
-// Viewers are told this of a scene's effects and materials. Used at start-up and by the
-// publisher thread; allocates.
+// Viewers are told this of a scene's effects, materials and zones, and of the device. Used at start-up and by
+// normal threads; allocates.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "haptic_server/assessment/product/judged_task.h"
 #include "haptic_server/core/telemetry/effect_figure.h"
 #include "haptic_server/core/telemetry/effect_record.h"
+#include "haptic_server/core/telemetry/tick_record.h"
 #include "haptic_server/core/tool/burr.h"
 #include "haptic_server/recording/statistics/effect_statistics.h"
-#include "haptic_server/recording/statistics/event_sum.h"
+#include "haptic_server/surface/mesh/zone_paint.h"
 #include "proto/scene.pb.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {
+
+// What clients are shown of the device; `capabilities` is null as long as no device has told of itself.
+topics::Device shownDevice(const TickRecord& record, const DeviceCapabilities* capabilities);
+
+// Says what the session adapts to: "Touch: 3.3 N, no torque".
+std::string deviceText(const DeviceCapabilities& capabilities);
+
+// Viewers see the zones of a task as materials: they have their colours beside those of the scene's
+// materials, and vertices their numbers. Adds the zones behind the scene's materials, if viewers may ever see
+// them.
+void describeZones(const scene::Scene& scene, topics::SceneInfo& info);
+
+// What is gone of leeway, container, protected and context zones shows, and what is left of targets. None
+// where viewers never see it. `scanned` must outlive it.
+std::optional<ZonePaint> zonePaintOf(const scene::Scene& scene, const JudgedTask* task,
+                                     const VoxelVolume& scanned);
 
 // Says what viewers have to know of effects and materials, and nothing if the scene lists none.
 void describeToViewers(const scene::Scene& scene, topics::SceneInfo& info);

@@ -1,5 +1,6 @@
 // One attempt as it is kept: whose it is (a pseudonym, never a name that the program could know for one),
-// what it was about, and how it was judged. Plain values.
+// what it was about, and how it was judged; as JSON, one file per attempt, and as a statement for learning
+// record stores. Plain values; the functions are pure and allocate, any thread may call them.
 #pragma once
 
 #include <cstdint>
@@ -26,5 +27,20 @@ std::string utcText(const AttemptResult& result);
 // 20261125T015309Z_P07_3, a file's name without its ending: the letters and digits of ASCII of a pseudonym,
 // and _ for all others.
 std::string fileStemOf(const AttemptResult& result);
+
+inline constexpr size_t kMaxResult = size_t(16) << 20;  // bytes
+
+std::string resultJson(const AttemptResult& result);
+
+// The text may be a stranger's. Throws UserError, which names the file, for what is no result of this kind:
+// JSON of another shape, numbers that are not finite where they must be, more figures or rows than an attempt
+// can have.
+AttemptResult parseResult(const std::string& text, const std::string& file);
+
+// An attempt as a statement for learning record stores: xAPI 1.0.3, one JSON object on one line. The actor is
+// the pseudonym. The verb is passed or failed where the task has gates, else completed; a score is there
+// where the teacher gave weights. The statement's id is a UUID of whose attempt at what it is and when
+// (version 5), so that the same attempt told twice is one.
+std::string xapiStatement(const AttemptResult& result);
 
 }  // namespace bonemill

@@ -8,7 +8,6 @@
 
 #include "haptic_server/teaching/attempt_report/attempt_result.h"
 #include "haptic_server/teaching/attempt_report/comparison.h"
-#include "haptic_server/teaching/attempt_report/learning_curve.h"
 
 namespace bonemill {
 

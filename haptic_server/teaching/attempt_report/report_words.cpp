@@ -4,25 +4,11 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "haptic_server/assessment/measures/written_unit.h"
+#include "common/text/text_encoding.h"
+#include "haptic_server/assessment/measures/figure.h"
 
 namespace bonemill {
 namespace {
-
-// How many bytes the letter of UTF-8 has that begins there; 0: it is none.
-size_t lettersBytes(std::string_view text, size_t at) {
-    const auto byte = [&](size_t i) { return i < text.size() ? uint8_t(text[i]) : uint8_t(0); };
-    const uint8_t first = byte(at);
-    if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
-    const size_t count = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
-    if (first < 0xc2 || first > 0xf4) return 0;
-    for (size_t i = 1; i < count; ++i)
-        if ((byte(at + i) & 0xc0) != 0x80) return 0;
-    const bool is_overlong = (first == 0xe0 && byte(at + 1) < 0xa0) || (first == 0xf0 && byte(at + 1) < 0x90);
-    const bool is_no_letter =
-        (first == 0xed && byte(at + 1) > 0x9f) || (first == 0xf4 && byte(at + 1) > 0x8f);
-    return is_overlong || is_no_letter || (first == 0xc2 && byte(at + 1) < 0xa0) ? 0 : count;
-}
 
 std::string withoutZeros(std::string text) {
     if (text.find('.') == std::string::npos) return text;
@@ -36,7 +22,7 @@ std::string withoutZeros(std::string text) {
 std::string escaped(std::string_view text) {
     std::string out;
     for (size_t at = 0; at < text.size();) {
-        const size_t bytes = lettersBytes(text, at);
+        const size_t bytes = letterBytes(text, at);
         if (bytes == 0) {
             out += '?';
             ++at;

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "common/base/units.h"
+
 namespace bonemill {
 
 // Text as HTML and SVG may hold it, in elements and in quoted attributes. What is no UTF-8, or a control
@@ -18,5 +20,11 @@ std::string clockText(double t_s);
 // For attributes of SVG: two decimals at most.
 std::string coordinate(double value);
 std::string base64(std::string_view bytes);
+
+// What stands below the picture of over- and under-cut; `scale` in m: from there on colours are full.
+inline std::string deviationCaption(double scale) {
+    return "Red: cut too far. Blue: not far enough. Full colour from " +
+           valueText(scale * kPerMillimetre, "mm") + " on.";
+}
 
 }  // namespace bonemill

@@ -5,14 +5,88 @@
 #include <cstdio>
 #include <ctime>
 #include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
 
 #include "common/files/line_file.h"
 #include "common/files/whole_file.h"
-#include "haptic_server/teaching/attempt_report/result_json.h"
-#include "haptic_server/teaching/attempt_report/xapi.h"
+#include "haptic_server/teaching/attempt_report/attempt_result.h"
 
 namespace bonemill {
 namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kMaxStatements = size_t(256) << 20;
+
+// The text of a file of at most `most` bytes.
+std::string readBounded(const fs::path& file, size_t most) {
+    std::ifstream input(file, std::ios::binary);
+    std::string text(most + 1, '\0');
+    input.read(text.data(), std::streamsize(text.size()));
+    const auto count = size_t(input.gcount());
+    if (input.bad() || (!input.is_open())) throw UserError(file.string() + ": cannot be read");
+    if (count > most) throw UserError(file.string() + ": has more than " + std::to_string(most) + " bytes");
+    text.resize(count);
+    return text;
+}
+
+// Those whose names have this part.
+std::vector<fs::path> resultFiles(const fs::path& folder, const std::string& part) {
+    std::vector<fs::path> files;
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+        const fs::path& path = entry.path();
+        if (path.extension() == ".json" && path.filename().string().find(part) != std::string::npos &&
+            entry.is_regular_file(error))
+            files.push_back(path);
+    }
+    return files;
+}
+
+void eachResult(const fs::path& class_folder,
+                const std::function<void(const fs::path&, const AttemptResult&)>& see) {
+    const ResultFolder folder(class_folder);
+    for (const fs::path& part : {folder.results(), folder.experts()}) {
+        std::vector<fs::path> files = resultFiles(part, "");
+        std::ranges::sort(files);
+        for (const fs::path& file : files) {
+            try {
+                see(file, parseResult(readBounded(file, kMaxResult), file.string()));
+            } catch (const UserError&) {
+                continue;  // no person's result
+            }
+        }
+    }
+}
+
+void deleteFile(const fs::path& file, Forgotten& forgotten) {
+    std::error_code error;
+    if (fs::remove(file, error)) forgotten.deleted.push_back(file.string());
+    if (error) forgotten.problems.push_back(file.string() + ": cannot be deleted: " + error.message());
+}
+
+bool isStatementOf(const std::string& line, const std::string& pseudonym) {
+    const auto json = nlohmann::json::parse(line, nullptr, false);
+    const nlohmann::json::json_pointer name("/actor/account/name");
+    return json.is_object() && json.contains(name) && json.at(name) == pseudonym;
+}
+
+void forgetStatements(const fs::path& path, const std::string& pseudonym, Forgotten& forgotten) {
+    std::error_code error;
+    if (!fs::is_regular_file(path, error)) return;
+    try {
+        const LineFile file(path);
+        if (file.size() > off_t(kMaxStatements))
+            throw UserError(path.string() + ": is too large; delete the person's lines by hand");
+        const size_t count =
+            file.removeLines([&](const std::string& line, bool) { return isStatementOf(line, pseudonym); });
+        if (count > 0)
+            forgotten.deleted.push_back(path.string() + ": " + std::to_string(count) + " statements");
+    } catch (const UserError& problem) {
+        forgotten.problems.emplace_back(problem.what());
+    }
+}
 
 namespace fs = std::filesystem;
 
@@ -47,6 +121,18 @@ void requireNoLink(const fs::path& path) {
 
 }  // namespace
 
+Forgotten forgetResults(const fs::path& class_folder, const std::string& pseudonym) {
+    Forgotten forgotten;
+    eachResult(class_folder, [&](const fs::path& file, const AttemptResult& result) {
+        if (result.pseudonym != pseudonym) return;
+        fs::path report = file;
+        deleteFile(report.replace_extension(".html"), forgotten);
+        deleteFile(file, forgotten);
+    });
+    forgetStatements(ResultFolder(class_folder).statements(), pseudonym, forgotten);
+    return forgotten;
+}
+
 std::string utcText(const AttemptResult& result) {
     return utc(result, "%Y-%m-%dT%H:%M:%SZ");
 }
@@ -54,17 +140,6 @@ std::string utcText(const AttemptResult& result) {
 std::string fileStemOf(const AttemptResult& result) {
     return utc(result, "%Y%m%dT%H%M%SZ") + '_' + inFileName(result.pseudonym) + '_' +
            std::to_string(result.number);
-}
-
-std::string readBounded(const fs::path& file, size_t most) {
-    std::ifstream input(file, std::ios::binary);
-    std::string text(most + 1, '\0');
-    input.read(text.data(), std::streamsize(text.size()));
-    const auto count = size_t(input.gcount());
-    if (input.bad() || (!input.is_open())) throw UserError(file.string() + ": cannot be read");
-    if (count > most) throw UserError(file.string() + ": has more than " + std::to_string(most) + " bytes");
-    text.resize(count);
-    return text;
 }
 
 void ResultFolder::write(const AttemptResult& result, std::vector<ReportPicture> pictures,
@@ -88,15 +163,8 @@ void ResultFolder::write(const AttemptResult& result, std::vector<ReportPicture>
 
 std::vector<AttemptResult> ResultFolder::read(const fs::path& folder, const std::string& scene_hash,
                                               const std::string& pseudonym) {
-    std::vector<fs::path> files;
-    std::error_code error;
-    const std::string part = pseudonym.empty() ? "" : '_' + inFileName(pseudonym) + '_';
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-        const fs::path& path = entry.path();
-        if (path.extension() == ".json" && path.filename().string().find(part) != std::string::npos &&
-            entry.is_regular_file(error))
-            files.push_back(path);
-    }
+    std::vector<fs::path> files =
+        resultFiles(folder, pseudonym.empty() ? "" : '_' + inFileName(pseudonym) + '_');
     std::ranges::sort(files, std::ranges::greater{});
     if (files.size() > kMaxRead) files.resize(kMaxRead);
     std::vector<AttemptResult> results;

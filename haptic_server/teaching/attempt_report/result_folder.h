@@ -12,6 +12,15 @@
 
 namespace bonemill {
 
+struct Forgotten {
+    std::vector<std::string> deleted;   // one line for people per file or entry
+    std::vector<std::string> problems;  // what could not be deleted, with its reason
+};
+
+// Deletes results, reports and statements of this pseudonym in the folders `results` and `experts` of a
+// class' folder, whatever the files' names are.
+Forgotten forgetResults(const std::filesystem::path& class_folder, const std::string& pseudonym);
+
 class ResultFolder {
   public:
     // `class_folder` is the class table's. The folder `results` in it is made with the first result; experts'
@@ -37,8 +46,5 @@ class ResultFolder {
   private:
     std::filesystem::path class_folder_;
 };
-
-// The text of a file of at most `most` bytes; throws UserError.
-std::string readBounded(const std::filesystem::path& file, size_t most);
 
 }  // namespace bonemill

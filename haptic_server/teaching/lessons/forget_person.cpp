@@ -8,7 +8,7 @@
 #include "common/base/user_error.h"
 #include "haptic_server/recording/journal/journal_file.h"
 #include "haptic_server/recording/journal/journal_reader.h"
-#include "haptic_server/teaching/attempt_report/forget.h"
+#include "haptic_server/teaching/attempt_report/result_folder.h"
 #include "haptic_server/teaching/lessons/class_table.h"
 
 namespace bonemill {

@@ -1,10 +1,11 @@
 // The scenes that people can choose: the scene files of some folders, as a list for viewers and for a
-// terminal.
+// terminal, and what was measured for each.
 //
 // It is for start-up: reads files, allocates. A file that cannot be a scene is listed with what is wrong with
 // it and never ends the program.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,19 @@
 #include "proto/topics.pb.h"
 
 namespace bonemill {
+
+// accuracy-report has measured this for a scene: the errors of each accuracy setting, by its name.
+struct AccuracyFigure {
+    double force_error_percent = 0;
+    double direction_error_deg = 0;
+};
+using AccuracyFigures = std::map<std::string, AccuracyFigure>;
+
+// `file` is what accuracy-report writes (accuracy.json). Throws UserError for any other file.
+AccuracyFigures readAccuracyFigures(const std::string& file);
+
+// The figures of a scene lie there if they were kept: beside the scene, X.textproto -> X.accuracy.json.
+std::string accuracyFiguresOf(const std::string& scene_file);
 
 struct ListedScene {
     topics::SceneChoice choice;

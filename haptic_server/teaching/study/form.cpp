@@ -10,6 +10,7 @@
 #include "common/base/user_error.h"
 #include "common/digest/digest.h"
 #include "common/files/require_file.h"
+#include "common/text/csv_text.h"
 
 namespace bonemill::study {
 namespace {
@@ -92,11 +93,6 @@ void checkScoring(const Form& form, const JsonObject& json) {
         }
 }
 
-std::string numberText(double value) {
-    char text[32];
-    return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
 std::string rangeText(const NumberRange& range) {
     return "a number from " + numberText(range.least) + " to " + numberText(range.most) +
            (range.step > 0 ? " in steps of " + numberText(range.step) : "");
@@ -113,21 +109,52 @@ size_t lettersOf(const std::string& text) {
         std::count_if(text.begin(), text.end(), [](char c) { return (uint8_t(c) & 0xc0) != 0x80; }));
 }
 
+std::optional<double> valueOf(const Values& values, const std::string& id) {
+    const auto found = values.find(id);
+    if (found == values.end() || !std::holds_alternative<double>(found->second)) return {};
+    return std::get<double>(found->second);
+}
+
+// The odd statements are in favour, the even ones against.
+std::vector<Score> susOf(const Form& form, const Values& values) {
+    double sum = 0;
+    bool is_odd = true;
+    for (const Item* item : form.items()) {
+        const std::optional<double> value = valueOf(values, item->id);
+        if (!value) return {};
+        sum += is_odd ? *value - 1 : 5 - *value;
+        is_odd = !is_odd;
+    }
+    return {{"sus", "SUS, 0 to 100", 2.5 * sum}};
+}
+
+std::vector<Score> nasaTlxOf(const Form& form, const Values& values) {
+    double sum = 0, ratings = 0, weighted = 0, weights = 0;
+    bool has_pairs = false;
+    for (const Item* item : form.items()) {
+        const std::optional<double> value = valueOf(values, item->id);
+        if (item->is_rating) {
+            if (!value) return {};
+            sum += *value;
+            ++ratings;
+            continue;
+        }
+        has_pairs = true;
+        for (const Option& option : item->options) {
+            const std::optional<double> rating = valueOf(values, option.counts_for);
+            if (!value || option.value != *value || !rating) continue;
+            weighted += *rating;
+            ++weights;
+        }
+    }
+    std::vector<Score> scores = {{"raw_tlx", "NASA-TLX, mean of the ratings, 0 to 100", sum / ratings}};
+    const double pairs = ratings * (ratings - 1) / 2;
+    if (has_pairs && weights == pairs)
+        scores.push_back({"weighted_tlx", "NASA-TLX, weighted, 0 to 100", weighted / weights});
+    return scores;
+}
+
 }  // namespace
-
-const Item* Form::find(const std::string& item_id) const {
-    for (const Block& block : blocks)
-        for (const Item& item : block.items)
-            if (item.id == item_id) return &item;
-    return nullptr;
-}
-
-std::vector<const Item*> Form::items() const {
-    std::vector<const Item*> all;
-    for (const Block& block : blocks)
-        for (const Item& item : block.items) all.push_back(&item);
-    return all;
-}
 
 Form parseForm(const std::string& text, const std::string& file) {
     const Json parsed = parseJson(text, file);
@@ -201,6 +228,12 @@ std::variant<Answer, std::string> answerOf(const Item& item, const std::string& 
     if (!is_number || value != std::floor(value) || value < 1 || value > double(item.options.size()))
         return "type a number from 1 to " + std::to_string(item.options.size());
     return Answer(item.options[size_t(value) - 1].value);
+}
+
+std::vector<Score> scoresOf(const Form& form, const Values& values) {
+    if (form.scoring == Scoring::kSus) return susOf(form, values);
+    if (form.scoring == Scoring::kNasaTlx) return nasaTlxOf(form, values);
+    return {};
 }
 
 }  // namespace bonemill::study

@@ -1,5 +1,5 @@
-// A questionnaire as a data file (docs/research/study.md has its fields), and what counts as an answer to it.
-// Pure after reading; any thread may read a form.
+// A questionnaire as a data file (docs/research/study.md has its fields), what counts as an answer to it, and
+// its scores. Pure after reading; any thread may read a form.
 #pragma once
 
 #include <map>
@@ -48,8 +48,18 @@ struct Form {
     std::vector<Block> blocks;
     std::string digest;  // of its text: answers say which one they were given to
 
-    const Item* find(const std::string& item_id) const;
-    std::vector<const Item*> items() const;
+    const Item* find(const std::string& item_id) const {
+        for (const Block& block : blocks)
+            for (const Item& item : block.items)
+                if (item.id == item_id) return &item;
+        return nullptr;
+    }
+    std::vector<const Item*> items() const {
+        std::vector<const Item*> all;
+        for (const Block& block : blocks)
+            for (const Item& item : block.items) all.push_back(&item);
+        return all;
+    }
 };
 
 // Throws UserError.
@@ -64,5 +74,16 @@ std::string wrongWith(const Item& item, const Answer& answer);
 
 // What a terminal got for it: the number of an option as it is shown (from 1), a number, or words.
 std::variant<Answer, std::string> answerOf(const Item& item, const std::string& line);
+
+using Values = std::map<std::string, Answer>;  // by the items' ids; what was left out is not there
+
+struct Score {
+    std::string id, title;
+    double value = 0;
+};
+
+// SUS (Brooke 1996): 0 to 100. NASA-TLX (Hart and Staveland 1988): the mean of the six ratings, and weighted
+// by how often each was chosen in the pairs. A score of which an answer is missing is not made.
+std::vector<Score> scoresOf(const Form& form, const Values& values);
 
 }  // namespace bonemill::study

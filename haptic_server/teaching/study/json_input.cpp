@@ -80,22 +80,15 @@ bool isIdentifier(std::string_view text) {
 }
 
 bool isPlainText(std::string_view text) {
-    for (size_t i = 0; i < text.size();) {
-        const auto byte = [&](size_t k) { return i + k < text.size() ? uint8_t(text[i + k]) : uint8_t(0); };
-        const uint8_t lead = byte(0);
-        if (lead < 0x20 || lead == 0x7f) return false;
-        const size_t length = lead < 0x80 ? 1 : lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
-        if (lead >= 0x80 && (lead < 0xc2 || lead > 0xf4)) return false;
-        for (size_t k = 1; k < length; ++k)
-            if ((byte(k) & 0xc0) != 0x80) return false;
-        const bool is_control = lead == 0xc2 && byte(1) < 0xa0;
-        const bool is_long = (lead == 0xe0 && byte(1) < 0xa0) || (lead == 0xf0 && byte(1) < 0x90);
-        const bool is_outside = (lead == 0xed && byte(1) >= 0xa0) || (lead == 0xf4 && byte(1) >= 0x90);
+    const auto byte = [&](size_t i) { return i < text.size() ? uint8_t(text[i]) : uint8_t(0); };
+    for (size_t at = 0; at < text.size();) {
+        const size_t length = letterBytes(text, at);
         // What turns the direction of writing makes one answer look like another.
-        const bool is_turn = lead == 0xe2 && ((byte(1) == 0x80 && byte(2) >= 0xaa && byte(2) <= 0xae) ||
-                                              (byte(1) == 0x81 && byte(2) >= 0xa6 && byte(2) <= 0xa9));
-        if (is_control || is_long || is_outside || is_turn) return false;
-        i += length;
+        const uint8_t second = byte(at + 1), third = byte(at + 2);
+        const bool is_turn = byte(at) == 0xe2 && ((second == 0x80 && third >= 0xaa && third <= 0xae) ||
+                                                  (second == 0x81 && third >= 0xa6 && third <= 0xa9));
+        if (length == 0 || is_turn) return false;
+        at += length;
     }
     return true;
 }

@@ -14,7 +14,6 @@
 #include <map>
 #include <optional>
 
-#include "haptic_server/teaching/study/run_record.h"
 #include "haptic_server/teaching/study/study_participant.h"
 
 namespace bonemill::study {

@@ -2,7 +2,6 @@
 
 #include <sys/random.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <set>
 #include <system_error>
@@ -18,13 +17,16 @@ void requireUuid(const JsonObject& json, const std::string& key) {
     if (!isUuid(json.text(key))) json.refuse(key, "must be a session's UUID, as study next prints it");
 }
 
-}  // namespace
+constexpr double kMaxFigure = 1e15;
 
-const Session* Participant::find(const std::string& uuid) const {
-    for (const Session& session : sessions)
-        if (session.uuid == uuid) return &session;
-    return nullptr;
+std::map<std::string, double> figuresIn(const JsonObject& json) {
+    std::map<std::string, double> figures;
+    for (const char* const key : kRunFigures)
+        if (json.has(key)) figures[key] = json.number(key, -kMaxFigure, kMaxFigure);
+    return figures;
 }
+
+}  // namespace
 
 std::string toJson(const Participant& participant) {
     Json sessions = Json::array();
@@ -89,15 +91,6 @@ std::string newUuid() {
     return text;
 }
 
-bool Answers::isAnswered(const std::string& item) const {
-    return values.contains(item) || std::find(left_out.begin(), left_out.end(), item) != left_out.end();
-}
-
-bool Answers::isFinished(const Form& to) const {
-    const std::vector<const Item*> items = to.items();
-    return std::all_of(items.begin(), items.end(), [&](const Item* item) { return isAnswered(item->id); });
-}
-
 std::string toJson(const Answers& answers) {
     Json values = Json::object();
     for (const auto& [item, answer] : answers.values) {
@@ -148,6 +141,32 @@ Answers parseAnswers(const Json& parsed, const std::string& file, const Form& fo
         if (!form.find(id) || answers.values.contains(id) || !seen.insert(id).second)
             json.refuse("left_out", "has \"" + id + "\", which is no unanswered question of the form");
     return answers;
+}
+
+std::map<std::string, double> figuresOfReport(const std::filesystem::path& report) {
+    const Json json = readJson(report);
+    const std::map<std::string, double> figures = figuresIn(JsonObject(json, report.string()));
+    if (figures.empty())
+        throw UserError(report.string() + ": is no report that haptic_server wrote with --report");
+    return figures;
+}
+
+std::string toJson(const RunRecord& run) {
+    const Json json = {{"session", run.session},           {"scene", run.scene},
+                       {"scene_sha256", run.scene_sha256}, {"programs", run.programs},
+                       {"figures", run.figures},           {"recording", run.recording}};
+    return json.dump(1) + "\n";
+}
+
+RunRecord parseRun(const Json& parsed, const std::string& file) {
+    const JsonObject json(parsed, file);
+    json.allowOnly({"session", "scene", "scene_sha256", "programs", "figures", "recording"});
+    return {json.text("session"),
+            json.text("scene"),
+            json.text("scene_sha256"),
+            json.text("programs"),
+            figuresIn(json.object("figures")),
+            json.text("recording")};
 }
 
 }  // namespace bonemill::study

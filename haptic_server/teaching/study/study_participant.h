@@ -1,11 +1,10 @@
 // What a study keeps of a person: a pseudonym, a group, that there is consent, and sessions with their
-// answers. No name, no time of day. Who is who stands outside of the study's folder. Pure; any thread may
-// call the functions.
+// answers and runs. No name, no time of day. Who is who stands outside of the study's folder. For one thread;
+// pure, but for the reports that are read.
 #pragma once
 
 #include "haptic_server/teaching/study/form.h"
-#include "haptic_server/teaching/study/form_scoring.h"
-#include "haptic_server/teaching/study/order.h"
+#include "haptic_server/teaching/study/protocol.h"
 
 namespace bonemill::study {
 
@@ -26,7 +25,11 @@ struct Participant {
     std::string withdrawal_reason;
     std::vector<Session> sessions;
 
-    const Session* find(const std::string& uuid) const;
+    const Session* find(const std::string& uuid) const {
+        for (const Session& session : sessions)
+            if (session.uuid == uuid) return &session;
+        return nullptr;
+    }
 };
 
 std::string toJson(const Participant& participant);
@@ -43,8 +46,14 @@ struct Answers {
     Values values;
     std::vector<std::string> left_out;  // asked, and no answer wished
 
-    bool isAnswered(const std::string& item) const;
-    bool isFinished(const Form& to) const;
+    bool isAnswered(const std::string& item) const {
+        return values.contains(item) || std::find(left_out.begin(), left_out.end(), item) != left_out.end();
+    }
+    bool isFinished(const Form& to) const {
+        const std::vector<const Item*> items = to.items();
+        return std::all_of(items.begin(), items.end(),
+                           [&](const Item* item) { return isAnswered(item->id); });
+    }
 };
 
 std::string toJson(const Answers& answers);
@@ -52,5 +61,23 @@ std::string toJson(const Answers& answers);
 Answers parseAnswers(const Json& json, const std::string& file, const Form& form);
 // Which form these answers say that they are to.
 std::string formOfAnswers(const Json& json, const std::string& file);
+
+// What the study keeps of a run on the simulator: enough to say what was used, and no more.
+struct RunRecord {
+    std::string session, scene, scene_sha256, programs;
+    std::map<std::string, double> figures;  // those of the server's report that kRunFigures names
+    std::string recording;                  // the journal's or trace's file name, as told
+};
+
+// Taken from a report of haptic_server, when it has them.
+inline constexpr const char* kRunFigures[] = {
+    "duration_s",    "nominal_rate_hz", "mean_rate_hz", "slowest_second_hz",
+    "dropped_ticks", "force_max_n",     "removed_mm3",  "ticks"};
+
+// Reads the report that haptic_server wrote with --report. Throws UserError.
+std::map<std::string, double> figuresOfReport(const std::filesystem::path& report);
+
+std::string toJson(const RunRecord& run);
+RunRecord parseRun(const Json& json, const std::string& file);
 
 }  // namespace bonemill::study

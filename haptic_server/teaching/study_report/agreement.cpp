@@ -71,12 +71,6 @@ Ratings readRatings(const std::filesystem::path& path) {
     return ratings;
 }
 
-std::vector<double> columnOfRater(const Table& table, size_t rater) {
-    std::vector<double> values;
-    for (const std::vector<double>& row : table) values.push_back(row[rater]);
-    return values;
-}
-
 }  // namespace
 
 std::string agreementText(const std::filesystem::path& file) {
@@ -86,8 +80,7 @@ std::string agreementText(const std::filesystem::path& file) {
                        std::to_string(ratings.raters.size()) + " raters)\n";
     for (size_t i = 0; i < ratings.raters.size(); ++i)
         for (size_t j = i + 1; j < ratings.raters.size(); ++j) {
-            const std::vector<double> a = columnOfRater(ratings.table, i),
-                                      b = columnOfRater(ratings.table, j);
+            const std::vector<double> a = columnOf(ratings.table, i), b = columnOf(ratings.table, j);
             text += "kappa of " + ratings.raters[i] + " and " + ratings.raters[j] + ": " +
                     fixedText(cohensKappa(a, b, KappaWeights::kNone), 3) + ", with quadratic weights " +
                     fixedText(cohensKappa(a, b, KappaWeights::kQuadratic), 3) + "\n";

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "haptic_server/teaching/study/study_folder.h"
+#include "haptic_server/teaching/study_statistics/rank_tests.h"
 #include "haptic_server/teaching/study_statistics/samples.h"
 
 namespace bonemill::study {
@@ -67,5 +68,36 @@ struct Alpha {
 // Cronbach's alpha of each block of two or more ratings, over the people who answered all of it. The even
 // statements of SUS, which are against the system, are turned round.
 std::vector<Alpha> alphasOf(const StudyData& data, const std::vector<Measure>& measures);
+
+// Every comparison that a study's protocol leads to, each with two tests and effect sizes, and P adjusted for
+// their number.
+
+// Two groups of people; each person counts once.
+struct GroupComparison {
+    const Measure* measure = nullptr;
+    std::string first, second;
+    Summary of_first, of_second;
+    TTest welch;
+    RankTest rank;
+    double g = kNotKnown, delta = kNotKnown, auc = kNotKnown;
+    Interval of_g, of_delta, of_auc;
+    double holm_welch = kNotKnown, holm_rank = kNotKnown;
+};
+
+// Two conditions, by the people who answered under both.
+struct ConditionComparison {
+    const Measure* measure = nullptr;
+    std::string first, second;
+    Summary of_first, of_second;
+    TTest paired;
+    RankTest pratt;
+    double d = kNotKnown;  // mean difference over the differences' standard deviation
+    double holm_paired = kNotKnown, holm_pratt = kNotKnown;
+};
+
+// A family, in which Holm's adjustment counts, is all items of a form, or all its scores, over all pairs.
+std::vector<GroupComparison> compareGroups(const StudyData& data, const std::vector<Measure>& measures);
+std::vector<ConditionComparison> compareConditions(const StudyData& data,
+                                                   const std::vector<Measure>& measures);
 
 }  // namespace bonemill::study

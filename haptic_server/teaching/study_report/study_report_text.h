@@ -2,7 +2,7 @@
 // each comparison with what it can bear. Pure; any thread may call the functions.
 #pragma once
 
-#include "haptic_server/teaching/study_report/comparisons.h"
+#include "haptic_server/teaching/study_report/study_data.h"
 
 namespace bonemill::study {
 

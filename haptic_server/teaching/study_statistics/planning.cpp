@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "haptic_server/teaching/study_statistics/distributions.h"
 

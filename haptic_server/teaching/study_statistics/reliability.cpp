@@ -3,12 +3,6 @@
 namespace bonemill::study {
 namespace {
 
-std::vector<double> columnOf(const Table& table, size_t column) {
-    std::vector<double> values;
-    for (const std::vector<double>& row : table) values.push_back(row[column]);
-    return values;
-}
-
 std::vector<double> rowMeansOf(const Table& table) {
     std::vector<double> means;
     for (const std::vector<double>& row : table) means.push_back(meanOf(row));
@@ -16,6 +10,12 @@ std::vector<double> rowMeansOf(const Table& table) {
 }
 
 }  // namespace
+
+std::vector<double> columnOf(const Table& table, size_t column) {
+    std::vector<double> values;
+    for (const std::vector<double>& row : table) values.push_back(row[column]);
+    return values;
+}
 
 double cronbachsAlpha(const Table& people_items) {
     if (people_items.size() < 2 || people_items[0].size() < 2) return kNotKnown;

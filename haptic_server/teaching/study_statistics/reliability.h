@@ -8,6 +8,8 @@ namespace bonemill::study {
 
 using Table = std::vector<std::vector<double>>;
 
+std::vector<double> columnOf(const Table& table, size_t column);
+
 // Cronbach's (1951) alpha of the items in the columns.
 double cronbachsAlpha(const Table& people_items);
 

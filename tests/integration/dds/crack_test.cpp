@@ -5,7 +5,6 @@
 #include "common/rt/clock.h"
 #include "haptic_server/core/bone/bone_model.h"
 #include "haptic_server/core/milling/timed_milling.h"
-#include "haptic_server/server/publish/byte_budget.h"
 #include "haptic_server/server/publish/publisher.h"
 #include "haptic_server/surface/mesh/mesh_check.h"
 #include "haptic_server/surface/mesh/mesh_rounds.h"

@@ -3,6 +3,8 @@
 //
 // BONEMILL_KILLS says how often a server is killed, 2 without; BONEMILL_ALL_SCENES makes every shipped scene
 // run that has its volume.
+#include "haptic_server/recording/rerun/recording.h"
+
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -16,7 +18,6 @@
 #include "haptic_server/core/telemetry/tick_record.h"
 #include "haptic_server/recording/journal/bone_states.h"
 #include "haptic_server/recording/journal/journal_reader.h"
-#include "haptic_server/recording/rerun/recorded_scene.h"
 #include "haptic_server/recording/rerun/verify_journal.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/integration/dds/client_probe.h"

@@ -9,10 +9,9 @@
 
 #include "common/base/user_error.h"
 #include "common/mcap/mcap_writer.h"
-#include "haptic_server/recording/journal/journal_schemas.h"
+#include "haptic_server/recording/journal/journal_topics.h"
 #include "haptic_server/recording/rerun/recording.h"
 #include "haptic_server/scene/setup/scene_setup.h"
-#include "haptic_server/scene/trajectory/recorded_row.h"
 #include "haptic_server/scene/trajectory/trajectory_reader.h"
 #include "tests/support/mutated_bytes.h"
 #include "tests/support/recorded_session.h"

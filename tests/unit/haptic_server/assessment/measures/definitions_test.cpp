@@ -1,11 +1,10 @@
-#include "haptic_server/assessment/measures/definitions.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <set>
 #include <sstream>
 
+#include "haptic_server/assessment/measures/figure.h"
 #include "tests/support/places.h"
 
 namespace bonemill {

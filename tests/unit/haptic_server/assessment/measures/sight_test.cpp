@@ -1,4 +1,3 @@
-#include "haptic_server/assessment/measures/sight.h"
 
 #include <gtest/gtest.h>
 

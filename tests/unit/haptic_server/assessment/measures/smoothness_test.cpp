@@ -1,10 +1,10 @@
-#include "haptic_server/assessment/measures/smoothness.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 #include <vector>
+
+#include "haptic_server/assessment/measures/strokes.h"
 
 namespace bonemill {
 namespace {

@@ -1,6 +1,6 @@
-#include "haptic_server/assessment/measures/step_table.h"
-
 #include <gtest/gtest.h>
+
+#include "haptic_server/assessment/measures/technique.h"
 
 namespace bonemill {
 namespace {

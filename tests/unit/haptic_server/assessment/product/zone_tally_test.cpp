@@ -7,7 +7,6 @@
 #include <random>
 
 #include "common/base/units.h"
-#include "haptic_server/assessment/product/running_tally.h"
 #include "tests/support/voxel_fields.h"
 #include "tests/unit/haptic_server/assessment/product/block_task.h"
 

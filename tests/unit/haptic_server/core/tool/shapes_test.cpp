@@ -5,7 +5,7 @@
 #include <random>
 
 #include "common/base/user_error.h"
-#include "haptic_server/scene/tool_build/check_shape.h"
+#include "haptic_server/scene/tool_build/build_tool.h"
 
 namespace bonemill {
 namespace {

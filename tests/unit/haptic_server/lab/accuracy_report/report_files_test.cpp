@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "common/base/user_error.h"
-#include "haptic_server/teaching/lessons/accuracy_figures.h"
+#include "haptic_server/teaching/lessons/scene_folder.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/haptic_server/lab/accuracy_report/report_data.h"
 

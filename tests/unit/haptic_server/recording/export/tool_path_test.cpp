@@ -1,5 +1,3 @@
-#include "haptic_server/recording/export/tool_path.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include "common/base/user_error.h"
 #include "haptic_server/recording/export/export_journal.h"
+#include "haptic_server/recording/export/trajectory_writer.h"
 #include "haptic_server/scene/trajectory/trajectory_reader.h"
 #include "tests/support/recorded_session.h"
 #include "tests/support/rewritten_journal.h"

@@ -1,4 +1,3 @@
-#include "haptic_server/recording/statistics/device_history.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,8 @@
-#include "haptic_server/recording/statistics/final_files.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 
+#include "haptic_server/recording/statistics/bone_files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bonemill {

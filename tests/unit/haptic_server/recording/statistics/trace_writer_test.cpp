@@ -1,5 +1,3 @@
-#include "haptic_server/recording/statistics/trace_writer.h"
-
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -11,6 +9,7 @@
 
 #include "common/base/user_error.h"
 #include "haptic_server/recording/statistics/bone_files.h"
+#include "haptic_server/recording/statistics/tick_columns.h"
 #include "tests/unit/haptic_server/recording/statistics/temporary_file.h"
 
 namespace bonemill {

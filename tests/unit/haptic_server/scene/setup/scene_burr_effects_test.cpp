@@ -6,7 +6,7 @@
 
 #include "common/base/user_error.h"
 #include "haptic_server/core/effects/effect_figures.h"
-#include "haptic_server/scene/setup/scene_effects.h"
+#include "haptic_server/scene/setup/scene_materials.h"
 #include "tests/support/typical_effects.h"
 
 namespace bonemill {

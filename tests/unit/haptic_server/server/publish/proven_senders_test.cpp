@@ -1,6 +1,6 @@
-#include "haptic_server/server/publish/proven_senders.h"
-
 #include <gtest/gtest.h>
+
+#include "haptic_server/server/publish/command_inbox.h"
 
 namespace bonemill {
 namespace {

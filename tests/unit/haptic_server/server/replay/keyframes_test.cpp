@@ -1,6 +1,6 @@
-#include "haptic_server/server/replay/keyframes.h"
-
 #include <gtest/gtest.h>
+
+#include "haptic_server/server/replay/survey.h"
 
 namespace bonemill {
 namespace {

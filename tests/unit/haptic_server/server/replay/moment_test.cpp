@@ -1,8 +1,7 @@
-#include "haptic_server/recording/rerun/moment.h"
-
 #include <gtest/gtest.h>
 
 #include "common/base/user_error.h"
+#include "haptic_server/recording/rerun/rerun.h"
 #include "haptic_server/recording/statistics/state_hash.h"
 #include "tests/support/recorded_session.h"
 #include "tests/support/temporary_folder.h"

@@ -1,11 +1,10 @@
-#include "haptic_server/recording/rerun/recorded_scene.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 
 #include "common/base/user_error.h"
-#include "haptic_server/recording/rerun/moment.h"
+#include "haptic_server/recording/rerun/recording.h"
+#include "haptic_server/recording/rerun/rerun.h"
 #include "tests/support/recorded_session.h"
 #include "tests/support/rewritten_journal.h"
 #include "tests/support/temporary_folder.h"

@@ -1,7 +1,6 @@
-#include "haptic_server/server/replay/removal_map.h"
-
 #include <gtest/gtest.h>
 
+#include "haptic_server/server/replay/survey.h"
 #include "tests/support/test_bodies.h"
 
 namespace bonemill {

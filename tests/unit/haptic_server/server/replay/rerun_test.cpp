@@ -6,8 +6,7 @@
 
 #include "common/base/user_error.h"
 #include "haptic_server/recording/statistics/state_hash.h"
-#include "haptic_server/recording/statistics/tick_hash.h"
-#include "haptic_server/scene/setup/scene_effects.h"
+#include "haptic_server/scene/setup/scene_materials.h"
 #include "tests/support/recorded_session.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,8 +1,7 @@
-#include "haptic_server/teaching/lessons/accuracy_figures.h"
-
 #include <gtest/gtest.h>
 
 #include "common/base/user_error.h"
+#include "haptic_server/teaching/lessons/scene_folder.h"
 #include "tests/support/process.h"
 
 namespace bonemill {

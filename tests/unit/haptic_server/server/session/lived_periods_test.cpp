@@ -1,8 +1,8 @@
-#include "haptic_server/server/session/lived_periods.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
+
+#include "haptic_server/server/session/device_link_io.h"
 
 namespace bonemill {
 namespace {

@@ -1,8 +1,8 @@
-#include "haptic_server/server/session/shown_device.h"
-
 #include <gtest/gtest.h>
 
 #include <cstring>
+
+#include "haptic_server/server/session/shown_effects.h"
 
 namespace bonemill {
 namespace {

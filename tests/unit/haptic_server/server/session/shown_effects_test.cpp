@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "haptic_server/recording/statistics/state_hash.h"
-#include "haptic_server/scene/setup/scene_effects.h"
 #include "haptic_server/scene/setup/scene_materials.h"
 #include "haptic_server/server/session/recorder.h"
 

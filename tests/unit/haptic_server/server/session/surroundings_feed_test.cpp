@@ -1,5 +1,3 @@
-#include "haptic_server/server/session/surroundings_feed.h"
-
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -8,6 +6,7 @@
 #include <thread>
 
 #include "common/rt/clock.h"
+#include "haptic_server/server/session/show_session.h"
 #include "haptic_server/surface/mesh/surroundings_mesher.h"
 
 namespace bonemill {

@@ -1,5 +1,3 @@
-#include "haptic_server/teaching/lessons/table_writer.h"
-
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
@@ -9,6 +7,7 @@
 #include <stdexcept>
 
 #include "common/rt/clock.h"
+#include "haptic_server/teaching/lessons/class_table.h"
 #include "tests/support/process.h"
 
 namespace bonemill {

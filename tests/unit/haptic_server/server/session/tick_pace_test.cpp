@@ -1,6 +1,6 @@
-#include "haptic_server/server/session/tick_pace.h"
-
 #include <gtest/gtest.h>
+
+#include "haptic_server/server/session/device_link_io.h"
 
 namespace bonemill {
 namespace {

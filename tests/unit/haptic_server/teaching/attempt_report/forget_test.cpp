@@ -1,9 +1,8 @@
-#include "haptic_server/teaching/attempt_report/forget.h"
 
 #include <gtest/gtest.h>
 
+#include "haptic_server/teaching/attempt_report/attempt_result.h"
 #include "haptic_server/teaching/attempt_report/result_folder.h"
-#include "haptic_server/teaching/attempt_report/result_json.h"
 #include "tests/support/process.h"
 #include "tests/unit/haptic_server/teaching/attempt_report/typical_result.h"
 

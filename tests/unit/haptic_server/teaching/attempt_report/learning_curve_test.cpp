@@ -1,9 +1,9 @@
-#include "haptic_server/teaching/attempt_report/learning_curve.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
+
+#include "haptic_server/teaching/attempt_report/comparison.h"
 
 namespace bonemill {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "common/base/user_error.h"
-#include "haptic_server/teaching/attempt_report/result_json.h"
+#include "haptic_server/teaching/attempt_report/attempt_result.h"
 #include "tests/support/process.h"
 #include "tests/unit/haptic_server/teaching/attempt_report/typical_result.h"
 

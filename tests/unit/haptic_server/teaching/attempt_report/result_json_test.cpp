@@ -1,11 +1,10 @@
-#include "haptic_server/teaching/attempt_report/result_json.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <random>
 
 #include "common/base/user_error.h"
+#include "haptic_server/teaching/attempt_report/attempt_result.h"
 #include "tests/unit/haptic_server/teaching/attempt_report/typical_result.h"
 
 namespace bonemill {

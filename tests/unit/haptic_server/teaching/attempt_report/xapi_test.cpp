@@ -1,9 +1,8 @@
-#include "haptic_server/teaching/attempt_report/xapi.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
+#include "haptic_server/teaching/attempt_report/attempt_result.h"
 #include "tests/unit/haptic_server/teaching/attempt_report/typical_result.h"
 
 namespace bonemill {

@@ -3,8 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/base/user_error.h"
-#include "haptic_server/teaching/study/form_page.h"
-#include "haptic_server/teaching/study/form_scoring.h"
+#include "haptic_server/teaching/study/ask_form.h"
 #include "haptic_server/teaching/study/shipped_files.h"
 
 namespace bonemill::study {

@@ -1,9 +1,9 @@
-#include "haptic_server/teaching/study/order.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
+
+#include "haptic_server/teaching/study/protocol.h"
 
 namespace bonemill::study {
 namespace {

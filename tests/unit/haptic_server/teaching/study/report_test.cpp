@@ -4,9 +4,8 @@
 
 #include "common/base/user_error.h"
 #include "haptic_server/teaching/study_report/agreement.h"
-#include "haptic_server/teaching/study_report/checklist.h"
-#include "haptic_server/teaching/study_report/comparisons.h"
 #include "haptic_server/teaching/study_report/plan_text.h"
+#include "haptic_server/teaching/study_report/study_data.h"
 #include "haptic_server/teaching/study_report/study_report_text.h"
 #include "haptic_server/teaching/study_report/study_tables.h"
 #include "tests/unit/haptic_server/teaching/study/study_rig.h"

@@ -1,8 +1,8 @@
-#include "haptic_server/teaching/study/terminal_form.h"
-
 #include <gtest/gtest.h>
 
 #include <sstream>
+
+#include "haptic_server/teaching/study/ask_form.h"
 
 namespace bonemill::study {
 namespace {
