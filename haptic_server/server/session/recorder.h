@@ -2,16 +2,12 @@
 // newest record at hand.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <utility>
 
-#include "common/rt/clock.h"
 #include "common/rt/spsc_ring.h"
 #include "haptic_server/assessment/measures/technique.h"
 #include "haptic_server/assessment/product/breach.h"
@@ -44,116 +40,43 @@ class Recorder {
   public:
     // `recorded` says what the records hold of effects; `breach` is there where the task has a planned line.
     Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded = {},
-             std::optional<BreachMonitor> breach = {})
-        : ring_(ring),
-          statistics_(period_ns, recorded),
-          recorded_(recorded),
-          breach_(std::move(breach)),
-          attempt_{.max_force = 0, .effects = EffectStatistics(recorded)},
-          shown_attempt_(attempt_) {}
+             std::optional<BreachMonitor> breach = {});
 
     // Before the first drain(), it begins a trace, which takes the place of the file that is there; an empty
     // path is none. Throws UserError when it cannot be created.
-    void openTrace(const std::string& path) {
-        if (!path.empty()) trace_.emplace(path, recorded_);
-    }
+    void openTrace(const std::string& path);
     // Likewise: all records go into the journal as well, which must outlive this.
     void keepJournal(Journal* journal) { journal_ = journal; }
     // The recorder thread takes what is in the ring, every few milliseconds.
-    void drain() {
-        TickRecord record;
-        bool any = false;
-        EventSum events;
-        double removed = 0;
-        const size_t known_changes = statistics_.device().kept().size();
-        const std::lock_guard technique_lock(technique_mutex_);
-        takeUpAttempt();
-        while (ring_.tryPop(record)) {
-            any = true;
-            statistics_.add(record);
-            if (trace_ && !trace_->write(record)) is_trace_torn_ = true;
-            if (journal_) journal_->add(record);
-            addToWindow(record);
-            addToAttempt(record);
-            events.add(record.effects);
-            removed += record.removed;
-        }
-        if (journal_) journal_->round();
-        const bool is_incomplete = isIncomplete();
-        const std::lock_guard lock(mutex_);
-        if (is_incomplete) health_.faults |= kFaultNotRecorded;
-        if (!any) return;
-        latest_ = record;
-        new_events_.add(events);
-        new_removed_ += removed;
-        const auto changes = statistics_.device().kept().subspan(known_changes);
-        new_device_changes_.insert(new_device_changes_.end(), changes.begin(), changes.end());
-        health_.ticks = statistics_.ticks();
-        health_.dropped_ticks = statistics_.droppedTicks();
-        health_.faults = statistics_.faults() | (health_.faults & kFaultNotRecorded);
-        if (!asked_bone_order_) shown_attempt_ = attempt_;
-    }
+    void drain();
     // Once the tick has ended this takes the rest and closes the trace. False: some of the trace is lost,
     // because it could not be written or because the ring was full (statistics().lostRecords()).
-    bool finish() {
-        drain();
-        if (journal_) journal_->finish();
-        statistics_.setLostRecords(ring_.dropped());
-        if (!trace_) return true;
-        const bool is_written = trace_->close();
-        return is_written && statistics_.lostRecords() == 0;
-    }
+    bool finish();
 
     // Any normal thread may ask.
-    std::optional<TickRecord> latest() const {
-        const std::lock_guard lock(mutex_);
-        return latest_;
-    }
+    std::optional<TickRecord> latest() const;
     // It is the newest record, with what happened in all ticks since the call before.
     struct Since {
         TickRecord latest;
         EventSum events;
         double removed;  // m³
     };
-    std::optional<Since> takeSince() {
-        const std::lock_guard lock(mutex_);
-        if (!latest_) return std::nullopt;
-        return Since{*latest_, std::exchange(new_events_, {}), std::exchange(new_removed_, 0)};
-    }
+    std::optional<Since> takeSince();
     // These changes of the device are new since the call before.
-    std::vector<DeviceChange> takeDeviceChanges() {
-        const std::lock_guard lock(mutex_);
-        return std::exchange(new_device_changes_, {});
-    }
-    LoopHealth health() const {
-        const std::lock_guard lock(mutex_);
-        return health_;
-    }
+    std::vector<DeviceChange> takeDeviceChanges();
+    LoopHealth health() const;
     // Any normal thread begins an attempt: its figures count from the first record on that says that this
     // order to put the bone back is done. Then nothing is damaged or dead any more.
-    void beginAttempt(uint64_t bone_order) {
-        const std::lock_guard lock(mutex_);
-        asked_bone_order_ = bone_order;
-        shown_attempt_ = {.max_force = 0, .effects = EffectStatistics(recorded_)};
-    }
-    AttemptFigures attempt() const {
-        const std::lock_guard lock(mutex_);
-        return shown_attempt_;
-    }
+    void beginAttempt(uint64_t bone_order);
+    AttemptFigures attempt() const;
     // Before the first drain(): every attempt from now on is measured, too, by what this makes (not null).
     using MakeTechnique = std::function<std::unique_ptr<Technique>()>;
     void measureTechnique(MakeTechnique make) { make_technique_ = std::move(make); }
     // Any normal thread ends the measuring of the attempt, and gets what was measured; null if it has not
     // begun.
-    std::unique_ptr<Technique> takeTechnique() {
-        const std::lock_guard lock(technique_mutex_);
-        return std::exchange(technique_, nullptr);
-    }
+    std::unique_ptr<Technique> takeTechnique();
     // Any normal thread tells where the trainee's eye is, whenever it moves.
-    void setEye(const Eigen::Vector3d& p_eye_W) {
-        const std::lock_guard lock(mutex_);
-        p_eye_W_ = p_eye_W;
-    }
+    void setEye(const Eigen::Vector3d& p_eye_W);
     // This is called before finish() and says what the tick thread's page faults were after its first second.
     void setPageFaults(const PageFaults& faults) { statistics_.setPageFaults(faults); }
     // The mesher thread says at its end how long the ticks' cuts waited for the publisher.
@@ -166,44 +89,11 @@ class Recorder {
     const RunStatistics& statistics() const { return statistics_; }
 
   private:
-    void addToWindow(const TickRecord& record) {
-        if (window_start_ns_ == 0) window_start_ns_ = record.start_ns;
-        const int64_t elapsed = record.start_ns - window_start_ns_;
-        if (elapsed >= kNsPerSecond) {
-            const std::lock_guard lock(mutex_);
-            health_.rate_hz = double(window_.count()) / secondsOfNs(elapsed);
-            health_.tick_p50_us = microsecondsOfNs(double(window_.percentileNs(50)));
-            health_.tick_p99_us = microsecondsOfNs(double(window_.percentileNs(99)));
-            health_.tick_max_us = microsecondsOfNs(double(window_.maxNs()));
-            window_ = {};
-            window_start_ns_ = record.start_ns;
-        }
-        window_.record(record.compute_ns);
-    }
-    void takeUpAttempt() {
-        const std::lock_guard lock(mutex_);
-        if (asked_bone_order_) beginAsked();
-        if (technique_ && p_eye_W_) technique_->setEye(*p_eye_W_);
-    }
-    void beginAsked() {
-        bone_order_ = *std::exchange(asked_bone_order_, std::nullopt);
-        attempt_ = shown_attempt_;
-        if (make_technique_) technique_ = make_technique_();
-        if (breach_) breach_->reset();
-    }
-    bool isIncomplete() const {
-        return is_trace_torn_ || ring_.dropped() > 0 || (journal_ && !journal_->problem().empty());
-    }
-    void addToAttempt(const TickRecord& record) {
-        if (record.bone_order < bone_order_) return;
-        const double(&force)[3] = record.f_hand_W;
-        attempt_.max_force = std::max(attempt_.max_force, std::hypot(force[0], force[1], force[2]));
-        attempt_.effects.add(record.effects);
-        if (technique_) technique_->add(record);
-        if (!breach_) return;
-        breach_->add(record);
-        attempt_.breach = breach_->depth();
-    }
+    void addToWindow(const TickRecord& record);
+    void takeUpAttempt();
+    void beginAsked();
+    bool isIncomplete() const;
+    void addToAttempt(const TickRecord& record);
 
     SpscRing<TickRecord>& ring_;
     RunStatistics statistics_;

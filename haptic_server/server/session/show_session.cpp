@@ -1,11 +1,14 @@
 #include "haptic_server/server/session/show_session.h"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <chrono>
 
 #include "common/base/units.h"
 #include "common/commands/command_text.h"
 #include "common/config/scene_geometry.h"
+#include "common/rt/clock.h"
 #include "haptic_server/core/telemetry/fault_names.h"
 #include "haptic_server/scene/setup/scene_materials.h"
 #include "haptic_server/surface/mesh/structure_mesher.h"

@@ -2,75 +2,23 @@
 // to the tick.
 #pragma once
 
-#include <spdlog/spdlog.h>
-
-#include <atomic>
-#include <exception>
 #include <functional>
 #include <future>
-#include <memory>
 #include <optional>
-#include <thread>
 
 #include "common/base/units.h"
 #include "common/log/log.h"
-#include "common/rt/clock.h"
-#include "haptic_server/core/volume/surroundings.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "haptic_server/server/publish/publisher.h"
 #include "haptic_server/server/session/recorder.h"
 #include "haptic_server/server/session/session_commands.h"
 #include "haptic_server/server/session/shown_effects.h"
+#include "haptic_server/server/session/surroundings_feed.h"
 #include "haptic_server/surface/density_stream/density_publisher.h"
 #include "haptic_server/surface/mesh/mesh_outbox.h"
-#include "haptic_server/surface/mesh/surroundings_mesher.h"
 #include "haptic_server/teaching/lessons/scene_folder.h"
 
 namespace bonemill {
-
-// Meshes the bone around the milled part on a thread of its own, beside the session, and puts it into the
-// outbox.
-class SurroundingsFeed {
-  public:
-    // Begins at once; there is nothing to do without surroundings (null). Nodes are numbered from first_leaf
-    // on. The outbox must outlive this object, whose end ends the work.
-    SurroundingsFeed(const std::shared_ptr<const Surroundings>& surroundings, uint32_t first_leaf,
-                     MeshOutbox& outbox) {
-        if (!surroundings) {
-            is_done_ = true;
-            return;
-        }
-        thread_ = std::jthread([this, surroundings, first_leaf, &outbox](const std::stop_token& stop) {
-            try {
-                feed(*surroundings, first_leaf, outbox, stop);
-            } catch (const std::exception& error) {  // it is for people: the session goes on
-                spdlog::error("the bone around the region cannot be shown: {}", error.what());
-            }
-            is_done_ = true;
-        });
-    }
-
-    // Any thread: all that there is has been put.
-    bool isDone() const noexcept { return is_done_; }
-
-  private:
-    static void feed(const Surroundings& surroundings, uint32_t first_leaf, MeshOutbox& outbox,
-                     const std::stop_token& stop) {
-        size_t nodes = 0, triangles = 0;
-        meshSurroundings(surroundings, first_leaf, [&](NodeMesh&& mesh) {
-            ++nodes;
-            triangles += mesh.indices.size() / 3;
-            NodeGroup group;
-            group.meshes.push_back(std::move(mesh));
-            outbox.put(std::move(group), monotonicNowNs());
-            return !stop.stop_requested();
-        });
-        spdlog::info("the bone around the region is shown by {} nodes with {} triangles", nodes, triangles);
-    }
-
-    std::atomic<bool> is_done_ = false;
-    std::jthread thread_;
-};
 
 class ShowSession {
   public:

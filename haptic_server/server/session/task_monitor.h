@@ -5,18 +5,11 @@
 // All members belong to the publisher thread or to whoever has joined it, but for showsZones().
 #pragma once
 
-#include <spdlog/spdlog.h>
-
 #include <atomic>
-#include <chrono>
 #include <future>
 #include <optional>
 #include <string>
-#include <utility>
 
-#include "common/base/units.h"
-#include "common/rt/clock.h"
-#include "haptic_server/assessment/product/judged_task.h"
 #include "haptic_server/assessment/product/product.h"
 #include "haptic_server/assessment/product/zone_tally.h"
 #include "haptic_server/core/bone/bone_history.h"
@@ -33,19 +26,9 @@ class TaskMonitor {
     };
 
     // `task` is null in a scene without one: then nothing is watched. References must outlive this object.
-    TaskMonitor(std::shared_ptr<const JudgedTask> task, const BoneModel& bone, BoneHistory& history)
-        : task_(std::move(task)),
-          bone_(bone),
-          history_(history),
-          shows_zones_(task_ && task_->feedback == TaskFeedback::kLive) {
-        if (!task_) return;
-        scanned_counts_ = countProduct(history.scanned(), history.scanned(), *task_);
-        tally_.emplace(history.scanned(), bone.volume, bone.lattice, *task_);
-    }
+    TaskMonitor(std::shared_ptr<const JudgedTask> task, const BoneModel& bone, BoneHistory& history);
     // Waits for the judgement under way: it works on this object, whoever else waits for it.
-    ~TaskMonitor() {
-        if (judging_.valid()) judging_.wait();
-    }
+    ~TaskMonitor();
     TaskMonitor(const TaskMonitor&) = delete;
     TaskMonitor& operator=(const TaskMonitor&) = delete;
 
@@ -54,120 +37,21 @@ class TaskMonitor {
     bool showsZones() const noexcept { return shows_zones_.load(std::memory_order_relaxed); }
 
     // Some times per second: takes up what changed, for some milliseconds, and a result that is there.
-    void round() {
-        using namespace std::chrono_literals;
-        if (judging_.valid() && judging_.wait_for(0s) == std::future_status::ready) finish();
-        const int64_t now_ns = monotonicNowNs();
-        if (!tally_ || task_->feedback != TaskFeedback::kLive || now_ns < next_update_ns_) return;
-        tally_->update();
-        next_update_ns_ = now_ns + kUpdatePeriodNs;
-    }
-    void beginAttempt() {
-        last_.reset();
-        if (task_ && task_->feedback == TaskFeedback::kAfterwards) shows_zones_ = false;
-    }
+    void round();
+    void beginAttempt();
     // The bone is judged as it is now, after the one of the attempt before; nobody waits for that here. What
     // else was measured of the attempt goes in with it: gates and scores may ask for it. Any thread may wait
     // for what it returns, which is nothing without a task.
-    std::shared_future<Result> endAttempt(std::optional<double> breach, Figures technique) {
-        if (!task_) return {};
-        judging_ = std::async(std::launch::async, [this, breach, technique = std::move(technique),
-                                                   snapshot = history_.snapshot(bone_),
-                                                   before = std::exchange(judging_, {})]() mutable {
-            if (before.valid()) before.wait();  // one after the other: each takes a core
-            Result result;
-            try {
-                const VoxelVolume now = history_.volumeOf(*snapshot, bone_.lattice);
-                Product product = measureProduct({history_.scanned(), now, *task_, breach});
-                for (const std::string& what : product.left_out) spdlog::warn("not measured: {}", what);
-                technique.insert(technique.end(), product.figures.begin(), product.figures.end());
-                result.assessment = judge(*task_, std::move(technique));
-                result.picture = std::move(product.picture);
-                logResult(result.assessment);
-            } catch (const std::exception& error) {
-                result.problem = error.what();
-                spdlog::error("the attempt could not be judged: {}", result.problem);
-            }
-            return result;
-        });
-        if (task_->feedback == TaskFeedback::kAfterwards) shows_zones_ = true;
-        return judging_;
-    }
+    std::shared_future<Result> endAttempt(std::optional<double> breach, Figures technique);
     // Waits for the judgement under way, if there is one, and takes it up.
-    void finish() {
-        if (!judging_.valid()) return;
-        if (const Result& result = judging_.get(); result.problem.empty()) last_ = result.assessment;
-        judging_ = {};
-    }
+    void finish();
 
     // Says what trainees may know now.
-    void describe(bool is_running, double time_s, topics::Status& status) const {
-        if (!task_) return;
-        topics::TaskState state;
-        if (is_running && task_->time_limit_s > 0) state.set_time_left_s(task_->time_limit_s - time_s);
-        const bool shows_result = !is_running && last_ && task_->feedback != TaskFeedback::kNever;
-        if (task_->feedback == TaskFeedback::kLive) describeZones(state);
-        if (shows_result) {
-            state.set_is_result(true);
-            for (const GateResult& gate : last_->gates)
-                addGate(state, gate,
-                        gate.is_passed ? topics::TaskState::Gate::HELD : topics::TaskState::Gate::BROKEN);
-            if (last_->total) state.set_score(last_->total->score);
-        } else if (task_->feedback == TaskFeedback::kLive) {
-            // What has still to be reached, or is not counted all along, is open.
-            const Figures figures = runningFigures();
-            for (const GateResult& gate : judge(*task_, figures).gates) {
-                const bool is_known = findFigure(figures, gate.figure_id) != nullptr;
-                addGate(state, gate,
-                        !is_known        ? topics::TaskState::Gate::OPEN
-                        : gate.is_passed ? topics::TaskState::Gate::HELD
-                        : gate.is_most   ? topics::TaskState::Gate::BROKEN
-                                         : topics::TaskState::Gate::OPEN);
-            }
-        }
-        if (state.ByteSizeLong() > 0) *status.mutable_task() = std::move(state);
-    }
+    void describe(bool is_running, double time_s, topics::Status& status) const;
 
   private:
-    static constexpr int64_t kUpdatePeriodNs = 100 * kNsPerMillisecond;
-    static void logResult(const Assessment& assessment) {
-        if (!assessment.gates.empty())
-            spdlog::info("the attempt has {}", assessment.hasPassed() ? "passed" : "failed");
-        for (const GateResult& gate : assessment.gates)
-            spdlog::info("{}: {}", gate.is_passed ? "held" : "broken", gate.text);
-        if (assessment.total)
-            spdlog::info("score {:.0f} of 100, by weights {} ({})", 100 * assessment.total->score,
-                         assessment.total->weights_version, assessment.total->weights_hash);
-    }
-    static void addGate(topics::TaskState& state, const GateResult& gate,
-                        topics::TaskState::Gate::State how) {
-        topics::TaskState::Gate& shown = *state.add_gates();
-        shown.set_state(how);
-        shown.set_text(gate.text);
-    }
-
-    // Of what is counted all along.
-    Figures runningFigures() const {
-        ProductCounts counts = scanned_counts_;
-        for (size_t zone = 0; zone < counts.zones.size(); ++zone)
-            counts.zones[zone].removed = tally_->removed()[zone];
-        counts.ideal_removed = tally_->idealRemoved();
-        Figures figures;
-        addZoneFigures(counts, *task_, bone_.volume.voxelVolume(), figures);
-        std::erase_if(figures,
-                      [](const Figure& figure) { return figure.id.find("density") != std::string::npos; });
-        return figures;
-    }
-    void describeZones(topics::TaskState& state) const {
-        const double voxel_mm3 = bone_.volume.voxelVolume() * kPerCubicMillimetre;
-        for (size_t n = 0; n < task_->zones.size(); ++n) {
-            topics::TaskState::Zone& zone = *state.add_zones();
-            zone.set_name(task_->zones[n].name);
-            zone.set_role(uint32_t(task_->zones[n].role));
-            zone.set_bone_mm3(double(scanned_counts_.zones[n + 1].bone) * voxel_mm3);
-            zone.set_removed_mm3(double(tally_->removed()[n + 1]) * voxel_mm3);
-        }
-    }
+    Figures runningFigures() const;
+    void describeZones(topics::TaskState& state) const;
 
     std::shared_ptr<const JudgedTask> task_;
     const BoneModel& bone_;

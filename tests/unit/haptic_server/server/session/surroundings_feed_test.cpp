@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "common/rt/clock.h"
-#include "haptic_server/server/session/show_session.h"
+#include "haptic_server/server/session/surroundings_feed.h"
 #include "haptic_server/surface/mesh/surroundings_mesher.h"
 
 namespace bonemill {
