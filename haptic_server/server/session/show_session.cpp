@@ -12,6 +12,7 @@
 #include "haptic_server/core/telemetry/fault_names.h"
 #include "haptic_server/scene/setup/scene_materials.h"
 #include "haptic_server/surface/mesh/structure_mesher.h"
+#include "haptic_server/surface/mesh/surroundings_mesher.h"
 
 namespace bonemill {
 namespace {
