@@ -12,7 +12,7 @@
 
 #include "haptic_server/core/contact/contact_configs.h"
 #include "haptic_server/core/coupling/energy_coupling.h"
-#include "haptic_server/core/coupling/virtual_coupling.h"
+#include "haptic_server/core/coupling/thesis_2012_coupling.h"
 #include "haptic_server/core/equilibrium/spo_model.h"
 
 namespace bonemill {

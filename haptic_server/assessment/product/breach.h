@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "haptic_server/assessment/measures/figure.h"
-#include "haptic_server/assessment/product/judged_task.h"
+#include "haptic_server/assessment/product/judge.h"
 #include "haptic_server/assessment/product/signed_field.h"
 #include "haptic_server/core/effects/burr_probes.h"
 #include "haptic_server/core/telemetry/tick_record.h"

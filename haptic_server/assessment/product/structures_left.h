@@ -8,7 +8,7 @@
 #pragma once
 
 #include "haptic_server/assessment/measures/figure.h"
-#include "haptic_server/assessment/product/judged_task.h"
+#include "haptic_server/assessment/product/judge.h"
 #include "haptic_server/core/volume/voxel_volume.h"
 
 namespace bonemill {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "haptic_server/assessment/measures/figure.h"
-#include "haptic_server/assessment/product/judged_task.h"
+#include "haptic_server/assessment/product/judge.h"
 #include "haptic_server/core/volume/leaf_lattice.h"
 #include "haptic_server/core/volume/voxel_volume.h"
 

@@ -14,7 +14,7 @@
 #include "haptic_server/core/contact/penalty_contact.h"
 #include "haptic_server/core/contact/point_shell.h"
 #include "haptic_server/core/coupling/energy_coupling.h"
-#include "haptic_server/core/coupling/virtual_coupling.h"
+#include "haptic_server/core/coupling/thesis_2012_coupling.h"
 #include "haptic_server/core/tool/burr.h"
 #include "haptic_server/core/tool/tool_model.h"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "haptic_server/core/contact/penalty_contact.h"
-#include "haptic_server/core/coupling/virtual_coupling.h"
+#include "haptic_server/core/coupling/thesis_2012_coupling.h"
 #include "haptic_server/core/equilibrium/spo_model.h"
 
 namespace bonemill {

@@ -4,7 +4,7 @@
 #include "common/geometry/hand_space.h"
 #include "haptic_server/core/accuracy/accuracy_settings.h"
 #include "haptic_server/core/contact/contact_configs.h"
-#include "haptic_server/core/coupling/virtual_coupling.h"
+#include "haptic_server/core/coupling/thesis_2012_coupling.h"
 #include "haptic_server/core/effects/effect_configs.h"
 #include "haptic_server/core/equilibrium/spo_models.h"
 #include "haptic_server/core/milling/timed_milling.h"

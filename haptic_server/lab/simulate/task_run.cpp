@@ -8,7 +8,7 @@
 
 #include "common/base/user_error.h"
 #include "common/text/hex_text.h"
-#include "haptic_server/assessment/product/judged_task.h"
+#include "haptic_server/assessment/product/judge.h"
 #include "haptic_server/scene/setup/scene_task.h"
 #include "haptic_server/teaching/attempt_report/report_words.h"
 #include "haptic_server/teaching/attempt_report/result_folder.h"

@@ -7,7 +7,7 @@
 
 #include "common/config/scene_file.h"
 #include "haptic_server/assessment/measures/technique.h"
-#include "haptic_server/assessment/product/judged_task.h"
+#include "haptic_server/assessment/product/judge.h"
 #include "haptic_server/core/volume/voxel_volume.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 

@@ -9,10 +9,10 @@
 
 #include "common/commands/answer.h"
 #include "haptic_server/core/bone/bone_history.h"
-#include "haptic_server/server/session/journal_recorder.h"
-#include "haptic_server/server/session/recorder.h"
+#include "haptic_server/server/session/journal_notes.h"
 #include "haptic_server/server/session/shown_effects.h"
 #include "haptic_server/server/session/task_monitor.h"
+#include "haptic_server/server/session/tick_recorder.h"
 #include "haptic_server/teaching/lessons/lesson_state.h"
 
 namespace bonemill {

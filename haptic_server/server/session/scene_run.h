@@ -15,7 +15,7 @@
 #include "haptic_server/core/tick/haptic_tick.h"
 #include "haptic_server/server/publish/publisher.h"
 #include "haptic_server/server/session/device_link_io.h"
-#include "haptic_server/server/session/journal_recorder.h"
+#include "haptic_server/server/session/journal_notes.h"
 #include "haptic_server/server/session/resume.h"
 #include "haptic_server/server/session/server.h"
 #include "haptic_server/server/session/show_session.h"

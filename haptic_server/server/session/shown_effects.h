@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "haptic_server/assessment/product/judged_task.h"
+#include "haptic_server/assessment/product/judge.h"
 #include "haptic_server/core/telemetry/effect_figure.h"
 #include "haptic_server/core/telemetry/effect_record.h"
 #include "haptic_server/core/telemetry/tick_record.h"

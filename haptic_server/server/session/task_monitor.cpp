@@ -8,7 +8,7 @@
 
 #include "common/base/units.h"
 #include "common/rt/clock.h"
-#include "haptic_server/assessment/product/judged_task.h"
+#include "haptic_server/assessment/product/judge.h"
 
 namespace bonemill {
 namespace {

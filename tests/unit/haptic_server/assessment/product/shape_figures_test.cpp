@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "haptic_server/assessment/product/breach.h"
-#include "haptic_server/assessment/product/judged_task.h"
+#include "haptic_server/assessment/product/judge.h"
 #include "tests/unit/haptic_server/assessment/product/block_task.h"
 
 namespace bonemill {

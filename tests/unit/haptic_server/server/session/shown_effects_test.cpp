@@ -8,7 +8,7 @@
 
 #include "haptic_server/recording/statistics/state_hash.h"
 #include "haptic_server/scene/setup/scene_materials.h"
-#include "haptic_server/server/session/recorder.h"
+#include "haptic_server/server/session/tick_recorder.h"
 
 namespace bonemill {
 namespace {

@@ -1,4 +1,4 @@
-#include "haptic_server/assessment/product/judged_task.h"
+#include "haptic_server/assessment/product/judge.h"
 
 #include <algorithm>
 #include <cstdio>

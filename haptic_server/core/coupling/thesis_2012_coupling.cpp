@@ -1,4 +1,4 @@
-#include "haptic_server/core/coupling/virtual_coupling.h"
+#include "haptic_server/core/coupling/thesis_2012_coupling.h"
 
 #include <Eigen/LU>
 

@@ -1,9 +1,8 @@
-#include "haptic_server/server/session/recorder.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 
+#include "haptic_server/server/session/tick_recorder.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bonemill {

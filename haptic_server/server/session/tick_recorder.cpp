@@ -1,4 +1,4 @@
-#include "haptic_server/server/session/recorder.h"
+#include "haptic_server/server/session/tick_recorder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "haptic_server/server/session/journal_recorder.h"
+#include "haptic_server/server/session/journal_notes.h"
 
 #include "common/rt/clock.h"
 
