@@ -1,3 +1,5 @@
+#include "haptic_server/server/session/surroundings_feed.h"
+
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -6,7 +8,6 @@
 #include <thread>
 
 #include "common/rt/clock.h"
-#include "haptic_server/server/session/surroundings_feed.h"
 #include "haptic_server/surface/mesh/surroundings_mesher.h"
 
 namespace bonemill {

@@ -1,8 +1,9 @@
+#include "haptic_server/server/session/tick_recorder.h"
+
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "haptic_server/server/session/tick_recorder.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bonemill {
