@@ -122,6 +122,11 @@ void ShapeField::sampleNearest(const PointBatch<Scalar>& points_T, SampleBatch<S
     for (const Solid& solid : solids_) sampleNearer(solid, points_T, out);
 }
 
+template void ShapeField::leastDistance(const PointBatch<float>&, float*) const noexcept;
+template void ShapeField::leastDistance(const PointBatch<double>&, double*) const noexcept;
+template void ShapeField::sampleNearest(const PointBatch<float>&, SampleBatch<float>&) const noexcept;
+template void ShapeField::sampleNearest(const PointBatch<double>&, SampleBatch<double>&) const noexcept;
+
 // Every solid is convex: along a plane its distance falls no faster than at the start.
 void ShapeField::nearest(const PieceBatch& pieces, float* out) const noexcept {
     const int count = pieces.center.count;
