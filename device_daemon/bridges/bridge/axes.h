@@ -15,14 +15,7 @@ namespace bonemill::bridge {
 
 // Returns the rotation nearest to a matrix that should be one; nothing when it is far from all of them, or
 // not finite.
-std::optional<Eigen::Quaterniond> repairedRotation(const Eigen::Matrix3d& matrix) noexcept;
-
-Pose poseInD(const Eigen::Matrix3d& R_DV, const Eigen::Vector3d& p_V, const Eigen::Quaterniond& R_V) noexcept;
-
-// Expresses a wrench of D in the vendor's axes.
-Wrench wrenchInV(const Eigen::Matrix3d& R_DV, const Wrench& wrench_D) noexcept;
-
-std::optional<Eigen::Quaterniond> repairedRotation(const Eigen::Matrix3d& matrix) noexcept {
+inline std::optional<Eigen::Quaterniond> repairedRotation(const Eigen::Matrix3d& matrix) noexcept {
     constexpr double kMaxStretch = 0.1;  // a rotation stretches nothing; vendors' are wrong by less than 1e-3
     if (!matrix.allFinite()) return std::nullopt;
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -33,13 +26,14 @@ std::optional<Eigen::Quaterniond> repairedRotation(const Eigen::Matrix3d& matrix
     return Eigen::Quaterniond(rotation).normalized();
 }
 
-Pose poseInD(const Eigen::Matrix3d& R_DV, const Eigen::Vector3d& p_V,
-             const Eigen::Quaterniond& R_V) noexcept {
+inline Pose poseInD(const Eigen::Matrix3d& R_DV, const Eigen::Vector3d& p_V,
+                    const Eigen::Quaterniond& R_V) noexcept {
     const Eigen::Quaterniond turn(R_DV);
     return {R_DV * p_V, (turn * R_V * turn.conjugate()).normalized()};
 }
 
-Wrench wrenchInV(const Eigen::Matrix3d& R_DV, const Wrench& wrench_D) noexcept {
+// Expresses a wrench of D in the vendor's axes.
+inline Wrench wrenchInV(const Eigen::Matrix3d& R_DV, const Wrench& wrench_D) noexcept {
     return {R_DV.transpose() * wrench_D.force, R_DV.transpose() * wrench_D.torque};
 }
 

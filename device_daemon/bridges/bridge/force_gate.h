@@ -28,7 +28,7 @@ class ForceGate {
     double opening_ = 0;  // 0 closed, 1 open
 };
 
-Wrench ForceGate::step(const std::optional<Wrench>& wanted, double elapsed) noexcept {
+inline Wrench ForceGate::step(const std::optional<Wrench>& wanted, double elapsed) noexcept {
     const bool is_allowed = wanted && wanted->isFinite();
     if (is_allowed) held_ = bounded(*wanted, norms_);
     const double change = std::max(0.0, elapsed) / kFadeTime;

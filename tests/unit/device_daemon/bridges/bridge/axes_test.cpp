@@ -39,8 +39,11 @@ TEST(Axes, ATurnAboutAnAxisOfTheVendorIsOneAboutThatDirectionInD) {
         const Pose pose = poseInD(vendor.axes, vendor.to_operator, turn);
         EXPECT_NEAR((logRotation(pose.rotation) - Vector3d(0, 0, 0.4)).norm(), 0, 1e-12);
         EXPECT_NEAR((pose.position - Vector3d::UnitY()).norm(), 0, 1e-15);
-        EXPECT_NEAR(logRotation(poseInD(vendor.axes, {}, Eigen::Quaterniond::Identity()).rotation).norm(), 0,
-                    1e-12);
+        EXPECT_NEAR(
+            logRotation(
+                poseInD(vendor.axes, Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity()).rotation)
+                .norm(),
+            0, 1e-12);
     }
 }
 
