@@ -1,5 +1,6 @@
-// Turns node meshes into the bytes on the wire and back: the NodeMesh message of proto/topics_scene.proto, whose
-// vertex and index buffers are in meshoptimizer's coding. It is not RT-safe (it allocates), but thread-safe.
+// Turns node meshes into the bytes on the wire and back: the NodeMesh message of proto/topics_scene.proto,
+// whose vertex and index buffers are in meshoptimizer's coding. It is not RT-safe (it allocates), but
+// thread-safe.
 #pragma once
 
 #include <cstdint>

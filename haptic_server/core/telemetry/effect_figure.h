@@ -48,7 +48,7 @@ class FigureReader {
   public:
     constexpr FigureReader() = default;
     template <class Read>
-        requires std::is_convertible_v<Read, ColumnValue (*)(const EffectRecord&)>
+    requires std::is_convertible_v<Read, ColumnValue (*)(const EffectRecord&)>
     constexpr FigureReader(Read read) noexcept : read_(read), is_there_(true) {}
     constexpr explicit operator bool() const noexcept { return is_there_; }
     ColumnValue operator()(const EffectRecord& record) const { return read_(record); }

@@ -1,9 +1,9 @@
+#include "haptic_server/core/coupling/thesis_2012_coupling.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-
-#include "haptic_server/core/coupling/thesis_2012_coupling.h"
 
 namespace bonemill {
 namespace {
