@@ -344,6 +344,7 @@ TEST_F(Recording, NoneIsLeftWhereItIsRefused) {
 TEST_F(Recording, AFullDiskIsSaidAndHarmsNothing) {
     writeBlockScene(test::kByTime);
     std::vector<std::string> words = server();
+    words[0] = test::binDir() + "/haptic_server";
     words.insert(words.begin(), {"/usr/bin/prlimit", "--fsize=150000"});
     Process live(words), hand(daemon());
     ASSERT_TRUE(isLive()) << live.errSoFar();
