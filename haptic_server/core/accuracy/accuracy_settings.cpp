@@ -10,9 +10,11 @@ namespace {
 constexpr std::string_view kNames[] = {"thesis_2012", "fast", "balanced",    "exact",
                                        "proxy_3dof",  "vps",  "penalty_sdf", "constraint"};
 static_assert(std::size(kNames) == kPresetCount);
-constexpr std::string_view kLawNames[] = {"thesis_2012", "gradient",    "proxy_3dof",
-                                          "vps",         "penalty_sdf", "constraint"};
-static_assert(std::size(kLawNames) == size_t(ContactLaw::kConstraint) + 1);
+constexpr std::string_view kLawNames[] = {
+    kNames[size_t(Preset::kThesis2012)], "gradient",
+    kNames[size_t(Preset::kProxy3Dof)],  kNames[size_t(Preset::kVps)],
+    kNames[size_t(Preset::kPenaltySdf)], kNames[size_t(Preset::kConstraint)]};
+static_assert(std::size(kLawNames) == kLawCount);
 
 // One point per cell with exact distances; what else the law knows is `iterations`.
 AccuracySettings comparedLaw(ContactLaw law, int iterations) noexcept {

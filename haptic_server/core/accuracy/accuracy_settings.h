@@ -14,6 +14,7 @@ namespace bonemill {
 
 // Those behind kGradient are of other schools, to compare with (docs/research/laws.md).
 enum class ContactLaw : uint8_t { kThesis2012, kGradient, kProxy3Dof, kVps, kPenaltySdf, kConstraint };
+inline constexpr size_t kLawCount = 6;
 // The tool's distances come from here: trilinear in its grid, or exact from its shapes (a mesh has only
 // the grid).
 enum class ToolDistance : uint8_t { kGrid, kAnalytic };

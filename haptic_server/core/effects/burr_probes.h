@@ -2,11 +2,8 @@
 // It is RT-safe.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
-#include "common/math/pinned_math.h"
 #include "haptic_server/core/tool/burr.h"
 #include "haptic_server/core/volume/distance_field.h"
 
@@ -22,22 +19,7 @@ struct BurrProbe {
 class BurrProbes {
   public:
     BurrProbes() = default;
-    explicit BurrProbes(const Burr& burr) noexcept {
-        if (burr.kind == BurrKind::kBall) {
-            add({Eigen::Vector3d::Zero(), burr.radius});
-            return;
-        }
-        const double half = burr.length / 2;
-        const double radii = burr.length / std::max(burr.radius, 1e-6);
-        const auto balls = size_t(std::clamp(std::ceil(radii), double(kMinBalls), double(kMaxBalls)));
-        for (size_t n = 0; n < balls; ++n) {
-            const double y = half * (2.0 * (double(n) + 0.5) / double(balls) - 1);
-            const Eigen::Vector3d center(0, y, 0);
-            add({center, std::max(0.0, -burr.signedDistance(center))});
-        }
-        addRim(half, burr.radius);
-        addRim(-half, burr.kind == BurrKind::kCone ? burr.tip_radius : burr.radius);
-    }
+    explicit BurrProbes(const Burr& burr) noexcept;
 
     const BurrProbe* begin() const noexcept { return probes_.data(); }
     const BurrProbe* end() const noexcept { return probes_.data() + count_; }
@@ -48,12 +30,7 @@ class BurrProbes {
 
   private:
     void add(const BurrProbe& probe) noexcept { probes_[count_++] = probe; }
-    void addRim(double y, double radius) noexcept {
-        for (size_t n = 0; n < kRim; ++n) {
-            const double angle = 2 * M_PI * double(n) / kRim;
-            add({Eigen::Vector3d(radius * pinned::cos(angle), y, radius * pinned::sin(angle)), 0});
-        }
-    }
+    void addRim(double y, double radius) noexcept;
 
     std::array<BurrProbe, kMax> probes_;
     size_t count_ = 0;
@@ -63,16 +40,7 @@ struct NearestStructure {
     double distance;  // m from the burr's surface; the field's reach: nothing within it
     MaterialId material;
 };
-inline NearestStructure nearestStructure(const DistanceField& field, const BurrProbes& burr,
-                                         const Pose& X_VT) noexcept {
-    NearestStructure nearest{field.reach(), kNoMaterial};
-    for (const BurrProbe& probe : burr) {
-        const DistanceSample sample = field.at(X_VT * probe.center_T);
-        const double distance = sample.distance - probe.radius;
-        if (sample.nearest == kNoMaterial || distance >= nearest.distance) continue;
-        nearest = {distance, sample.nearest};
-    }
-    return nearest;
-}
+NearestStructure nearestStructure(const DistanceField& field, const BurrProbes& burr,
+                                  const Pose& X_VT) noexcept;
 
 }  // namespace bonemill

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <variant>
 
 #include "haptic_server/core/telemetry/effect_record.h"
@@ -48,8 +49,10 @@ class FigureReader {
   public:
     constexpr FigureReader() = default;
     template <class Read>
-    requires std::is_convertible_v<Read, ColumnValue (*)(const EffectRecord&)>
-    constexpr FigureReader(Read read) noexcept : read_(read), is_there_(true) {}
+    requires(!std::is_null_pointer_v<Read> &&
+             std::is_convertible_v<
+                 Read, ColumnValue (*)(const EffectRecord&)>) constexpr FigureReader(Read read) noexcept
+        : read_(read), is_there_(true) {}
     constexpr explicit operator bool() const noexcept { return is_there_; }
     ColumnValue operator()(const EffectRecord& record) const { return read_(record); }
 

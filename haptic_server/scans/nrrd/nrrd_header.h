@@ -1,5 +1,5 @@
 // Our own reading of a NRRD header: what ITK does not tell of it (units, where the data are, our exact
-// geometry), and what a reader without ITK needs (scans/import/plain_nrrd.h).
+// geometry), and what a reader without ITK needs (scans/import/plain_nrrd.cpp).
 #pragma once
 
 #include <cstdint>
