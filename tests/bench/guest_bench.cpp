@@ -18,7 +18,7 @@
 #include "common/tcp/listen.h"
 #include "common/web_socket/web_socket_client.h"
 #include "proto/gateway.pb.h"
-#include "render_client/link/subscribe/wire.h"
+#include "render_client/link/subscribe/remote_session.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/processor_time.h"
 

@@ -1,6 +1,10 @@
 // Looks at single voxels of a viewer's densities, for tests.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
 #include "render_client/link/density_store/density_store.h"
 
 namespace bonemill {

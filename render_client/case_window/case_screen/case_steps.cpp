@@ -1,5 +1,4 @@
 // The left of the screen: the five steps from a scan to a case.
-
 #include <imgui.h>
 
 #include <algorithm>
@@ -16,15 +15,14 @@
 namespace bonemill {
 namespace {
 
-// The scan's values as a plot, on which the iso-value is moved. It belongs to the render thread.
-//
 // Counts from 1 to the most frequent value's, as parts of the plot's height. A scan's air would hide all else
 // on a linear scale.
 float heightOf(double count, double most) {
     return count < 1 || most <= 1 ? 0 : float(std::log1p(count) / std::log1p(most));
 }
 
-// Returns the value that the mouse has moved the line to. What is white above the grey window is drawn white.
+// The scan's values as a plot, on which the iso-value is moved. Returns the value that the mouse has moved
+// the line to. What is white above the grey window is drawn white.
 std::optional<double> plotHistogram(const Histogram& histogram, const std::optional<double>& iso,
                                     const std::optional<double>& runner_up, const GreyWindow& window,
                                     float height, ControlPlaces& places) {

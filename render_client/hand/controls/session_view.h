@@ -1,8 +1,8 @@
-// A viewer knows this about its session, for those who show it, who may ask the server for
-// what, and what must be asked about first.
+// A viewer knows this about its session, for those who show it, who may ask the server for what, and what
+// must be asked about first.
 //
-// They are plain values, for any thread. The pointers are the owner's; they are null while nothing
-// has come yet.
+// They are plain values, for any thread. The pointers are the owner's; they are null while nothing has come
+// yet.
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// What a viewer says in a session: commands, and where its mouse wants the tool. It is for one thread.
+// What a viewer says in a session: commands, and where its mouse wants the tool.
 #pragma once
 
 #include <chrono>
@@ -33,7 +33,7 @@ struct CommandOutcome {
 std::string outcomeText(const CommandOutcome& outcome);
 
 // Commands are on their way to the server here: one after the other, repeated until acknowledged or timed
-// out.
+// out. It is for one thread.
 class CommandOutbox {
   public:
     using Clock = std::chrono::steady_clock;

@@ -1,5 +1,5 @@
-// Says in words what stands in the way of the session now, and what to do, and keeps
-// what was a fault. The functions are pure; any thread may call them.
+// Says in words what stands in the way of the session now, and what to do, and keeps what was a fault. The
+// functions are pure, for any thread; a list is for one.
 #pragma once
 
 #include <chrono>
@@ -27,8 +27,7 @@ std::vector<Condition> faultWords(const std::string& names);
 // The worst comes first.
 std::vector<Condition> conditionsOf(const HudInput& input);
 
-// Says what stands in the way: once, until it is over, and then fades. What was a fault stays in a list, with
-// its time and how often it came. It is a plain value, for one thread.
+// A fault in the list.
 struct FaultEntry {
     std::string text;
     HudTone tone = HudTone::kPlain;
@@ -38,6 +37,8 @@ struct FaultEntry {
     bool lasts = false;  // it is not over
 };
 
+// Says what stands in the way: once, until it is over, and then fades. What was a fault stays in a list, with
+// its time and how often it came. It is a plain value, for one thread.
 class FaultList {
   public:
     using Clock = std::chrono::steady_clock;

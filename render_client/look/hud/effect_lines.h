@@ -1,6 +1,5 @@
-// These are the lines, alerts and figures of training that tell of a scene's effects, and how its
-// task stands. The functions are pure;
-// any thread may call them.
+// These are the lines, alerts and figures of training that tell of a scene's effects, and how its task
+// stands. The functions are pure; any thread may call them.
 #pragma once
 
 #include <array>

@@ -14,7 +14,6 @@
 
 namespace bonemill {
 
-// Says which server a viewer waits for, and what to try.
 struct ServerSought {
     uint32_t session = 1;
     uint32_t domain = 0;
@@ -26,6 +25,7 @@ struct ServerSought {
     HudLock lock = HudLock::kNone;
 };
 
+// Says which server a viewer waits for, and what to try.
 HudPage waitingPage(const ServerSought& sought);
 
 // It says how the viewer stands with its server.

@@ -1,6 +1,5 @@
-// Signs over the picture: which way the patient lies, what a pane with a slice
-// shows, and the help page. The functions are
-// pure; any thread may call them.
+// Signs over the picture: which way the patient lies, what a pane with a slice shows, and the help page. The
+// functions are pure; any thread may call them.
 #pragma once
 
 #include <Eigen/Core>

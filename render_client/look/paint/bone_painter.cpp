@@ -11,7 +11,7 @@
 namespace bonemill {
 namespace {
 
-constexpr GLenum kUnit = 1;  // of the texture; 0 is the shadow's
+constexpr GLenum kFilmUnit = 1;  // of the film's texture; 0 is the shadow's
 
 constexpr double kGrain = 0.045;  // size of the mottling over the bone's radius
 constexpr GLuint kAllBits = 0xff;
@@ -32,7 +32,7 @@ const Eigen::Vector3f kInsideGlass(0.85f, 0.22f, 0.10f);
 FilmPainter::FilmPainter(const GlApi& gl, bool has_materials) : gl_(gl), texture_(gl) {
     setMaterials(has_materials);
     constexpr int kCells = SurfaceFilm::kCells;
-    gl_.ActiveTexture(GL_TEXTURE0 + kUnit);
+    gl_.ActiveTexture(GL_TEXTURE0 + kFilmUnit);
     gl_.BindTexture(GL_TEXTURE_3D, texture_.name());
     gl_.TexImage3D(GL_TEXTURE_3D, 0, GL_RG8, kCells, kCells, kCells, 0, GL_RG, GL_UNSIGNED_BYTE, nullptr);
     gl_.setSampling(GL_TEXTURE_3D, GL_LINEAR, GL_REPEAT);
@@ -59,7 +59,7 @@ Eigen::AlignedBox3f FilmPainter::update(const EffectPicture& picture) {
     const auto slices = film.takeChangedSlices();
     if (slices.none()) return changed;
     constexpr int kCells = SurfaceFilm::kCells;
-    gl_.ActiveTexture(GL_TEXTURE0 + kUnit);
+    gl_.ActiveTexture(GL_TEXTURE0 + kFilmUnit);
     gl_.BindTexture(GL_TEXTURE_3D, texture_.name());
     gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     for (int z = 0; z < kCells; ++z)
@@ -72,8 +72,8 @@ Eigen::AlignedBox3f FilmPainter::update(const EffectPicture& picture) {
 }
 
 void FilmPainter::setUniforms() const {
-    gl_.bindTexture(kUnit, GL_TEXTURE_3D, texture_.name());
-    surface_->set("film", int(kUnit));
+    gl_.bindTexture(kFilmUnit, GL_TEXTURE_3D, texture_.name());
+    surface_->set("film", int(kFilmUnit));
     surface_->set("film_period", period_);
     const bool is_anywhere = !shown_.isEmpty();
     surface_->set("film_low", is_anywhere ? shown_.min() : Eigen::Vector3f::Ones().eval());

@@ -17,7 +17,7 @@
 namespace bonemill {
 
 // Window and level turn the scan's values into grey, by functions that are pure, for any thread.
-//
+
 // Returns what the scan measured (HU where it is CT) for a density, and back; the density is not rounded and
 // may lie beyond its range.
 double valueOf(const DensityGrid& grid, double density);

@@ -68,14 +68,13 @@ class ImGuiStage {
     int font_version_ = 0;
 };
 
+// Where a drawing names one of these numbers it shows this texture; any other number is the font.
+using ImGuiTextures = std::map<int, GLuint>;
+
 // Draws what Dear ImGui has laid out over a finished picture, in any OpenGL 3.3 core context.
 //
 // It belongs to the thread of the context, which must be current for every call. Leaves blending and scissors
 // off.
-//
-// Where a drawing names one of these numbers it shows this texture; any other number is the font.
-using ImGuiTextures = std::map<int, GLuint>;
-
 class ImGuiPainter {
   public:
     // Throws GlError.

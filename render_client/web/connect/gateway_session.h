@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "common/web_socket/web_socket_client.h"
-#include "render_client/link/subscribe/wire.h"
+#include "render_client/link/subscribe/remote_session.h"
 
 namespace bonemill::connect {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/commands/role_rules.h"
-#include "render_client/link/subscribe/wire.h"
+#include "render_client/link/subscribe/remote_session.h"
 
 namespace bonemill::gateway {
 namespace {

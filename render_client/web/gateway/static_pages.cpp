@@ -1,5 +1,7 @@
 #include "render_client/web/gateway/static_pages.h"
 
+#include <libwebsockets.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>

@@ -1,11 +1,12 @@
 // The page's files, in memory: what is not one of them is not there. Any thread after construction.
 #pragma once
 
-#include <libwebsockets.h>
-
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <string>
+
+struct lws;
 
 namespace bonemill::gateway {
 
