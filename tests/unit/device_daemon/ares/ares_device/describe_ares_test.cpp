@@ -1,4 +1,3 @@
-
 #include <gtest/gtest.h>
 
 #include "common/base/user_error.h"

@@ -1,4 +1,3 @@
-
 #include <gtest/gtest.h>
 
 #include "haptic_server/scans/dicom/dicom_series.h"

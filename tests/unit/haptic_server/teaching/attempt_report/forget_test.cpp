@@ -1,4 +1,3 @@
-
 #include <gtest/gtest.h>
 
 #include "haptic_server/teaching/attempt_report/attempt_result.h"
