@@ -4,8 +4,8 @@
 //
 // All numbers are little-endian, floating point is IEEE 754, and every packet ends with the CRC-32 (zlib's)
 // of what is before it. Units are m, N, N·m, s unless a name says otherwise. Frames are D and T
-// (docs/develop/frames.md). The structs are the bytes on the wire. What comes in
-// is believed only when it is well-formed. Everything is RT-safe, and any thread may call it.
+// (docs/develop/frames.md). The structs are the bytes on the wire. What comes in is believed only when it is
+// well-formed. Everything is RT-safe, and any thread may call it.
 #pragma once
 
 #include <bit>

@@ -60,7 +60,7 @@ class HapticDevice {
     virtual const char* refusedFigure() const noexcept { return nullptr; }
 
     // Tells whether the device gives the pace: waitForSample() wakes with each of its samples. Otherwise the
-    // loop has its own timer, and does not call waitForSample().
+    // loop has its own timer, and does not call waitForSample(). A device that wraps another passes both on.
     virtual bool hasClock() const noexcept { return false; }
     // Sleeps until the device has a new sample, or until the deadline (CLOCK_MONOTONIC ns): true says that
     // there is one.

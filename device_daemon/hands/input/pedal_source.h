@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <utility>
 
 #include "device_daemon/hands/input/evdev_device.h"
 #include "device_daemon/hands/input/input_reader.h"

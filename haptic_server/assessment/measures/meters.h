@@ -283,7 +283,7 @@ class ForceMeter {
         excess_ += step.dt;
         excess_at_[bin] += step.dt;
     }
-    // in the order of time
+    // Samples come in the order of time.
     void add(const MotionSample& sample) noexcept {
         if (sample.follows && sample.contact >= 0.5)
             speed_at_[DistanceBins::of(sample.distance)].add(

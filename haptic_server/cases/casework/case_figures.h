@@ -14,7 +14,7 @@ namespace bonemill {
 // pieces.png of, when they run there. Start-up only. Throws UserError.
 void writeFigures(const std::filesystem::path& folder, const RawVolume& scan, const CasePlan& plan);
 
-// Throws UserError.
+// Writes a file as a whole. Throws UserError.
 void writeWhole(const std::filesystem::path& file, std::string_view bytes);
 
 // A whole gnuplot script that writes histogram.png where it runs. Start-up only: it goes through all values.

@@ -126,7 +126,7 @@ void describeEffects(const std::vector<scene::Tool>& tools, scene::Effects* effe
     effects->mutable_milling_sound();
 }
 
-// `tools` may be empty; `scan_file` and `label_file` (empty: none) stand as they are.
+// `tools` may be empty.
 scene::Scene sceneOfCase(const CasePlan& plan, const CaseRequest& request,
                          const std::vector<CaseLabel>& labels, const std::vector<scene::Tool>& tools,
                          const std::string& name) {

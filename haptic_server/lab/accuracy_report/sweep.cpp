@@ -62,7 +62,7 @@ void addCheap(Choices& choices, bool has_shapes) {
 
 void setTo(scene::Accuracy& knobs, const AccuracySettings& settings) {
     using scene::Accuracy;
-    knobs.set_contact_law(scene::Accuracy::ContactLaw(settings.law));
+    knobs.set_contact_law(scene::Accuracy::ContactLaw(settings.law));  // as scene_accuracy.cpp asserts
     knobs.set_shell_factor(uint32_t(settings.shell_factor));
     knobs.set_sample_spacing_um(std::round(kPerMicrometre * settings.sample_spacing * 1e3) / 1e3);
     knobs.set_most_samples(uint32_t(settings.most_samples));

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <optional>
+#include <span>
 #include <type_traits>
 #include <vector>
 

@@ -1,5 +1,6 @@
-// Refuses sizes that cannot be right before anything is allocated for them, and keeps a library from
-// allocating whatever a damaged length field says. There is no Eigen in here: ITK's sources include it.
+// Refuses sizes that cannot be right before anything is allocated for them, keeps a library from allocating
+// whatever a damaged length field says, and takes from a reader's process all that reading files does not
+// need. There is no Eigen in here: ITK's sources include it.
 #pragma once
 
 #include <sys/resource.h>

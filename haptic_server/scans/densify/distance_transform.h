@@ -1,6 +1,6 @@
 // Computes how far each voxel of a box is from the nearest marked one, and by that the distance field of the
-// protected structures of a scan: exact Euclidean distances between the
-// voxels' centres, by one pass of lower envelopes of parabolas per axis (Felzenszwalb and Huttenlocher 2012).
+// protected structures of a scan: exact Euclidean distances between the voxels' centres, by one pass of lower
+// envelopes of parabolas per axis (Felzenszwalb and Huttenlocher 2012).
 //
 // It is not for the tick: it allocates 7 bytes per voxel of the box. One thread at a time may use an object.
 #pragma once

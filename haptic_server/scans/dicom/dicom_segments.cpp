@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/base/user_error.h"
+#include "common/math/pinned_math.h"
 #include "haptic_server/scans/confined/import_limits.h"
 #include "haptic_server/scans/confined/shared_name.h"
 #include "haptic_server/scans/dicom/dicom_groups.h"
@@ -18,6 +19,31 @@
 #include "haptic_server/scans/pixels/dicom_rescale.h"
 
 namespace bonemill {
+
+Eigen::Vector3d colorOfLab(const std::array<uint16_t, 3>& stored) {
+    constexpr double kMax = 65535;
+    const double lightness = stored[0] / kMax * 100;
+    const double a = stored[1] / kMax * 255 - 128, b = stored[2] / kMax * 255 - 128;
+    const auto unfold = [](double f) {
+        constexpr double kBend = 6.0 / 29;
+        return f > kBend ? f * f * f : 3 * kBend * kBend * (f - 4.0 / 29);
+    };
+    const double fy = (lightness + 16) / 116;
+    const Eigen::Vector3d white(0.96422, 1, 0.82521);
+    const Eigen::Vector3d xyz =
+        white.cwiseProduct(Eigen::Vector3d(unfold(fy + a / 500), unfold(fy), unfold(fy - b / 200)));
+    // From D50 to the sRGB of IEC 61966-2-1, whose white is D65, by Bradford's adaptation.
+    Eigen::Matrix3d to_linear;
+    to_linear << 3.1338561, -1.6168667, -0.4906146, -0.9787684, 1.9161415, 0.0334540, 0.0719453, -0.2289914,
+        1.4052427;
+    return (to_linear * xyz).unaryExpr([](double linear) {
+        if (!(linear > 0)) return 0.0;
+        const double shown =
+            linear <= 0.0031308 ? 12.92 * linear : 1.055 * pinned::pow(linear, 1 / 2.4) - 0.055;
+        return std::min(shown, 1.0);
+    });
+}
+
 namespace {
 
 const gdcm::Tag kCharacterSet(0x0008, 0x0005);

@@ -39,8 +39,7 @@ bool isScout(const DicomStack& stack);  // it is no scan: a localizer, or of too
 
 // Of the stacks that are wished for, proper parts of a series go before others, then CT before all else, then
 // the one with the most slices, then the lowest number of acquisition, originals before what was derived of
-// them, and bone kernels. Throws UserError, naming `folder` and the files and positions at
-// fault.
+// them, and bone kernels. Throws UserError, naming `folder` and the files and positions at fault.
 DicomChoice chooseStack(const std::vector<DicomSlice>& slices, const DicomWish& wish,
                         const std::string& folder, const IsSamePicture& is_same_picture);
 

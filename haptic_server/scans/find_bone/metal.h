@@ -19,10 +19,9 @@ namespace bonemill {
 // How far the streaks of metal spoil the slices that it lies in. They make soft tissue uneven: values that
 // differ by little without metal differ by much. The measure is the artefact index of the literature, the
 // standard deviation in a slice with metal over that in one without, made robust: of neighbours 3 mm apart
-// that are both soft tissue (-300
-// .. 300 HU) the median difference counts, in rings of 5 mm around the metal, and the same places of the
-// slices next to the metal are what it is compared with, the worse of both sides. Streaks lie in the plane of
-// the slices (the third axis is across).
+// that are both soft tissue (-300 .. 300 HU) the median difference counts, in rings of 5 mm around the metal,
+// and the same places of the slices next to the metal are what it is compared with, the worse of both sides.
+// Streaks lie in the plane of the slices (the third axis is across).
 struct Streaks {
     int first_slice = 0, last_slice = 0;  // with metal
     double spread = 0, usual_spread = 0;  // HU, standard deviation beside the metal, and where there is none

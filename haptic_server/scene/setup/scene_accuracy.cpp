@@ -16,12 +16,14 @@ using A = scene::Accuracy;
 static_assert(int(Preset::kThesis2012) == A::THESIS_2012 && int(Preset::kFast) == A::FAST &&
               int(Preset::kBalanced) == A::BALANCED && int(Preset::kExact) == A::EXACT &&
               int(Preset::kProxy3Dof) == A::PROXY_3DOF && int(Preset::kVps) == A::VPS &&
-              int(Preset::kPenaltySdf) == A::PENALTY_SDF && int(Preset::kConstraint) == A::CONSTRAINT);
+              int(Preset::kPenaltySdf) == A::PENALTY_SDF && int(Preset::kConstraint) == A::CONSTRAINT &&
+              A::Preset_MAX == A::CONSTRAINT);
 static_assert(int(ContactLaw::kThesis2012) == A::PENALTY_THESIS_2012 &&
               int(ContactLaw::kGradient) == A::GRADIENT && int(ContactLaw::kProxy3Dof) == A::BALL_PROXY &&
               int(ContactLaw::kVps) == A::VOXMAP_POINT_SHELL &&
               int(ContactLaw::kPenaltySdf) == A::POINT_PENALTY &&
-              int(ContactLaw::kConstraint) == A::LEAST_CONSTRAINT);
+              int(ContactLaw::kConstraint) == A::LEAST_CONSTRAINT &&
+              A::ContactLaw_MAX == A::LEAST_CONSTRAINT);
 
 ShellNormals givenNormals(scene::Accuracy::Normals normals) {
     return normals == scene::Accuracy::TRILINEAR ? ShellNormals::kTrilinear

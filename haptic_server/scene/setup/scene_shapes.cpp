@@ -1,7 +1,6 @@
 #include "haptic_server/scene/setup/scene_shapes.h"
 
 #include "common/base/user_error.h"
-#include "haptic_server/scene/setup/scene_shapes.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
 
 namespace bonemill {

@@ -1,6 +1,6 @@
 // The tick sees the device of a live session through this: samples come from shared memory and wrenches go
-// there, at the pace at which ticks may run. The classes are for one thread, and RT-safe; times are
-// CLOCK_MONOTONIC ns.
+// there, at the pace at which ticks may run. LivedPeriods and TickPace are for one thread, and RT-safe;
+// DeviceLinkIo says its own. Times are CLOCK_MONOTONIC ns.
 #pragma once
 
 #include <algorithm>

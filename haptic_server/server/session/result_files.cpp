@@ -54,8 +54,6 @@ void addShape(const BoneModel& bone, journal::Manifest& manifest) {
     }
 }
 
-namespace fs = std::filesystem;
-
 constexpr int kMaxNumbers = 100'000;
 
 std::vector<NamedFile> resultsOf(const ServerOptions& options) {

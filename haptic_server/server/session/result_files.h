@@ -28,7 +28,7 @@ JournalConfig journalConfigOf(const ServerOptions& options, const LoadedScene& l
                               const Simulation& simulation);
 
 // Where the scenes of a session put their files: never over what any scene that can be chosen reads, and a
-// later scene's never over what is there already.
+// later scene's never over what is there already. It belongs to one normal thread.
 class ResultFiles {
   public:
     // `read` are the files of all scenes. Throws UserError if the session's own names are among them.

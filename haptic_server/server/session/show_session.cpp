@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <thread>
 
 #include "common/base/units.h"
 #include "common/commands/command_text.h"
@@ -51,8 +52,11 @@ void fillTool(const TriangleSurface& surface, topics::TriangleMesh* out) {
 
 // Both have the kinds in one order; AUTOMATIC is none that a tool has.
 topics::SceneInfo::Handpiece shownHandpiece(scene::Tool::Handpiece handpiece) {
-    static_assert(scene::Tool::DRILL_GUIDE - scene::Tool::NONE == topics::SceneInfo::DRILL_GUIDE &&
-                  scene::Tool::STRAIGHT - scene::Tool::NONE == topics::SceneInfo::STRAIGHT);
+    using T = scene::Tool;
+    using S = topics::SceneInfo;
+    static_assert(S::NO_HANDPIECE == 0 && T::STRAIGHT - T::NONE == S::STRAIGHT &&
+                  T::CONTRA_ANGLE - T::NONE == S::CONTRA_ANGLE &&
+                  T::DRILL_GUIDE - T::NONE == S::DRILL_GUIDE && T::Handpiece_MAX == T::DRILL_GUIDE);
     return topics::SceneInfo::Handpiece(std::max(0, handpiece - scene::Tool::NONE));
 }
 

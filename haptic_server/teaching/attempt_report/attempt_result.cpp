@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "common/base/user_error.h"
 #include "common/digest/digest.h"

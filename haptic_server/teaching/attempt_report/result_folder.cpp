@@ -48,7 +48,11 @@ void eachResult(const fs::path& class_folder,
                 const std::function<void(const fs::path&, const AttemptResult&)>& see) {
     const ResultFolder folder(class_folder);
     for (const fs::path& part : {folder.results(), folder.experts()}) {
-        std::vector<fs::path> files = resultFiles(part, "");
+        // A file of unknown kind ends this: it may be the person's.
+        std::error_code error;
+        std::vector<fs::path> files;
+        for (const fs::directory_entry& entry : fs::directory_iterator(part, error))
+            if (entry.path().extension() == ".json" && entry.is_regular_file()) files.push_back(entry.path());
         std::ranges::sort(files);
         for (const fs::path& file : files) {
             try {
@@ -87,8 +91,6 @@ void forgetStatements(const fs::path& path, const std::string& pseudonym, Forgot
         forgotten.problems.emplace_back(problem.what());
     }
 }
-
-namespace fs = std::filesystem;
 
 std::string utc(const AttemptResult& result, const char* format) {
     const std::time_t seconds = std::time_t(result.start_unix_ns / 1'000'000'000);

@@ -123,6 +123,7 @@ struct TableWriter::Shared {
         std::optional<topics::Command> order;
         std::optional<AttemptJudgement> judgement;
     };
+    explicit Shared(ClassTable of) : table(std::move(of)) {}
     Written write(const Line& line) {
         topics::Attempt attempt = line.attempt;
         std::string files_problem;
@@ -136,7 +137,6 @@ struct TableWriter::Shared {
         if (attempt.has_verdict() && line.judgement->is_told) written.verdict = attempt.verdict();
         return written;
     }
-    explicit Shared(ClassTable of) : table(std::move(of)) {}
     void work() {
         std::unique_lock lock(mutex);
         for (;;) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <iosfwd>
+#include <string>
 
 #include "haptic_server/teaching/study/study_participant.h"
 

@@ -3,6 +3,13 @@
 // pure, but for the reports that are read.
 #pragma once
 
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "haptic_server/teaching/study/form.h"
 #include "haptic_server/teaching/study/protocol.h"
 

@@ -69,10 +69,8 @@ struct Alpha {
 // statements of SUS, which are against the system, are turned round.
 std::vector<Alpha> alphasOf(const StudyData& data, const std::vector<Measure>& measures);
 
-// Every comparison that a study's protocol leads to, each with two tests and effect sizes, and P adjusted for
-// their number.
-
-// Two groups of people; each person counts once.
+// Every comparison that a study's protocol leads to has two tests and effect sizes, and P adjusted for their
+// number. This is one of two groups of people; each person counts once.
 struct GroupComparison {
     const Measure* measure = nullptr;
     std::string first, second;

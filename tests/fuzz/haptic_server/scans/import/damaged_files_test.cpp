@@ -124,7 +124,7 @@ class DamagedFiles : public ::testing::Test {
     // Damages file `name` of the folder again and again, and imports `entry`.
     void fuzz(Import import, const std::string& name, const std::string& entry, unsigned share = 1) {
         const unsigned seed = numberFromEnvironment("BONEMILL_FUZZ_SEED", 20240612);
-        const unsigned rounds = numberFromEnvironment("BONEMILL_FUZZ_ROUNDS", 1500) / share;
+        const unsigned rounds = numberFromEnvironment("BONEMILL_FUZZ_ROUNDS", 1500 / share);
         std::cout << "seed " << seed << ", " << rounds << " rounds of " << name << "\n";
         const std::string intact = readBytes(folder_ / name);
         ASSERT_FALSE(intact.empty());

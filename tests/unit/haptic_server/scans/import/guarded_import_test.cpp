@@ -267,6 +267,7 @@ TEST(GuardedImport, aReaderProgramThatDoesNotReadIsToldOf) {
     setReaderProgram("/nowhere/reader");
     expectUserError([] { importVolume("folder/a.nrrd"); }, {"folder/a.nrrd", "cannot start"});
     setReaderProgram("");  // importVolume() reads itself again
+    expectUserError([] { importVolume("folder/a.nrrd"); }, {"folder/a.nrrd", "no such file"});
 }
 
 }  // namespace
