@@ -13,7 +13,7 @@
 namespace bonemill {
 
 // The scanned bone that states differ from, and its leaves; both must outlive who has it.
-struct ScannedBone {
+struct DensitiesAsScanned {
     const VoxelVolume& volume;
     const LeafLattice& lattice;
 };
@@ -23,7 +23,7 @@ std::vector<Density> densitiesOf(const VoxelVolume& volume, const LeafLattice& l
 
 class BoneStateWriter {
   public:
-    explicit BoneStateWriter(const ScannedBone& scanned) : scanned_(scanned) {}
+    explicit BoneStateWriter(const DensitiesAsScanned& scanned) : scanned_(scanned) {}
 
     // Returns the messages that lead there from the state before, of which all but the last go on; none if
     // nothing differs, unless it is a KEY, a checkpoint, or the first after a checkpoint. Of a checkpoint the
@@ -31,7 +31,7 @@ class BoneStateWriter {
     std::vector<journal::Bone> add(const BoneSnapshot& state, journal::Bone::Kind kind);
 
   private:
-    ScannedBone scanned_;
+    DensitiesAsScanned scanned_;
     using Leaves = std::map<LeafId, std::shared_ptr<const LeafCopy>>;
     Leaves last_;
     bool is_current_ = true;  // last_ is the bone, and not only a checkpoint of it
@@ -39,7 +39,7 @@ class BoneStateWriter {
 
 class BoneStateReader {
   public:
-    explicit BoneStateReader(const ScannedBone& scanned) : scanned_(scanned) {}
+    explicit BoneStateReader(const DensitiesAsScanned& scanned) : scanned_(scanned) {}
 
     // False if the message cannot be one of this bone's, or its KEY is missing: what was whole before stays,
     // and another KEY is needed.
@@ -54,7 +54,7 @@ class BoneStateReader {
   private:
     bool take(const journal::Bone& bone);
 
-    ScannedBone scanned_;
+    DensitiesAsScanned scanned_;
     std::map<LeafId, std::shared_ptr<const LeafCopy>> leaves_;
     std::shared_ptr<const BoneSnapshot> state_;
     bool has_key_ = false, is_complete_ = false;

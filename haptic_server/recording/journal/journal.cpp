@@ -52,7 +52,7 @@ size_t bytesOf(const std::vector<journal::Bone>& messages) {
 
 }  // namespace
 
-Journal::Journal(const JournalConfig& config, const ScannedBone& scanned)
+Journal::Journal(const JournalConfig& config, const DensitiesAsScanned& scanned)
     : config_(config),
       real_minus_mono_ns_(realMinusMonotonicNs()),
       ticks_per_second_(ticksPer(1, config.rate_hz)),

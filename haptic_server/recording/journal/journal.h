@@ -33,7 +33,7 @@ struct JournalConfig {
 class Journal {
   public:
     // Makes the file. `scanned` must outlive it. Throws UserError.
-    Journal(const JournalConfig& config, const ScannedBone& scanned);
+    Journal(const JournalConfig& config, const DensitiesAsScanned& scanned);
     ~Journal();
     Journal(const Journal&) = delete;
     Journal& operator=(const Journal&) = delete;

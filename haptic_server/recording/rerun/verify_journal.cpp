@@ -80,7 +80,7 @@ class BonePass {
         return hashes;
     }
 
-    ScannedBone scanned_;
+    DensitiesAsScanned scanned_;
     BoneStateReader states_;
     std::vector<LeafId> changed_;
     size_t leaf_count_ = 0;

@@ -108,7 +108,7 @@ using AppendVoxels = void (*)(VoxelBytes&, uint64_t, bool, RawValues&);
 
 template <class T>
 void appendVoxels(VoxelBytes& bytes, uint64_t count, bool is_swapped, RawValues& values) {
-    constexpr bool is_held =
+    constexpr bool kIsHeld =
         std::is_same_v<T, uint8_t> || std::is_same_v<T, int16_t> || std::is_same_v<T, uint16_t>;
     constexpr uint64_t kBlock = uint64_t(1) << 20;
     values.reserve(size_t(count));
@@ -117,7 +117,7 @@ void appendVoxels(VoxelBytes& bytes, uint64_t count, bool is_swapped, RawValues&
         block.resize(size_t(std::min(left, kBlock)));
         bytes.read(block.data(), block.size() * sizeof(T));
         if (is_swapped) std::ranges::transform(block, block.begin(), swapped<T>);
-        if constexpr (is_held)
+        if constexpr (kIsHeld)
             values.append(std::span<const T>(block));
         else
             values.append(std::span<const float>(std::vector<float>(block.begin(), block.end())));

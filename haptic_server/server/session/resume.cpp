@@ -184,7 +184,7 @@ ResumeReading::ResumeReading(UnfinishedJournal unfinished)
       })) {}
 
 ResumedSession ResumeReading::take(const BoneModel& bone_as_scanned) {
-    const ScannedBone scanned{bone_as_scanned.volume, bone_as_scanned.lattice};
+    const DensitiesAsScanned scanned{bone_as_scanned.volume, bone_as_scanned.lattice};
     const std::unique_ptr<Raw> raw = raw_.get();
     ResumedSession out;
     BoneStateReader states(scanned);

@@ -135,7 +135,7 @@ void SceneRun::startJournal() {
     journal_config_->manifest.set_epoch(parts_.publisher.epoch());
     if (resumed_) *journal_config_->manifest.mutable_resumed_from() = resumed_->from;
     journal_ = std::make_unique<Journal>(*journal_config_,
-                                         ScannedBone{history_.scanned(), simulation_.bone->lattice});
+                                         DensitiesAsScanned{history_.scanned(), simulation_.bone->lattice});
     journal_keeper_.begin(journal_.get(), commands_.checkpoints());
     recorder_.keepJournal(journal_.get());
     spdlog::info("recording to {}", journal_->path().string());
