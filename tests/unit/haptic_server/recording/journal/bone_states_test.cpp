@@ -12,7 +12,7 @@ namespace {
 
 class BoneStates : public testing::Test {
   protected:
-    ScannedBone scanned() const { return {ball_.history.scanned(), ball_.bone.lattice}; }
+    DensitiesAsScanned scanned() const { return {ball_.history.scanned(), ball_.bone.lattice}; }
     std::shared_ptr<const BoneSnapshot> snapshot() { return ball_.history.snapshot(ball_.bone); }
     static bool addAll(BoneStateReader& reader, const std::vector<journal::Bone>& messages) {
         for (const journal::Bone& message : messages) {

@@ -30,7 +30,7 @@ class JournalTest : public testing::Test {
         config.manifest.set_scene_text("name: \"ball\"");
         return config;
     }
-    ScannedBone scanned() const { return {ball_.history.scanned(), ball_.bone.lattice}; }
+    DensitiesAsScanned scanned() const { return {ball_.history.scanned(), ball_.bone.lattice}; }
     std::vector<TickRecord> record(const JournalConfig& config) {
         Journal journal(config, scanned());
         auto records = test::recordSession(journal, ball_);
