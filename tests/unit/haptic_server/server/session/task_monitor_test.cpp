@@ -181,7 +181,7 @@ TEST_F(LimitedAttempts, TheJournalSaysThatOneWasDropped) {
     JournalConfig config;
     config.path = folder / "j.mcap";
     config.manifest.set_rate_hz(1000);
-    const ScannedBone scanned{ball_.history.scanned(), ball_.bone.lattice};
+    const DensitiesAsScanned scanned{ball_.history.scanned(), ball_.bone.lattice};
     Journal journal(config, scanned);
     journal_.begin(&journal, Checkpoints(ball_.history, ball_.bone));
     AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(),
