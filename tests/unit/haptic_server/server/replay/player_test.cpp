@@ -122,7 +122,8 @@ TEST_F(PlayerTest, PlaysToTheEndAndBeginsAnew) {
     player_.play(true);
     ASSERT_TRUE(waitFor([&] { return !now().is_playing(); }));
     EXPECT_EQ(player_.shown(), 2999u);
-    EXPECT_EQ(newest_.p_WT[0], session_.x_m[2999]) << "it has run all ticks: to the bit";
+    EXPECT_TRUE(waitFor([&] { return newest_.p_WT[0] == session_.x_m[2999]; }))
+        << "it has run all ticks: to the bit; " << newest_.p_WT[0] << " and not " << session_.x_m[2999];
     EXPECT_EQ(rerun_.history().missingVoxels(), session_.missing_voxels[2999]);
     EXPECT_EQ(speed(0.1), "done");
     player_.play(true);
