@@ -9,7 +9,7 @@
 #include "haptic_server/core/telemetry/fault_names.h"
 #include "haptic_server/core/tick/fixed_tick.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
-#include "haptic_server/surface/mesh/mesh_rounds.h"
+#include "haptic_server/surface/mesh/mesher.h"
 #include "tests/bench/bench_commands.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/corridor_run.h"

@@ -29,7 +29,6 @@
 
 #include "haptic_server/core/contact/candidates.h"
 #include "haptic_server/core/contact/contact_configs.h"
-#include "haptic_server/core/contact/patch_memory.h"
 #include "haptic_server/core/contact/point_shell.h"
 #include "haptic_server/core/contact/surface_pieces.h"
 #include "haptic_server/core/coupling/energy_coupling.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "haptic_server/core/kernels/kernels.h"
-#include "haptic_server/core/milling/burr_way.h"
+#include "haptic_server/core/milling/burr_limit.h"
 
 namespace bonemill {
 namespace {

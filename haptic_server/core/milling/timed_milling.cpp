@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "haptic_server/core/milling/burr_way.h"
+#include "haptic_server/core/milling/burr_limit.h"
 
 namespace bonemill {
 namespace {

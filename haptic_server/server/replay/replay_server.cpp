@@ -17,7 +17,7 @@
 #include "haptic_server/server/publish/other_server.h"
 #include "haptic_server/server/replay/player.h"
 #include "haptic_server/server/session/show_session.h"
-#include "haptic_server/surface/mesh/mesh_rounds.h"
+#include "haptic_server/surface/mesh/mesher.h"
 
 namespace bonemill {
 namespace {

@@ -19,7 +19,7 @@
 #include "haptic_server/scene/setup/scene_task.h"
 #include "haptic_server/server/session/result_files.h"
 #include "haptic_server/server/session/shown_effects.h"
-#include "haptic_server/surface/mesh/mesh_rounds.h"
+#include "haptic_server/surface/mesh/mesher.h"
 
 namespace bonemill {
 namespace {

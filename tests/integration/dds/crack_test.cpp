@@ -7,7 +7,7 @@
 #include "haptic_server/core/milling/timed_milling.h"
 #include "haptic_server/server/publish/publisher.h"
 #include "haptic_server/surface/mesh/mesh_check.h"
-#include "haptic_server/surface/mesh/mesh_rounds.h"
+#include "haptic_server/surface/mesh/mesher.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/contact_scene.h"
 #include "tests/support/test_bodies.h"

@@ -1,9 +1,9 @@
-#include "haptic_server/core/contact/patch_memory.h"
-
 #include <gtest/gtest.h>
 
 #include <map>
 #include <random>
+
+#include "haptic_server/core/contact/surface_pieces.h"
 
 namespace bonemill {
 namespace {

@@ -1,8 +1,8 @@
-#include "haptic_server/core/equilibrium/curvature_secant.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
+
+#include "haptic_server/core/equilibrium/gradient_model.h"
 
 namespace bonemill {
 namespace {

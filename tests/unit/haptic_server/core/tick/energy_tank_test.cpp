@@ -1,7 +1,7 @@
 // The account at the hand's port, with springs whose energies are known.
-#include "haptic_server/core/tick/energy_tank.h"
-
 #include <gtest/gtest.h>
+
+#include "haptic_server/core/tick/hand_coupling.h"
 
 namespace bonemill {
 namespace {

@@ -1,9 +1,9 @@
 // A device between two steps of its encoders.
-#include "haptic_server/core/tick/hand_estimate.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "haptic_server/core/tick/hand_pose.h"
 
 namespace bonemill {
 namespace {

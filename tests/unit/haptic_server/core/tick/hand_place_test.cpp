@@ -1,7 +1,7 @@
 // False samples do nothing, a hand that is taken elsewhere is believed when it could have got there.
-#include "haptic_server/core/tick/hand_place.h"
-
 #include <gtest/gtest.h>
+
+#include "haptic_server/core/tick/hand_pose.h"
 
 namespace bonemill {
 namespace {

@@ -9,7 +9,7 @@
 #include "common/rt/spsc_ring.h"
 #include "haptic_server/core/tick/fixed_tick.h"
 #include "haptic_server/server/publish/publisher.h"
-#include "haptic_server/surface/mesh/mesh_rounds.h"
+#include "haptic_server/surface/mesh/mesher.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"

@@ -1,5 +1,3 @@
-#include "haptic_server/surface/mesh/mesh_rounds.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -7,6 +5,7 @@
 #include <thread>
 
 #include "common/rt/clock.h"
+#include "haptic_server/surface/mesh/mesher.h"
 #include "tests/support/voxel_fields.h"
 
 namespace bonemill {

@@ -1,4 +1,4 @@
-#include "haptic_server/core/tick/hand_estimate.h"
+#include "haptic_server/core/tick/hand_pose.h"
 
 #include <algorithm>
 #include <cmath>
