@@ -148,8 +148,6 @@ class GradientContact {
     }
     void refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT, size_t most_tests) noexcept;
     void cutPatch(const ShellView& bone, uint32_t candidate) noexcept;
-    bool cutCell(const ShellView& bone, const Eigen::Vector3i& cell, uint32_t candidate,
-                 uint8_t level) noexcept;
     size_t countPieces() noexcept;
     void placePieces() noexcept;
     void movePlacesOntoSurface(const VoxelVolume& volume, size_t from) noexcept;

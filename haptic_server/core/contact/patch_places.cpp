@@ -1,61 +1,16 @@
 // Samples the patches near the tool more finely.
 #include <algorithm>
-#include <array>
 #include <utility>
 
-#include "haptic_server/core/contact/cell_corners.h"
 #include "haptic_server/core/contact/gradient_contact.h"
-#include "haptic_server/core/volume/marching_cubes_table.h"
 
 namespace bonemill {
 namespace {
 
-using Eigen::Vector3f;
 using Eigen::Vector3i;
 
 constexpr int kPlaceSteps = 2;         // from a place on a triangle onto the trilinear surface,
 constexpr double kReachOfPlace = 0.5;  // which is never so far off, in voxels
-
-int insideOf(const CellCorners& corners) noexcept {
-    int inside = 0;
-    for (int corner = 0; corner < 8; ++corner) inside |= int(corners.excess[size_t(corner)] >= 0) << corner;
-    return inside;
-}
-
-// Returns where the surface crosses an edge of the cell, in cell steps.
-Vector3f crossing(const CellCorners& corners, int edge) noexcept {
-    const CubeEdge& e = kCubeEdges[size_t(edge)];
-    const float low = corners.excess[e.low_corner], high = corners.excess[e.low_corner | 1u << e.axis];
-    Vector3f at(float(e.low_corner & 1), float(e.low_corner >> 1 & 1), float(e.low_corner >> 2 & 1));
-    at[e.axis] += low / (low - high);
-    return at;
-}
-
-using Places = Eigen::Array<float, 4, 1>;
-
-// Returns how far the trilinear surface is off the triangle, in m: a little more than it is at four places,
-// its centroid and the middles of its edges. Does what sampleField() does.
-float sagOf(const CellCorners& corners, const Vector3f (&at)[3], const Vector3f& inverse_spacing) noexcept {
-    constexpr float kMore = 1.5f;
-    const auto placesOf = [&](int axis) {
-        const float a = at[0][axis], b = at[1][axis], c = at[2][axis];
-        return Places((a + b + c) / 3, (a + b) / 2, (b + c) / 2, (c + a) / 2);
-    };
-    const Places x = placesOf(0), y = placesOf(1), z = placesOf(2);
-    const auto& e = corners.excess;
-    const Places on_x[4] = {e[0] + x * (e[1] - e[0]), e[2] + x * (e[3] - e[2]), e[4] + x * (e[5] - e[4]),
-                            e[6] + x * (e[7] - e[6])};
-    const Places dy_low = on_x[1] - on_x[0], dy_high = on_x[3] - on_x[2];
-    const Places low = on_x[0] + y * dy_low, dz = on_x[2] + y * dy_high - low;
-    const Places dx_low = (e[1] - e[0]) + y * ((e[3] - e[2]) - (e[1] - e[0]));
-    const Places dx_high = (e[5] - e[4]) + y * ((e[7] - e[6]) - (e[5] - e[4]));
-    const Places dx = dx_low + z * (dx_high - dx_low), dy = dy_low + z * (dy_high - dy_low);
-    const Places rise = ((dx * inverse_spacing.x()).square() + (dy * inverse_spacing.y()).square() +
-                         (dz * inverse_spacing.z()).square())
-                            .sqrt();
-    const Places sag = (low + z * dz).abs() / rise;
-    return kMore * (rise > 0).select(sag, 0.0f).maxCoeff();
-}
 
 }  // namespace
 
@@ -81,7 +36,7 @@ void GradientContact::refine(const ShellView& bone, const ToolField& tool, const
         return;
     }
     for (size_t n = 0; n < split_count_; ++n) cutPatch(bone, split_[n]);
-    const uint8_t level_of_new = pieces_.cut(most_of_new, most);
+    const uint8_t level_of_new = pieces_.cut(bone.volume, most_of_new, most);
     has_fewer_samples_ = pieces_.isCoarse() && affordable < kMaxTimes * asked_for &&
                          (most_of_new < asked_for || pieces_.count() > most);
     for (size_t n = 0; n < split_count_; ++n)
@@ -103,34 +58,7 @@ void GradientContact::cutPatch(const ShellView& bone, uint32_t candidate) noexce
     const Vector3i last = (first.array() + (factor - 1)).min(leaf.max.array());
     for (int k = first.z(); k <= last.z(); ++k)
         for (int j = first.y(); j <= last.y(); ++j)
-            for (int i = first.x(); i <= last.x(); ++i)
-                if (!cutCell(bone, {i, j, k}, candidate, level)) return;
-}
-
-bool GradientContact::cutCell(const ShellView& bone, const Vector3i& cell, uint32_t candidate,
-                              uint8_t level) noexcept {
-    const CellCorners corners = readCorners(bone.volume, cell);
-    const CubeTriangles& triangles = cubeTriangles()[size_t(insideOf(corners))];
-    const Eigen::Vector3d& spacing = bone.volume.spacing();
-    const Vector3f base = (cell.cast<double>().cwiseProduct(spacing) - origin_).cast<float>();
-    const Vector3f steps = spacing.cast<float>();
-    const Vector3f inverse_steps = steps.cwiseInverse();
-    std::array<Vector3f, 12> on_edge;  // of those that the surface crosses
-    unsigned known = 0;
-    for (int n = 0; n < triangles.count; ++n) {
-        Vector3f at[3], corner_V[3];
-        for (size_t c = 0; c < 3; ++c) {
-            const unsigned edge = triangles.edges[size_t(n)][c];
-            if (!(known >> edge & 1)) on_edge[edge] = crossing(corners, int(edge));
-            known |= 1u << edge;
-            at[c] = on_edge[edge];
-            corner_V[c] = base + at[c].cwiseProduct(steps);
-        }
-        const float sag =
-            std::min(sagOf(corners, at, inverse_steps), float(kReachOfPlace) * steps.minCoeff());
-        if (!pieces_.add(corner_V, sag, candidate, level)) return false;
-    }
-    return true;
+            for (int i = first.x(); i <= last.x(); ++i) pieces_.add(bone.volume, {i, j, k}, candidate, level);
 }
 
 // Counts each patch's pieces, so that placePieces() puts them side by side. Returns how many there are.

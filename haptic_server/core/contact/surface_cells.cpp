@@ -6,8 +6,6 @@
 #include "haptic_server/core/volume/marching_cubes_table.h"
 
 namespace bonemill {
-namespace {
-
 // The triangles are packed as the kernel wants them.
 std::vector<int> packedTriangles() {
     static_assert(kMaxCubeTriangles == kTrianglesPerCell);
@@ -21,8 +19,6 @@ std::vector<int> packedTriangles() {
     }
     return packed;
 }
-
-}  // namespace
 
 SurfaceCells::SurfaceCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_cells)
     : triangles_(packedTriangles()), crossed_(leaf_cells) {

@@ -1,27 +1,42 @@
 #include "haptic_server/core/contact/surface_pieces.h"
 
-#include <cmath>
+#include "haptic_server/core/contact/cell_corners.h"
+#include "haptic_server/core/contact/surface_cells.h"
 
 namespace bonemill {
 namespace {
 
-using Eigen::Vector3f;
-
-constexpr size_t kEdge[3][2] = {{0, 1}, {1, 2}, {2, 0}};  // which corners it joins
-
-void findLongestEdge(SurfacePiece& piece) noexcept {
-    piece.longest_squared = -1;
-    for (uint8_t edge = 0; edge < 3; ++edge) {
-        const float squared = (piece.corner[kEdge[edge][1]] - piece.corner[kEdge[edge][0]]).squaredNorm();
-        if (squared > piece.longest_squared) piece.longest_squared = squared, piece.longest_edge = edge;
-    }
-}
+constexpr double kMostSag = 0.5;  // voxels: the surface is taken to be no farther off a triangle
 
 }  // namespace
 
 SurfacePieces::SurfacePieces(size_t room)
-    : into_tool_(Pose{}, Eigen::Vector3d::Zero()), waiting_(room), next_(room), finished_(room) {
+    : into_tool_(Pose{}, Eigen::Vector3d::Zero()), cases_(packedTriangles()), room_(room) {
+    for (auto* values : {&nx_, &ny_, &nz_, &bend_, &area_, &longest_, &nearest_})
+        values->resize(room + kCellLanes);
+    for (auto& values : corner_) values.resize(room + kCellLanes);
+    for (auto* values : {&cell_, &finest_, &edge_, &triangle_, &next_, &finished_})
+        values->resize(room + kCellLanes);
+    patch_.resize(room);
     first_.fill(kNone);
+}
+
+PieceArrays SurfacePieces::pieces(size_t from) noexcept {
+    PieceArrays arrays;
+    for (size_t n = 0; n < 9; ++n) arrays.corner[n] = &corner_[n][from];
+    arrays.area = &area_[from], arrays.longest = &longest_[from];
+    arrays.edge = &edge_[from], arrays.triangle = &triangle_[from];
+    return arrays;
+}
+
+// From this one on, with their first pieces behind all others.
+SurfaceTriangles SurfacePieces::triangles(size_t from) noexcept {
+    SurfaceTriangles arrays;
+    for (size_t n = 0; n < 9; ++n) arrays.corner[n] = &corner_[n][used_];
+    arrays.area = &area_[used_];
+    arrays.nx = &nx_[from], arrays.ny = &ny_[from], arrays.nz = &nz_[from], arrays.bend = &bend_[from];
+    arrays.cell = &cell_[from], arrays.finest = &finest_[from];
+    return arrays;
 }
 
 void SurfacePieces::start(const ToolField& tool, const Pose& X_VT, const Eigen::Vector3d& origin_V,
@@ -29,128 +44,132 @@ void SurfacePieces::start(const ToolField& tool, const Pose& X_VT, const Eigen::
     tool_ = &tool;
     into_tool_ = IntoTool<float>(X_VT, origin_V);
     R_TV_ = X_VT.rotation.conjugate().toRotationMatrix().cast<float>();
-    margin_ = float(margin);
-    fine_within_ = float(fine_within);
-    per_spacing_squared_ = float(1 / (spacing * spacing));
+    origin_ = origin_V;
+    rules_ = {.margin = float(margin),
+              .fine_within = float(fine_within),
+              .length_per_distance = kLengthPerDistance,
+              .longest_enough = float(tool.thinnestRadius()),
+              .per_spacing_squared = float(1 / (spacing * spacing))};
     first_.fill(kNone);
-    first_free_ = kNone;
-    used_ = 0;
-    finished_count_ = count_ = 0;
-    fresh_count_ = 0;
+    used_ = finished_count_ = count_ = triangle_count_ = 0;
+    cell_count_ = 0;
 }
 
-bool SurfacePieces::add(const Vector3f corners[3], float sag, uint32_t patch, uint8_t level) noexcept {
-    if (count_ + size_t(fresh_count_) >= finished_.size()) return false;
-    const Vector3f across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-    const float twice_area = across.norm();
-    if (!(twice_area > 0)) return true;
-    SurfacePiece& piece = fresh_[fresh_count_++];
-    std::copy_n(corners, 3, piece.corner.begin());
-    piece.area = twice_area / 2;
-    piece.normal_T = R_TV_ * (across / twice_area);
-    piece.patch = patch;
-    piece.level = level;
-    findLongestEdge(piece);
-    piece.bend = sag / piece.longest_squared;
-    if (fresh_count_ == kFresh) sort();
-    return true;
+void SurfacePieces::add(const VoxelVolume& volume, const Eigen::Vector3i& cell, uint32_t patch,
+                        uint8_t level) noexcept {
+    const CellCorners corners = readCorners(volume, cell);
+    int inside = 0;
+    for (int corner = 0; corner < 8; ++corner) inside |= int(corners.excess[size_t(corner)] >= 0) << corner;
+    if (inside == 0 || inside == 255) return;
+    const auto n = size_t(cell_count_++);
+    for (size_t corner = 0; corner < 8; ++corner) excess_[corner][n] = corners.excess[corner];
+    const Eigen::Vector3f at = (cell.cast<double>().cwiseProduct(volume.spacing()) - origin_).cast<float>();
+    cell_x_[n] = at.x(), cell_y_[n] = at.y(), cell_z_[n] = at.z();
+    inside_[n] = inside;
+    cell_patch_[n] = patch;
+    cell_level_[n] = level == PatchMemory::kNew ? kNone : int(level);
+    if (cell_count_ == kCells) makeTriangles(volume);
 }
 
-// Drops those of the new pieces that the tool cannot reach.
-void SurfacePieces::sort() noexcept {
-    // No point of a triangle is farther from its centroid than two thirds of its longest edge.
-    constexpr float kReach = 2.0f / 3;
-    alignas(64) float x[kFresh], y[kFresh], z[kFresh], nearest[kFresh];
+// Of the cells that wait. What there is no room for is left out.
+void SurfacePieces::makeTriangles(const VoxelVolume& volume) noexcept {
+    const int cells = std::exchange(cell_count_, 0);
+    if (cells == 0 || isFull(size_t(cells * kTrianglesPerCell))) return;
+    CellArrays arrays;
+    for (size_t corner = 0; corner < 8; ++corner) arrays.excess[corner] = excess_[corner];
+    arrays.inside = inside_;
+    arrays.count = cells;
+    CellPlaces places{.x = cell_x_, .y = cell_y_, .z = cell_z_, .steps = {}, .R_TV = {}, .most_sag = {}};
+    for (int axis = 0; axis < 3; ++axis) places.steps[axis] = float(volume.spacing()[axis]);
+    for (int i = 0; i < 9; ++i) places.R_TV[i] = R_TV_(i / 3, i % 3);
+    places.most_sag = float(kMostSag * volume.spacing().minCoeff());
+    const int made = kernels().cell_triangles(arrays, cases_.data(), places, triangles(triangle_count_));
+    const size_t first = used_;
+    for (int n = 0; n < made; ++n, ++triangle_count_) {
+        const auto cell = size_t(cell_[triangle_count_]);
+        finest_[triangle_count_] = cell_level_[cell];
+        patch_[triangle_count_] = cell_patch_[cell];
+        triangle_[first + size_t(n)] = int(triangle_count_);
+    }
+    used_ += size_t(made);
+    for (int n = 0; n < made; n += kBatch) {
+        const int count = std::min(kBatch, made - n);
+        sort(int(first) + n, count);
+    }
+}
+
+// Finds out which of these new pieces wait to be cut, and drops those that the tool cannot reach. There is
+// nothing between `gap` and `behind_gap`.
+void SurfacePieces::sort(int first, int count, int gap, int behind_gap) noexcept {
+    alignas(64) float x[kBatch], y[kBatch], z[kBatch], sag[kBatch], nearest[kBatch];
+    alignas(64) int finest[kBatch], level[kBatch];
     PieceBatch batch;
-    for (int i = 0; i < fresh_count_; ++i) {
-        const SurfacePiece& piece = fresh_[i];
-        const Vector3f center = piece.centroid();
-        x[i] = center.x(), y[i] = center.y(), z[i] = center.z();
-        batch.nx[i] = piece.normal_T.x(), batch.ny[i] = piece.normal_T.y(), batch.nz[i] = piece.normal_T.z();
-        batch.reach[i] = kReach * std::sqrt(piece.longest_squared);
-    }
-    into_tool_.fill(batch.center, x, y, z, fresh_count_);
+    kernels().measure_pieces(pieces(), triangles(), first, count,
+                             {x, y, z, batch.reach, batch.nx, batch.ny, batch.nz, sag, finest});
+    into_tool_.fill(batch.center, x, y, z, count);
     tool_->nearest(batch, nearest);
-    point_tests_ += size_t(fresh_count_);
-    for (int i = 0; i < fresh_count_; ++i) {
-        fresh_[i].nearest = nearest[i] - fresh_[i].bend * fresh_[i].longest_squared;
-        if (fresh_[i].nearest < margin_ && count_ < finished_.size()) keep(fresh_[i]);
-    }
-    fresh_count_ = 0;
-}
-
-// Returns the first of the levels, from coarse to fine, at which the piece is too long.
-int SurfacePieces::levelToCut(const SurfacePiece& piece) const noexcept {
-    const float times = piece.longest_squared * per_spacing_squared_;
-    if (!(times > 1)) return kFinished;  // nor is a piece cut that has no length left
-    const int level = std::min(std::ilogb(times), kLevels - 1);
-    if (piece.level != PatchMemory::kNew && piece.level > level) return kFinished;
-    const float enough = shortEnough(*tool_, piece.nearest);
-    return piece.nearest < fine_within_ || piece.longest_squared > enough * enough ? level : kFinished;
-}
-
-void SurfacePieces::keep(const SurfacePiece& piece) noexcept {
-    ++count_;
-    const int level = levelToCut(piece);
-    if (level == kFinished) return finish(piece);
-    const uint32_t place = first_free_ != kNone ? first_free_ : used_++;
-    if (place == first_free_) first_free_ = next_[place];
-    waiting_[place] = piece;
-    next_[place] = std::exchange(first_[size_t(level)], place);
-}
-
-void SurfacePieces::finish(const SurfacePiece& piece) noexcept {
-    finished_[finished_count_++] = {piece.centroid(), piece.area, piece.nearest, piece.patch};
-}
-
-void SurfacePieces::halve(const SurfacePiece& piece) noexcept {
-    if (fresh_count_ + 2 > kFresh) sort();
-    const auto& ends = kEdge[piece.longest_edge];
-    const Vector3f middle = (piece.corner[ends[0]] + piece.corner[ends[1]]) / 2;
-    for (const size_t moved : {ends[1], ends[0]}) {
-        SurfacePiece& half = fresh_[fresh_count_++];
-        half = piece;
-        half.area = piece.area / 2;
-        half.corner[moved] = middle;
-        findLongestEdge(half);
+    point_tests_ += size_t(count);
+    kernels().level_pieces(rules_, &longest_[size_t(first)], sag, finest, count, nearest, level);
+    for (int i = 0; i < count; ++i) {
+        if ((i >= gap && i < behind_gap) || level[i] == kPieceDropped) continue;
+        const int piece = first + i;
+        nearest_[size_t(piece)] = nearest[i];
+        ++count_;
+        if (level[i] == kPieceFinished)
+            finish(piece);
+        else
+            next_[size_t(piece)] = std::exchange(first_[size_t(level[i])], piece);
     }
 }
 
-// Cuts the pieces of this level until none is left there; without room those of new patches stay as they are.
-void SurfacePieces::cutAll(int level, bool has_room) noexcept {
-    while (first_[size_t(level)] != kNone) {
-        while (first_[size_t(level)] != kNone) {
-            const uint32_t place = take(level);
-            const SurfacePiece& piece = waiting_[place];
-            if ((piece.level == PatchMemory::kNew && !has_room) ||
-                count_ + size_t(fresh_count_) >= finished_.size()) {
-                finish(piece);
-                is_coarse_ = true;
-            } else {
-                halve(piece);
-                --count_;
-            }
-            free(place);
+// Takes pieces of this level off the list; those of new patches, for which there is no room, stay as they
+// are.
+int SurfacePieces::takeSome(int level, bool has_room, int (&which)[kBatch / 2]) noexcept {
+    int& first = first_[size_t(level)];
+    int count = 0;
+    while (first != kNone && count < kBatch / 2) {
+        const int piece = std::exchange(first, next_[size_t(first)]);
+        if (!has_room && finest_[size_t(triangle_[size_t(piece)])] == kNone) {
+            finish(piece);
+            is_coarse_ = true;
+        } else {
+            which[count++] = piece;
         }
-        sort();
+    }
+    return count;
+}
+
+void SurfacePieces::finishAll(int level) noexcept {
+    for (int& first = first_[size_t(level)]; first != kNone; is_coarse_ = true)
+        finish(std::exchange(first, next_[size_t(first)]));
+}
+
+// Cuts the pieces of this level until none is left there.
+void SurfacePieces::cutAll(int level, bool has_room) noexcept {
+    alignas(64) int which[kBatch / 2] = {};
+    while (first_[size_t(level)] != kNone) {
+        if (isFull(kBatch)) return finishAll(level);
+        const int count = takeSome(level, has_room, which);
+        if (count == 0) continue;
+        const int padded = (count + kCellLanes - 1) / kCellLanes * kCellLanes, to = int(used_);
+        kernels().halve_pieces(pieces(), which, count, to);
+        used_ += size_t(2 * padded);
+        count_ -= size_t(count);
+        sort(to, padded + count, count, padded);
     }
 }
 
-uint8_t SurfacePieces::cut(size_t most_of_new, size_t most) noexcept {
-    sort();
+uint8_t SurfacePieces::cut(const VoxelVolume& volume, size_t most_of_new, size_t most) noexcept {
+    makeTriangles(volume);
     is_coarse_ = false;
-    int level_of_new = kLevels, level = kLevels - 1;
+    int level_of_new = kPieceLevels, level = kPieceLevels - 1;
     bool has_room = true;
     for (; level >= 0 && count_ <= most; --level) {
         has_room = has_room && 2 * count_ <= most_of_new;
         if (has_room) level_of_new = level;
         cutAll(level, has_room);
     }
-    for (; level >= 0; --level)
-        while (first_[size_t(level)] != kNone) {
-            finish(waiting_[take(level)]);
-            is_coarse_ = true;
-        }
+    for (; level >= 0; --level) finishAll(level);
     return uint8_t(level_of_new);
 }
 

@@ -10,6 +10,7 @@
 
 #include "haptic_server/core/contact/into_tool.h"
 #include "haptic_server/core/contact/patch_id.h"
+#include "haptic_server/core/kernels/kernels.h"
 
 namespace bonemill {
 
@@ -60,20 +61,6 @@ class PatchMemory {
     uint8_t nowhere_ = kNew;
 };
 
-struct SurfacePiece {
-    std::array<Eigen::Vector3f, 3> corner;  // m
-    float area;                             // m²
-    float longest_squared;                  // m²: of its edges
-    float nearest;                          // m: no point of it is nearer to the tool
-    Eigen::Vector3f normal_T;               // unit
-    uint32_t patch;                         // which candidate it is a part of
-    float bend;            // 1/m: times longest_squared, how far the surface itself may be off the flat piece
-    uint8_t longest_edge;  // which that is
-    uint8_t level;         // to which the patch is cut; PatchMemory::kNew: as finely as there is room
-
-    Eigen::Vector3f centroid() const noexcept { return (corner[0] + corner[1] + corner[2]) / 3; }
-};
-
 // It is what is left of a piece that is cut no further.
 struct FinishedPiece {
     Eigen::Vector3f centroid;  // m
@@ -89,7 +76,7 @@ struct FinishedPiece {
 // A piece is cut in two across its longest edge as long as that is longer than its limit: the sampling's
 // spacing where the tool touches or nearly does, and in proportion to the distance away from it. Pieces that
 // the tool cannot reach are dropped. Those that are too long wait in one list for each level of length, so
-// that a piece is looked at again only when it is cut.
+// that a piece is looked at again only when it is cut; many are cut at once (kernels/piece_loops.h).
 //
 // It is RT-safe but for construction, and for the tick thread only. Positions are in V's axes, from an
 // origin.
@@ -97,8 +84,8 @@ class SurfacePieces {
   public:
     // A piece at this distance (m) needs to be no shorter: a few times as long as it is far from the tool,
     // but not so long that a thin tool finds its way between two samples.
+    static constexpr float kLengthPerDistance = 4;
     static float shortEnough(const ToolField& tool, float nearest) noexcept {
-        constexpr float kLengthPerDistance = 4;
         return std::min(kLengthPerDistance * nearest, float(tool.thinnestRadius()));
     }
 
@@ -109,58 +96,75 @@ class SurfacePieces {
     // `spacing`, which is above 0).
     void start(const ToolField& tool, const Pose& X_VT, const Eigen::Vector3d& origin_V, double margin,
                double fine_within, double spacing) noexcept;
-    // A patch of level n is cut to the spacing times the n-th power of root 2. False: there is no room for
-    // it.
-    bool add(const Eigen::Vector3f corners[3], float sag, uint32_t patch, uint8_t level) noexcept;
+    // Adds the surface in a cell. A patch of level n is cut to the spacing times the n-th power of root 2.
+    void add(const VoxelVolume& volume, const Eigen::Vector3i& cell, uint32_t patch, uint8_t level) noexcept;
     // Cuts all that was added, those of new patches to the spacing, or more coarsely, so that there are no
     // more than about most_of_new pieces in all. Returns their level. Other patches are cut to theirs as long
     // as there are no more than about `most`.
-    uint8_t cut(size_t most_of_new, size_t most) noexcept;
+    uint8_t cut(const VoxelVolume& volume, size_t most_of_new, size_t most) noexcept;
     size_t count() const noexcept { return finished_count_; }
     // The last cut() left pieces that are too long.
     bool isCoarse() const noexcept { return is_coarse_; }
 
     template <class Visit>
     void forEach(Visit&& visit) const noexcept {
-        for (size_t n = 0; n < finished_count_; ++n) visit(finished_[n]);
+        for (size_t n = 0; n < finished_count_; ++n) {
+            const size_t piece = finished_[n];
+            const auto middle = [&](size_t axis) {
+                return (corner_[axis][piece] + corner_[axis + 3][piece] + corner_[axis + 6][piece]) / 3;
+            };
+            visit(FinishedPiece{{middle(0), middle(1), middle(2)},
+                                area_[piece],
+                                nearest_[piece],
+                                patch_[size_t(triangle_[piece])]});
+        }
     }
     // Work since the last call, in distances of one point to the tool.
     size_t takePointTests() noexcept { return std::exchange(point_tests_, 0); }
 
   private:
-    static constexpr int kLevels = 32;
-    static constexpr int kFinished = -1;
-    static constexpr uint32_t kNone = ~uint32_t(0);
-    static constexpr int kFresh = PointBatch<float>::kCapacity;
+    static constexpr int kNone = -1;
+    static constexpr int kBatch = PointBatch<float>::kCapacity;
+    static constexpr int kCells = kBatch;  // whose triangles are made together
 
-    int levelToCut(const SurfacePiece& piece) const noexcept;
-    void halve(const SurfacePiece& piece) noexcept;
-    void sort() noexcept;
-    void keep(const SurfacePiece& piece) noexcept;
-    void finish(const SurfacePiece& piece) noexcept;
+    void makeTriangles(const VoxelVolume& volume) noexcept;
+    void sort(int first, int count, int gap = 0, int behind_gap = 0) noexcept;
     void cutAll(int level, bool has_room) noexcept;
-    // Takes a piece from this list, which is not empty; returns where it is until freed.
-    uint32_t take(int level) noexcept {
-        return std::exchange(first_[size_t(level)], next_[first_[size_t(level)]]);
-    }
-    void free(uint32_t place) noexcept { next_[place] = std::exchange(first_free_, place); }
+    int takeSome(int level, bool has_room, int (&which)[kBatch / 2]) noexcept;
+    void finish(int piece) noexcept { finished_[finished_count_++] = piece; }
+    void finishAll(int level) noexcept;
+    bool isFull(size_t more) const noexcept { return used_ + more + kBatch > room_; }
+    PieceArrays pieces(size_t from = 0) noexcept;
+    SurfaceTriangles triangles(size_t from = 0) noexcept;
 
     const ToolField* tool_ = nullptr;
     IntoTool<float> into_tool_;
+    PieceRules rules_{};
     Eigen::Matrix3f R_TV_ = Eigen::Matrix3f::Identity();
-    float margin_ = 0, fine_within_ = 0;
-    float per_spacing_squared_ = 0;  // 1/m²
-    // Pieces that wait to be cut: linked lists by level, and one of free places below used_.
-    std::vector<SurfacePiece> waiting_;
-    std::vector<uint32_t> next_;
-    std::array<uint32_t, size_t(kLevels)> first_;
-    uint32_t first_free_ = kNone, used_ = 0;
-    std::vector<FinishedPiece> finished_;
+    Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+    // Cells whose triangles are not made yet.
+    int cell_count_ = 0;
+    alignas(64) float excess_[8][kCells], cell_x_[kCells], cell_y_[kCells], cell_z_[kCells];
+    alignas(64) int inside_[kCells], cell_level_[kCells];
+    uint32_t cell_patch_[kCells];
+    // The triangles.
+    std::vector<int> cases_;  // those of each set of inside corners
+    std::vector<float> nx_, ny_, nz_, bend_;
+    std::vector<int> cell_, finest_;
+    std::vector<uint32_t> patch_;
+    size_t triangle_count_ = 0;
+    // All pieces that ever were, the first used_: each stays when it is cut, and its halves come behind.
+    size_t room_;
+    std::vector<float> corner_[9], area_, longest_, nearest_;
+    std::vector<int> edge_, triangle_;
+    size_t used_ = 0;
+    // Those that wait to be cut: linked lists by level.
+    std::vector<int> next_;
+    std::array<int, size_t(kPieceLevels)> first_;
+    std::vector<int> finished_;
     size_t finished_count_ = 0;
     size_t count_ = 0;  // finished or waiting
     bool is_coarse_ = false;
-    SurfacePiece fresh_[kFresh];  // whose distances are looked at together
-    int fresh_count_ = 0;
     size_t point_tests_ = 0;
 };
 

@@ -81,6 +81,7 @@ inline void loadWords(const uint16_t* p, W& words) {
 
 // These need the vectors.
 #include "haptic_server/core/kernels/cell_loops.h"
+#include "haptic_server/core/kernels/piece_loops.h"
 #include "haptic_server/core/kernels/point_loops.h"
 #include "haptic_server/core/kernels/row_loops.h"
 
@@ -98,6 +99,10 @@ const Kernels kTable = {.single = {intoFrame<float>, nearerRound<float>, sampleN
                         .cell_patches = cellPatches,
                         .project_into_cells = projectIntoCells,
                         .move_onto_surface = moveOntoSurface,
+                        .cell_triangles = cellTriangles,
+                        .halve_pieces = halvePieces,
+                        .measure_pieces = measurePieces,
+                        .level_pieces = levelPieces,
                         .least_scaled = leastScaled,
                         .range_of_rows = rangeOfRows,
                         .cell_sides = cellSides};

@@ -178,6 +178,49 @@ struct SurfacePoints {
     int count;
 };
 
+// Triangles of iso-surface are cut into pieces, by halves across their longest edges
+// (contact/surface_pieces.h). All are structures of arrays that go on to the next multiple of kCellLanes.
+
+// Where the cells lie whose triangles are wanted.
+struct CellPlaces {
+    const float *x, *y, *z;  // m: of their first corners
+    float steps[3];          // m
+    float R_TV[9];           // rows
+    float most_sag;          // m: the trilinear surface is taken to be no farther off a triangle
+};
+struct SurfaceTriangles {
+    float* corner[9];     // m: x, y, z of the first corner, then of the others
+    float* area;          // m²
+    float *nx, *ny, *nz;  // T, unit
+    float* bend;  // 1/m: times the square of a piece's longest edge, how far the surface may be off it
+    int* cell;    // which it lies in
+    int* finest;  // the last level to which its pieces are cut; none: -1
+};
+struct PieceArrays {
+    float* corner[9];  // m: x, y, z of the first corner, then of the others
+    float* area;       // m²
+    float* longest;    // m²: the square of its longest edge
+    int* edge;         // which that is: it leads from this corner to the next
+    int* triangle;     // which it is a part of
+};
+struct MeasuredPieces {
+    float *x, *y, *z;     // m: centroids
+    float* reach;         // m: no point of a piece is farther from its centroid
+    float *nx, *ny, *nz;  // T, unit
+    float* sag;           // m: the surface is no farther off it
+    int* finest;          // of its triangle
+};
+// A piece has to be cut at the level n if the square of its longest edge is from 2^n to 2^(n+1) times that of
+// the spacing; or it is finished, or out of reach.
+inline constexpr int kPieceLevels = 32, kPieceFinished = -1, kPieceDropped = -2;
+struct PieceRules {
+    float margin;               // m: what is not nearer to the tool is dropped
+    float fine_within;          // m: what is nearer is cut,
+    float length_per_distance;  // and what is longer than this for its distance,
+    float longest_enough;       // or than this, m
+    float per_spacing_squared;  // 1/m²
+};
+
 struct Kernels {
     PointKernels<float> single;
     PointKernels<double> twice;
@@ -209,6 +252,19 @@ struct Kernels {
                                const CellProjections& out);
     // Takes Newton steps up or down the density's gradient, from cell to cell.
     void (*move_onto_surface)(const DensityView& density, int steps, const SurfacePoints& points);
+    // Appends the triangles in these cells; their corners, areas, normals, bends and cells are written.
+    // Returns how many there are.
+    int (*cell_triangles)(const CellArrays& cells, const int* triangles, const CellPlaces& places,
+                          const SurfaceTriangles& out);
+    // Writes the halves of these pieces: the first ones from `to` on, the others from the next multiple of
+    // kCellLanes behind their number on. The list of them goes on to that multiple, with any pieces.
+    void (*halve_pieces)(const PieceArrays& pieces, const int* which, int count, int to);
+    // Finds the longest edges of the pieces from `first` on, and what sort() needs.
+    void (*measure_pieces)(const PieceArrays& pieces, const SurfaceTriangles& triangles, int first, int count,
+                           const MeasuredPieces& out);
+    // Takes the sags from the pieces' distances, and finds their levels.
+    void (*level_pieces)(const PieceRules& rules, const float* longest, const float* sag, const int* finest,
+                         int count, float* nearest, int* level);
     // Returns the least of (value - lowest) * scale over the elements, but never more than `most`.
     float (*least_scaled)(const float* value, const float* lowest, const float* scale, int count, float most);
     // Finds the least and the largest of `rows` rows that lie `stride` voxels apart, joined with
