@@ -53,11 +53,16 @@ struct Candidates {
         count += size_t(n);
         return n == point_count;
     }
-    void copy(size_t from, size_t to) noexcept {
-        x[to] = x[from], y[to] = y[from], z[to] = z[from];
-        nx[to] = nx[from], ny[to] = ny[from], nz[to] = nz[from];
-        weight[to] = weight[from], area[to] = area[from], nearest[to] = nearest[from];
-        patch[to] = patch[from];
+    // Appends those of `from` that `which` lists, for which there must be room.
+    void append(const Candidates& from, const uint32_t* which, size_t n) noexcept {
+        const auto copy = [&](auto& to, const auto& values) {
+            for (size_t i = 0; i < n; ++i) to[count + i] = values[which[i]];
+        };
+        copy(x, from.x), copy(y, from.y), copy(z, from.z);
+        copy(nx, from.nx), copy(ny, from.ny), copy(nz, from.nz);
+        copy(weight, from.weight), copy(area, from.area), copy(nearest, from.nearest);
+        copy(patch, from.patch);
+        count += n;
     }
     Eigen::Vector3f position(size_t n) const noexcept { return {x[n], y[n], z[n]}; }
     Eigen::Vector3f normal(size_t n) const noexcept { return {nx[n], ny[n], nz[n]}; }

@@ -104,9 +104,13 @@ class TouchingPoints {
 
 GradientContact::GradientContact(const GradientContactConfig& config, size_t most_candidates)
     : config_(config),
+      near_(most_candidates),
+      near_distance_(most_candidates),
       candidates_(most_candidates),
       split_(most_candidates),
       next_place_(most_candidates),
+      source_(most_candidates),
+      piece_(most_candidates),
       lowest_(most_candidates),
       inverse_rate_(most_candidates) {}
 
@@ -134,7 +138,7 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
     const Vector3d& spacing = bone.volume.spacing();
     const double patch_diagonal = bone.shell.scalingFactor(bone.level) * spacing.norm();
     patch_reach_ = bone.sample_spacing > 0 ? kReachOfPatch * patch_diagonal : 0;
-    candidates_.count = 0;
+    near_.count = 0;
     deepest_ = 0;
     bool has_room = true;
     const Pose X_TV = X_VT.inverse();
@@ -207,11 +211,12 @@ bool GradientContact::addCandidates(const ShellBlock& block, LeafId leaf, int co
     int selected[kContactBatch];
     const int found = kernels().select_near(test, at.distance, at.gx, at.gy, at.gz, block.nx, block.ny,
                                             block.nz, count, nearest, selected);
-    const size_t before = candidates_.count;
+    const size_t before = near_.count;
     const bool has_room =
-        candidates_.add(block, selected, found, leaf, origin_, float(config_.stiffness_per_area), nearest);
-    for (size_t n = before; n < candidates_.count; ++n) {
-        deepest_ = std::max(deepest_, -double(at.distance[selected[n - before]]));
+        near_.add(block, selected, found, leaf, origin_, float(config_.stiffness_per_area), nearest);
+    for (size_t n = before; n < near_.count; ++n) {
+        near_distance_[n] = at.distance[selected[n - before]];
+        deepest_ = std::max(deepest_, -double(near_distance_[n]));
     }
     return has_room;
 }

@@ -73,7 +73,7 @@ class GradientContact {
 
     // From now on there are not more candidates than this, however much room there is.
     void limitCandidates(size_t most) noexcept {
-        candidates_.most = std::min(most, candidates_.patch.size());
+        near_.most = candidates_.most = std::min(most, candidates_.patch.size());
     }
 
     // The last gathering has fewer samples than its view asked for, for there is no time for more.
@@ -143,15 +143,17 @@ class GradientContact {
     double fineWithin() const noexcept { return std::min(margin_ / 2, kFineWithin); }
     // Is the whole patch too large for one sample?
     bool isCoarse(const ToolField& tool, size_t candidate) const noexcept {
-        const float near = candidates_.nearest[candidate];
+        const float near = near_.nearest[candidate];
         return near < float(fineWithin()) || SurfacePieces::shortEnough(tool, near) < float(patch_reach_);
     }
     void refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT, size_t most_tests) noexcept;
-    void cutPatch(const ShellView& bone, uint32_t candidate) noexcept;
+    void cutPatches(const ShellView& bone, const ToolField& tool, const Pose& X_VT,
+                    size_t most_tests) noexcept;
+    void cutPatch(const ShellView& bone, uint32_t near) noexcept;
+    void takeWholePatches() noexcept;
     size_t countPieces() noexcept;
-    void placePieces() noexcept;
+    void takePieces() noexcept;
     void movePlacesOntoSurface(const VoxelVolume& volume, size_t from) noexcept;
-    void fillHoles(size_t coarse) noexcept;
     void startSweep(const ToolField& tool, const Pose& X_VT, const Vector6d& step,
                     double allowed_depth) noexcept;
     double sweptShare(const ToolField& tool, const Pose& X_VT) const noexcept;
@@ -161,14 +163,18 @@ class GradientContact {
 
     GradientContactConfig config_;
     ContactWeights* weights_ = nullptr;
-    Candidates candidates_;
+    Candidates near_;                   // patches with a place near the tool, as one sample each
+    std::vector<float> near_distance_;  // m: of those samples
+    Candidates candidates_;             // samples that the tool can reach
     SurfacePieces pieces_{kMaxPieces};
     PatchMemory patch_memory_{4096};
     std::vector<uint32_t>
-        split_;  // ascending: the first split_count_ are candidates whose pieces take their place
+        split_;  // ascending: the first split_count_ are patches whose pieces take their place
     size_t split_count_ = 0;
     bool has_fewer_samples_ = false;
-    std::vector<uint32_t> next_place_;  // per candidate that is cut: of its pieces, where the next one goes
+    std::vector<uint32_t> next_place_;  // per patch that is cut: of its pieces, where the next one goes
+    std::vector<uint32_t> source_;      // per candidate: its patch
+    std::vector<uint32_t> piece_;       // per place: which piece goes there
     // A sweep needs how near each candidate may come, in m, and 1/(the most that the whole step can bring
     // it nearer).
     std::vector<float> lowest_, inverse_rate_;

@@ -21,10 +21,19 @@ void GradientContact::refine(const ShellView& bone, const ToolField& tool, const
     split_count_ = 0;
     has_fewer_samples_ = false;
     patch_memory_.nextGathering();
-    if (!(bone.sample_spacing > 0)) return;
+    if (bone.sample_spacing > 0) cutPatches(bone, tool, X_VT, most_tests);
+    candidates_.count = 0;
+    takeWholePatches();
+    if (split_count_ == 0) return;
+    const size_t whole = candidates_.count;
+    takePieces();
+    movePlacesOntoSurface(bone.volume, whole);
+}
+
+void GradientContact::cutPatches(const ShellView& bone, const ToolField& tool, const Pose& X_VT,
+                                 size_t most_tests) noexcept {
     pieces_.start(tool, X_VT, origin_, margin_, fineWithin(), bone.sample_spacing);
-    const size_t coarse = candidates_.count;
-    for (size_t i = 0; i < coarse; ++i)
+    for (size_t i = 0; i < near_.count; ++i)
         if (isCoarse(tool, i)) split_[split_count_++] = uint32_t(i);
     const size_t affordable = std::min(most_tests / kTestsPerSample, bone.affordable_samples);
     const size_t asked_for = size_t(bone.most_samples);
@@ -40,17 +49,14 @@ void GradientContact::refine(const ShellView& bone, const ToolField& tool, const
     has_fewer_samples_ = pieces_.isCoarse() && affordable < kMaxTimes * asked_for &&
                          (most_of_new < asked_for || pieces_.count() > most);
     for (size_t n = 0; n < split_count_; ++n)
-        if (uint8_t& level = patch_memory_.levelOf(candidates_.patch[split_[n]]); level == PatchMemory::kNew)
+        if (uint8_t& level = patch_memory_.levelOf(near_.patch[split_[n]]); level == PatchMemory::kNew)
             level = level_of_new;
     point_tests_ += pieces_.takePointTests();
-    placePieces();
-    movePlacesOntoSurface(bone.volume, coarse);
-    fillHoles(coarse);
 }
 
-// Gives the triangles of a candidate's cells.
-void GradientContact::cutPatch(const ShellView& bone, uint32_t candidate) noexcept {
-    const PatchId patch = candidates_.patch[candidate];
+// Gives a patch's cells.
+void GradientContact::cutPatch(const ShellView& bone, uint32_t near) noexcept {
+    const PatchId patch = near_.patch[near];
     const uint8_t level = patch_memory_.levelOf(patch);
     const IndexBox leaf = bone.lattice.cellsOf(patch.leaf);
     const int factor = bone.shell.scalingFactor(bone.level);
@@ -58,34 +64,47 @@ void GradientContact::cutPatch(const ShellView& bone, uint32_t candidate) noexce
     const Vector3i last = (first.array() + (factor - 1)).min(leaf.max.array());
     for (int k = first.z(); k <= last.z(); ++k)
         for (int j = first.y(); j <= last.y(); ++j)
-            for (int i = first.x(); i <= last.x(); ++i) pieces_.add(bone.volume, {i, j, k}, candidate, level);
+            for (int i = first.x(); i <= last.x(); ++i) pieces_.add(bone.volume, {i, j, k}, near, level);
 }
 
-// Counts each patch's pieces, so that placePieces() puts them side by side. Returns how many there are.
+// The patches that are not cut are one sample each; what the tool cannot reach is left out.
+void GradientContact::takeWholePatches() noexcept {
+    size_t count = 0;
+    const float reach = float(margin_);
+    for (size_t i = 0, n = 0; i < near_.count; ++i) {
+        const bool is_cut = n < split_count_ && split_[n] == i;
+        n += is_cut;
+        source_[count] = uint32_t(i);
+        count += size_t(!is_cut && near_distance_[i] < reach);
+    }
+    candidates_.append(near_, source_.data(), count);
+}
+
+// Counts each patch's pieces, so that takePieces() puts them side by side. Returns how many there are.
 size_t GradientContact::countPieces() noexcept {
     for (size_t n = 0; n < split_count_; ++n) next_place_[split_[n]] = 0;
-    pieces_.forEach([&](const FinishedPiece& piece) { ++next_place_[piece.patch]; });
+    pieces_.forEach([&](uint32_t, uint32_t patch) { ++next_place_[patch]; });
     uint32_t count = 0;
     for (size_t n = 0; n < split_count_; ++n) count += std::exchange(next_place_[split_[n]], count);
     return count;
 }
 
-// Puts the pieces' centroids, still on their triangles, behind the candidates, patch by patch. The first
-// ones, as many as patches were cut, come last: fillHoles() takes them from there.
-void GradientContact::placePieces() noexcept {
+// Puts the pieces' centroids, still on their triangles, behind the other candidates, patch by patch.
+void GradientContact::takePieces() noexcept {
     Candidates& c = candidates_;
-    const size_t coarse = c.count, count = std::min(countPieces(), c.capacity() - coarse);
-    const size_t first = std::min(count, split_count_);
-    pieces_.forEach([&](const FinishedPiece& piece) {
-        const size_t place = next_place_[piece.patch]++;
-        if (place >= count) return;
-        const size_t to = coarse + (place < first ? place + count : place) - first;
-        c.copy(piece.patch, to);
+    const size_t first = c.count, count = std::min(countPieces(), c.capacity() - first);
+    pieces_.forEach([&](uint32_t piece, uint32_t patch) {
+        const size_t place = next_place_[patch]++;
+        if (place < count) piece_[place] = piece, source_[place] = patch;
+    });
+    c.append(near_, source_.data(), count);
+    for (size_t n = 0; n < count; ++n) {
+        const SurfacePiece piece = pieces_.piece(piece_[n]);
+        const size_t to = first + n;
         c.x[to] = piece.centroid.x(), c.y[to] = piece.centroid.y(), c.z[to] = piece.centroid.z();
         c.nearest[to] = piece.nearest;
         c.weight[to] *= piece.area / c.area[to];
-    });
-    c.count = coarse + count;
+    }
 }
 
 void GradientContact::movePlacesOntoSurface(const VoxelVolume& volume, size_t from) noexcept {
@@ -106,22 +125,6 @@ void GradientContact::movePlacesOntoSurface(const VoxelVolume& volume, size_t fr
     kernels().move_onto_surface(view, kPlaceSteps,
                                 {&c.x[from], &c.y[from], &c.z[from],
                                  float(kReachOfPlace * volume.spacing().minCoeff()), int(c.count - from)});
-}
-
-// Closes the gap between the candidates that were not cut and the pieces, so that the pieces of a patch stay
-// side by side.
-void GradientContact::fillHoles(size_t coarse) noexcept {
-    Candidates& c = candidates_;
-    const size_t whole = coarse - split_count_;  // how many were not cut
-    size_t last = split_count_;
-    size_t from = coarse;
-    for (size_t n = 0; n < split_count_ && split_[n] < whole; ++n) {
-        while (last > 0 && split_[last - 1] == from - 1) --last, --from;
-        c.copy(--from, split_[n]);
-    }
-    const size_t first = std::min(c.count - coarse, split_count_);
-    for (size_t n = 0; n < first; ++n) c.copy(c.count - first + n, whole + n);
-    c.count -= split_count_;
 }
 
 }  // namespace bonemill

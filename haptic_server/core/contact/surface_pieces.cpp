@@ -12,11 +12,10 @@ constexpr double kMostSag = 0.5;  // voxels: the surface is taken to be no farth
 
 SurfacePieces::SurfacePieces(size_t room)
     : into_tool_(Pose{}, Eigen::Vector3d::Zero()), cases_(packedTriangles()), room_(room) {
-    for (auto* values : {&nx_, &ny_, &nz_, &bend_, &area_, &longest_, &nearest_})
+    for (auto* values : {&nx_, &ny_, &nz_, &sag_, &bend_, &area_, &longest_, &nearest_})
         values->resize(room + kCellLanes);
     for (auto& values : corner_) values.resize(room + kCellLanes);
-    for (auto* values : {&cell_, &finest_, &edge_, &triangle_, &next_, &finished_})
-        values->resize(room + kCellLanes);
+    for (auto* values : {&cell_, &finest_, &edge_, &triangle_, &next_}) values->resize(room + kCellLanes);
     patch_.resize(room);
     first_.fill(kNone);
 }
@@ -34,7 +33,8 @@ SurfaceTriangles SurfacePieces::triangles(size_t from) noexcept {
     SurfaceTriangles arrays;
     for (size_t n = 0; n < 9; ++n) arrays.corner[n] = &corner_[n][used_];
     arrays.area = &area_[used_];
-    arrays.nx = &nx_[from], arrays.ny = &ny_[from], arrays.nz = &nz_[from], arrays.bend = &bend_[from];
+    arrays.nx = &nx_[from], arrays.ny = &ny_[from], arrays.nz = &nz_[from], arrays.bend = &bend_[from],
+    arrays.sag = &sag_[from];
     arrays.cell = &cell_[from], arrays.finest = &finest_[from];
     return arrays;
 }
@@ -101,24 +101,24 @@ void SurfacePieces::makeTriangles(const VoxelVolume& volume) noexcept {
 // Finds out which of these new pieces wait to be cut, and drops those that the tool cannot reach. There is
 // nothing between `gap` and `behind_gap`.
 void SurfacePieces::sort(int first, int count, int gap, int behind_gap) noexcept {
-    alignas(64) float x[kBatch], y[kBatch], z[kBatch], sag[kBatch], nearest[kBatch];
+    alignas(64) float x[kBatch], y[kBatch], z[kBatch], sag[kBatch], triangle_sag[kBatch];
+    alignas(64) float centroids[kBatch], nearest[kBatch];
     alignas(64) int finest[kBatch], level[kBatch];
     PieceBatch batch;
-    kernels().measure_pieces(pieces(), triangles(), first, count,
-                             {x, y, z, batch.reach, batch.nx, batch.ny, batch.nz, sag, finest});
+    const MeasuredPieces measured{x,        y,        z,   batch.reach,  batch.nx,
+                                  batch.ny, batch.nz, sag, triangle_sag, finest};
+    kernels().measure_pieces(pieces(), triangles(), first, count, measured);
     into_tool_.fill(batch.center, x, y, z, count);
-    tool_->nearest(batch, nearest);
+    tool_->nearest(batch, centroids, nearest);
     point_tests_ += size_t(count);
-    kernels().level_pieces(rules_, &longest_[size_t(first)], sag, finest, count, nearest, level);
+    kernels().level_pieces(rules_, &longest_[size_t(first)], measured, centroids, count, nearest, level);
     for (int i = 0; i < count; ++i) {
-        if ((i >= gap && i < behind_gap) || level[i] == kPieceDropped) continue;
-        const int piece = first + i;
-        nearest_[size_t(piece)] = nearest[i];
-        ++count_;
-        if (level[i] == kPieceFinished)
-            finish(piece);
-        else
-            next_[size_t(piece)] = std::exchange(first_[size_t(level[i])], piece);
+        if (i == gap) i = behind_gap;
+        const auto piece = size_t(first + i);
+        nearest_[piece] = nearest[i];
+        next_[piece] = std::exchange(first_[size_t(level[i])], int(piece));
+        finished_count_ += size_t(level[i] == kPieceFinished || level[i] == kPieceFar);
+        count_ += size_t(level[i] != kPieceDropped);
     }
 }
 

@@ -62,11 +62,10 @@ class PatchMemory {
 };
 
 // It is what is left of a piece that is cut no further.
-struct FinishedPiece {
+struct SurfacePiece {
     Eigen::Vector3f centroid;  // m
     float area;                // m²
-    float nearest;             // m
-    uint32_t patch;
+    float nearest;             // m: no place of it is nearer to the tool
 };
 
 // Cuts triangles of iso-surface near the tool into pieces that are small against the contact, however large
@@ -106,18 +105,17 @@ class SurfacePieces {
     // The last cut() left pieces that are too long.
     bool isCoarse() const noexcept { return is_coarse_; }
 
+    // Calls visit(piece, patch) for those whose middles the tool can reach.
     template <class Visit>
     void forEach(Visit&& visit) const noexcept {
-        for (size_t n = 0; n < finished_count_; ++n) {
-            const size_t piece = finished_[n];
-            const auto middle = [&](size_t axis) {
-                return (corner_[axis][piece] + corner_[axis + 3][piece] + corner_[axis + 6][piece]) / 3;
-            };
-            visit(FinishedPiece{{middle(0), middle(1), middle(2)},
-                                area_[piece],
-                                nearest_[piece],
-                                patch_[size_t(triangle_[piece])]});
-        }
+        for (int next = first_[kPieceFinished]; next != kNone; next = next_[size_t(next)])
+            visit(uint32_t(next), patch_[size_t(triangle_[size_t(next)])]);
+    }
+    SurfacePiece piece(size_t n) const noexcept {
+        const auto middle = [&](size_t axis) {
+            return (corner_[axis][n] + corner_[axis + 3][n] + corner_[axis + 6][n]) / 3;
+        };
+        return {{middle(0), middle(1), middle(2)}, area_[n], nearest_[n]};
     }
     // Work since the last call, in distances of one point to the tool.
     size_t takePointTests() noexcept { return std::exchange(point_tests_, 0); }
@@ -128,10 +126,13 @@ class SurfacePieces {
     static constexpr int kCells = kBatch;  // whose triangles are made together
 
     void makeTriangles(const VoxelVolume& volume) noexcept;
-    void sort(int first, int count, int gap = 0, int behind_gap = 0) noexcept;
+    void sort(int first, int count, int gap = kNone, int behind_gap = kNone) noexcept;
     void cutAll(int level, bool has_room) noexcept;
     int takeSome(int level, bool has_room, int (&which)[kBatch / 2]) noexcept;
-    void finish(int piece) noexcept { finished_[finished_count_++] = piece; }
+    void finish(int piece) noexcept {
+        next_[size_t(piece)] = std::exchange(first_[kPieceFinished], piece);
+        ++finished_count_;
+    }
     void finishAll(int level) noexcept;
     bool isFull(size_t more) const noexcept { return used_ + more + kBatch > room_; }
     PieceArrays pieces(size_t from = 0) noexcept;
@@ -149,7 +150,7 @@ class SurfacePieces {
     uint32_t cell_patch_[kCells];
     // The triangles.
     std::vector<int> cases_;  // those of each set of inside corners
-    std::vector<float> nx_, ny_, nz_, bend_;
+    std::vector<float> nx_, ny_, nz_, sag_, bend_;
     std::vector<int> cell_, finest_;
     std::vector<uint32_t> patch_;
     size_t triangle_count_ = 0;
@@ -158,10 +159,9 @@ class SurfacePieces {
     std::vector<float> corner_[9], area_, longest_, nearest_;
     std::vector<int> edge_, triangle_;
     size_t used_ = 0;
-    // Those that wait to be cut: linked lists by level.
+    // Linked lists of those that wait to be cut, by level, of those finished, and of others.
     std::vector<int> next_;
-    std::array<int, size_t(kPieceLevels)> first_;
-    std::vector<int> finished_;
+    std::array<int, size_t(kPieceDropped) + 1> first_;
     size_t finished_count_ = 0;
     size_t count_ = 0;  // finished or waiting
     bool is_coarse_ = false;

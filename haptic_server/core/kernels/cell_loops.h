@@ -214,10 +214,11 @@ void moveOntoSurface(const DensityView& density, int steps, const SurfacePoints&
     const float reach_squared = points.reach * points.reach;
     for (int first = 0; first < points.count; first += kWidth) {
         Points start, p, in_cell, slope;
-        Floats excess, e[8];
+        Floats excess, e[8] = {};
         load(points.x + first, start.x), load(points.y + first, start.y), load(points.z + first, start.z);
         Ints is_found = ~Ints{};
         for (int l = 0; l < kWidth; ++l) is_found[l] = first + l < points.count ? -1 : 0;
+        Ints i_read = Ints{} - 2, j_read{}, k_read{};  // no cell yet
         const Floats zero{};
         start.x = is_found ? start.x : zero, start.y = is_found ? start.y : zero,
         start.z = is_found ? start.z : zero;
@@ -227,7 +228,9 @@ void moveOntoSurface(const DensityView& density, int steps, const SurfacePoints&
             cellUnder((p.x + d.origin[0]) * ix, d.dims[0], i, in_cell.x);
             cellUnder((p.y + d.origin[1]) * iy, d.dims[1], j, in_cell.y);
             cellUnder((p.z + d.origin[2]) * iz, d.dims[2], k, in_cell.z);
-            readCells(d, i, j, k, e);
+            // Mostly the second step begins in the cells of the first.
+            if (isAny((i != i_read) | (j != j_read) | (k != k_read))) readCells(d, i, j, k, e);
+            i_read = i, j_read = j, k_read = k;
             sampleCells(e, in_cell, excess, slope);
             slope.x *= ix, slope.y *= iy, slope.z *= iz;
             const Floats rise = slope.x * slope.x + slope.y * slope.y + slope.z * slope.z;

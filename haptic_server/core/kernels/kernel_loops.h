@@ -102,6 +102,7 @@ const Kernels kTable = {.single = {intoFrame<float>, nearerRound<float>, sampleN
                         .cell_triangles = cellTriangles,
                         .halve_pieces = halvePieces,
                         .measure_pieces = measurePieces,
+                        .lower_bounds = lowerBounds,
                         .level_pieces = levelPieces,
                         .least_scaled = leastScaled,
                         .range_of_rows = rangeOfRows,

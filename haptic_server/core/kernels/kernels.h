@@ -192,6 +192,7 @@ struct SurfaceTriangles {
     float* corner[9];     // m: x, y, z of the first corner, then of the others
     float* area;          // m²
     float *nx, *ny, *nz;  // T, unit
+    float* sag;           // m: the surface is no farther off it
     float* bend;  // 1/m: times the square of a piece's longest edge, how far the surface may be off it
     int* cell;    // which it lies in
     int* finest;  // the last level to which its pieces are cut; none: -1
@@ -208,11 +209,13 @@ struct MeasuredPieces {
     float* reach;         // m: no point of a piece is farther from its centroid
     float *nx, *ny, *nz;  // T, unit
     float* sag;           // m: the surface is no farther off it
+    float* triangle_sag;  // m: nor off its triangle
     int* finest;          // of its triangle
 };
 // A piece has to be cut at the level n if the square of its longest edge is from 2^n to 2^(n+1) times that of
-// the spacing; or it is finished, or out of reach.
-inline constexpr int kPieceLevels = 32, kPieceFinished = -1, kPieceDropped = -2;
+// the spacing; or it is finished, and its centroid perhaps out of reach; or all of it is out of reach.
+inline constexpr int kPieceLevels = 32, kPieceFinished = kPieceLevels, kPieceFar = kPieceLevels + 1,
+                     kPieceDropped = kPieceLevels + 2;
 struct PieceRules {
     float margin;               // m: what is not nearer to the tool is dropped
     float fine_within;          // m: what is nearer is cut,
@@ -262,9 +265,16 @@ struct Kernels {
     // Finds the longest edges of the pieces from `first` on, and what sort() needs.
     void (*measure_pieces)(const PieceArrays& pieces, const SurfaceTriangles& triangles, int first, int count,
                            const MeasuredPieces& out);
-    // Takes the sags from the pieces' distances, and finds their levels.
-    void (*level_pieces)(const PieceRules& rules, const float* longest, const float* sag, const int* finest,
-                         int count, float* nearest, int* level);
+    // Lowers the distances of pieces' centroids, and bounds of those of their other points, to those of a
+    // convex solid, which has these distances and gradients (T) at the centroids; the pieces have these
+    // normals and reaches: along a plane its distance falls no faster than at the start. The arrays go on to
+    // a multiple of kCellLanes.
+    void (*lower_bounds)(const float* distance, const float* gx, const float* gy, const float* gz,
+                         const float* nx, const float* ny, const float* nz, const float* reach, int count,
+                         float* centroids, float* bounds);
+    // Takes the sags from the pieces' bounds, and finds their levels.
+    void (*level_pieces)(const PieceRules& rules, const float* longest, const MeasuredPieces& pieces,
+                         const float* centroids, int count, float* nearest, int* level);
     // Returns the least of (value - lowest) * scale over the elements, but never more than `most`.
     float (*least_scaled)(const float* value, const float* lowest, const float* scale, int count, float most);
     // Finds the least and the largest of `rows` rows that lie `stride` voxels apart, joined with

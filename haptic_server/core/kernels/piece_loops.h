@@ -46,7 +46,7 @@ inline Floats sagOf(const Floats (&excess)[8], const Points (&at)[3], const floa
 
 // These are triangles of up to kCellLanes cells, one of each, on their way into the arrays.
 struct TriangleLanes {
-    static constexpr int kValues = 14;  // nine coordinates, area, normal, bend
+    static constexpr int kValues = 15;  // nine coordinates, area, normal, sag, bend
     alignas(64) float value[kValues][kCellLanes];
     alignas(64) int is_one[kCellLanes];
 };
@@ -59,7 +59,8 @@ int appendTriangles(const TriangleLanes& lanes, int first_cell, int cells, int c
         out.area[count] = lanes.value[9][l];
         out.nx[count] = lanes.value[10][l], out.ny[count] = lanes.value[11][l],
         out.nz[count] = lanes.value[12][l];
-        out.bend[count] = lanes.value[13][l];
+        out.sag[count] = lanes.value[13][l];
+        out.bend[count] = lanes.value[14][l];
         out.cell[count++] = first_cell + l;
     }
     return count;
@@ -96,7 +97,8 @@ void triangleOf(const CellArrays& cells, const CellPlaces& places, int first, co
     store(R[0] * n.x + R[1] * n.y + R[2] * n.z, &lanes.value[10][to]);
     store(R[3] * n.x + R[4] * n.y + R[5] * n.z, &lanes.value[11][to]);
     store(R[6] * n.x + R[7] * n.y + R[8] * n.z, &lanes.value[12][to]);
-    store(sag / (is_one ? longest : Floats{} + 1), &lanes.value[13][to]);
+    store(sag, &lanes.value[13][to]);
+    store(sag / (is_one ? longest : Floats{} + 1), &lanes.value[14][to]);
     store(is_one, &lanes.is_one[to]);
 }
 
@@ -209,17 +211,36 @@ void measurePieces(const PieceArrays& pieces, const SurfaceTriangles& triangles,
         gather(triangles.ny, triangle, value), store(value, out.ny + i);
         gather(triangles.nz, triangle, value), store(value, out.nz + i);
         gather(triangles.bend, triangle, value), store(value * longest, out.sag + i);
+        gather(triangles.sag, triangle, value), store(value, out.triangle_sag + i);
         gather(triangles.finest, triangle, edge), store(edge, out.finest + i);
     }
 }
 
-void levelPieces(const PieceRules& rules, const float* longest, const float* sag, const int* finest,
-                 int count, float* nearest, int* level) {
+void lowerBounds(const float* distance, const float* gx, const float* gy, const float* gz, const float* nx,
+                 const float* ny, const float* nz, const float* reach, int count, float* centroids,
+                 float* bounds) {
+    for (int i = 0; i < count; i += kWidth) {
+        Points g, n;
+        Floats far, way, centroid, bound, slope;
+        load(gx + i, g.x), load(gy + i, g.y), load(gz + i, g.z);
+        load(nx + i, n.x), load(ny + i, n.y), load(nz + i, n.z);
+        load(distance + i, far), load(reach + i, way), load(centroids + i, centroid), load(bounds + i, bound);
+        const Floats along = g.x * n.x + g.y * n.y + g.z * n.z, rest = 1 - along * along;
+        rootOf(rest > 0 ? rest : Floats{}, slope);
+        const Floats here = far - slope * way;
+        store(far < centroid ? far : centroid, centroids + i);
+        store(here < bound ? here : bound, bounds + i);
+    }
+}
+
+void levelPieces(const PieceRules& rules, const float* longest, const MeasuredPieces& pieces,
+                 const float* centroids, int count, float* nearest, int* level) {
     const PieceRules r = rules;
     for (int i = 0; i < count; i += kWidth) {
-        Floats near, off, length;
+        Floats near, off, off_triangle, length, centroid;
         Ints limit;
-        load(nearest + i, near), load(sag + i, off), load(longest + i, length), load(finest + i, limit);
+        load(nearest + i, near), load(pieces.sag + i, off), load(pieces.triangle_sag + i, off_triangle);
+        load(longest + i, length), load(centroids + i, centroid), load(pieces.finest + i, limit);
         near -= off;
         store(near, nearest + i);
         const Floats times = length * r.per_spacing_squared;
@@ -231,7 +252,9 @@ void levelPieces(const PieceRules& rules, const float* longest, const float* sag
         const Floats enough = in_proportion < r.longest_enough ? in_proportion : Floats{} + r.longest_enough;
         const Ints is_long = (near < r.fine_within) | (length > enough * enough);
         const Ints is_cut = (times > 1) & ~(limit > at) & is_long;
-        const Ints kept = is_cut ? at : Ints{} + kPieceFinished;
+        const Ints finished =
+            centroid - off_triangle < r.margin ? Ints{} + kPieceFinished : Ints{} + kPieceFar;
+        const Ints kept = is_cut ? at : finished;
         store(near < r.margin ? kept : Ints{} + kPieceDropped, level + i);
     }
 }

@@ -38,9 +38,10 @@ class GrowingField final : public ToolField {
     void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept override {
         raisedSample(points_T, out);
     }
-    void nearest(const PieceBatch& pieces_T, float* out) const noexcept override {
-        whole_->nearest(pieces_T, out);
-        for (int i = 0; i < pieces_T.center.count; ++i) out[i] += float(offset_);
+    void nearest(const PieceBatch& pieces_T, float* centers, float* bounds) const noexcept override {
+        whole_->nearest(pieces_T, centers, bounds);
+        for (int i = 0; i < pieces_T.center.count; ++i)
+            centers[i] += float(offset_), bounds[i] += float(offset_);
     }
     ToolSample sample(const Eigen::Vector3d& p_T) const noexcept override {
         ToolSample at = whole_->sample(p_T);

@@ -127,19 +127,16 @@ template void ShapeField::leastDistance(const PointBatch<double>&, double*) cons
 template void ShapeField::sampleNearest(const PointBatch<float>&, SampleBatch<float>&) const noexcept;
 template void ShapeField::sampleNearest(const PointBatch<double>&, SampleBatch<double>&) const noexcept;
 
-// Every solid is convex: along a plane its distance falls no faster than at the start.
-void ShapeField::nearest(const PieceBatch& pieces, float* out) const noexcept {
+void ShapeField::nearest(const PieceBatch& pieces, float* centers, float* bounds) const noexcept {
     const int count = pieces.center.count;
-    std::fill_n(out, count, std::numeric_limits<float>::max());
+    std::fill_n(centers, count, std::numeric_limits<float>::max());
+    std::fill_n(bounds, count, std::numeric_limits<float>::max());
     SampleBatch<float> at;
     for (const Solid& solid : solids_) {
         std::fill_n(at.distance, count, std::numeric_limits<float>::max());
         sampleNearer(solid, pieces.center, at);
-        for (int i = 0; i < count; ++i) {
-            const float along = at.gx[i] * pieces.nx[i] + at.gy[i] * pieces.ny[i] + at.gz[i] * pieces.nz[i];
-            const float slope = std::sqrt(std::max(0.0f, 1 - along * along));
-            out[i] = std::min(out[i], at.distance[i] - slope * pieces.reach[i]);
-        }
+        kernels().lower_bounds(at.distance, at.gx, at.gy, at.gz, pieces.nx, pieces.ny, pieces.nz,
+                               pieces.reach, count, centers, bounds);
     }
 }
 

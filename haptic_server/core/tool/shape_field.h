@@ -31,7 +31,7 @@ class ShapeField final : public ToolField {
     void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept override {
         sampleNearest(points_T, out);
     }
-    void nearest(const PieceBatch& pieces_T, float* out) const noexcept override;
+    void nearest(const PieceBatch& pieces_T, float* centers, float* bounds) const noexcept override;
     ToolSample sample(const Eigen::Vector3d& p_T) const noexcept override;
     double distanceError() const noexcept override { return kRounding; }
     double distanceBound(const Eigen::Vector3d& p_T) const noexcept override;

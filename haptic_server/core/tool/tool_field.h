@@ -51,11 +51,12 @@ class ToolField {
     // Writes the same distances with their gradients.
     virtual void sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept = 0;
     virtual void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept = 0;
-    // Writes to out[0 .. count-1] a bound that no point of the piece falls below, in m. It is as near to the
-    // least distance as the field can tell.
-    virtual void nearest(const PieceBatch& pieces_T, float* out) const noexcept {
-        distances(pieces_T.center, out);
-        for (int i = 0; i < pieces_T.center.count; ++i) out[i] -= pieces_T.reach[i];
+    // Writes the distances of the centres to centers[0 .. count-1], and to bounds[0 .. count-1] what no point
+    // of the piece falls below, in m: it is as near to the least distance as the field can tell. Behind them,
+    // up to a full batch, is anything.
+    virtual void nearest(const PieceBatch& pieces_T, float* centers, float* bounds) const noexcept {
+        distances(pieces_T.center, centers);
+        for (int i = 0; i < pieces_T.center.count; ++i) bounds[i] = centers[i] - pieces_T.reach[i];
     }
     // Returns distance and gradient at one point, in double precision.
     virtual ToolSample sample(const Eigen::Vector3d& p_T) const noexcept = 0;
