@@ -6,22 +6,8 @@
 #include "haptic_server/core/volume/marching_cubes_table.h"
 
 namespace bonemill {
-// The triangles are packed as the kernel wants them.
-std::vector<int> packedTriangles() {
-    static_assert(kMaxCubeTriangles == kTrianglesPerCell);
-    std::vector<int> packed(256 * kTrianglesPerCell, 0);
-    for (size_t inside = 0; inside < 256; ++inside) {
-        const CubeTriangles& triangles = cubeTriangles()[inside];
-        for (size_t n = 0; n < triangles.count; ++n) {
-            const auto& [a, b, c] = triangles.edges[n];
-            packed[inside * kTrianglesPerCell + n] = a | b << 4 | c << 8;
-        }
-    }
-    return packed;
-}
-
 SurfaceCells::SurfaceCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_cells)
-    : triangles_(packedTriangles()), crossed_(leaf_cells) {
+    : triangles_(packedCubeTriangles()), crossed_(leaf_cells) {
     const double unit = volume.spacing().maxCoeff();
     steps_ = (volume.spacing() / unit).cast<float>();
     unit_area_ = float(unit * unit);

@@ -13,9 +13,6 @@
 
 namespace bonemill {
 
-// The triangles of each set of inside corners, packed as the kernels want them. It allocates.
-std::vector<int> packedTriangles();
-
 class SurfaceCells {
   public:
     // Memory for leaves of up to `leaf_cells` per axis.

@@ -1,7 +1,7 @@
 #include "haptic_server/core/contact/surface_pieces.h"
 
 #include "haptic_server/core/contact/cell_corners.h"
-#include "haptic_server/core/contact/surface_cells.h"
+#include "haptic_server/core/volume/marching_cubes_table.h"
 
 namespace bonemill {
 namespace {
@@ -11,7 +11,7 @@ constexpr double kMostSag = 0.5;  // voxels: the surface is taken to be no farth
 }  // namespace
 
 SurfacePieces::SurfacePieces(size_t room)
-    : into_tool_(Pose{}, Eigen::Vector3d::Zero()), cases_(packedTriangles()), room_(room) {
+    : into_tool_(Pose{}, Eigen::Vector3d::Zero()), cases_(packedCubeTriangles()), room_(room) {
     for (auto* values : {&nx_, &ny_, &nz_, &sag_, &bend_, &area_, &longest_, &nearest_})
         values->resize(room + kCellLanes);
     for (auto& values : corner_) values.resize(room + kCellLanes);

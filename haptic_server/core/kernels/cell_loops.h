@@ -109,6 +109,56 @@ void cellPatches(const CellArrays& cells, const int* triangles, const float step
     }
 }
 
+// Returns how much of the face z = 1 is bone; each inside corner, or run of such, is cut off by itself.
+inline Floats filledTop(const Floats (&excess)[8], const Ints& inside) {
+    constexpr int kAround[4] = {4, 5, 7, 6};
+    Floats area{};
+    for (int n = 0; n < 4; ++n) {
+        const int at[4] = {kAround[n], kAround[(n + 1) & 3], kAround[(n + 2) & 3], kAround[(n + 3) & 3]};
+        const Floats &e0 = excess[at[0]], &e1 = excess[at[1]], &e2 = excess[at[2]], &e3 = excess[at[3]];
+        const Ints is_in = (inside >> at[0] & 1) != 0, has_next = (inside >> at[1] & 1) != 0,
+                   has_opposite = (inside >> at[2] & 1) != 0, has_last = (inside >> at[3] & 1) != 0;
+        const Floats to_last = e0 / (e0 - e3), to_next = e0 / (e0 - e1);
+        const Floats alone = to_last * to_next / 2, first_of_two = (to_last + e1 / (e1 - e2)) / 2;
+        const Floats of_three = 1 - e2 / (e2 - e1) * (e2 / (e2 - e3)) / 2;
+        const Ints is_alone = is_in & ~has_last & ~has_next,
+                   is_first = is_in & has_next & ~has_last & ~has_opposite,
+                   is_middle = is_in & has_last & has_next & ~has_opposite;
+        area += is_alone ? alone : is_first ? first_of_two : is_middle ? of_three : Floats{};
+    }
+    return (inside >> 4) == 15 ? Floats{} + 1 : area;
+}
+
+// By the divergence theorem with the field (0, 0, z) it is the integral of z n_z over the cell's triangles,
+// plus the bone's part of the face z = 1.
+void cellFills(const CellArrays& cells, const int* triangles, float* fills) {
+    Ints lane;
+    for (int l = 0; l < kWidth; ++l) lane[l] = l;
+    for (int first = 0; first < cells.count; first += kWidth) {
+        alignas(64) float at[12 * kWidth];
+        crossings(cells, first, at);
+        Floats excess[8];
+        for (int c = 0; c < 8; ++c) load(cells.excess[c] + first, excess[c]);
+        Ints inside;
+        load(cells.inside + first, inside);
+        inside = first + lane < cells.count ? inside : Ints{};
+        Floats fill = filledTop(excess, inside);
+        for (int triangle = 0; triangle < kTrianglesPerCell; ++triangle) {
+            Ints edges;
+            gather(triangles, inside * kTrianglesPerCell + triangle, edges);
+            const Ints is_one = edges != 0;
+            if (!isAny(is_one)) break;
+            Points a, b, c;
+            crossingOn(at, edges & 15, lane, a);
+            crossingOn(at, edges >> 4 & 15, lane, b);
+            crossingOn(at, edges >> 8, lane, c);
+            const Floats across = ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
+            fill += is_one ? (a.z + b.z + c.z) / 3 * across : Floats{};
+        }
+        store(fill, fills + first);
+    }
+}
+
 // Computes excess and slope of the trilinear density at `p`.
 inline void sampleCells(const Floats (&e)[8], const Points& p, Floats& excess, Points& slope) {
     const Floats dx0 = e[1] - e[0], dx1 = e[3] - e[2], dx2 = e[5] - e[4], dx3 = e[7] - e[6];

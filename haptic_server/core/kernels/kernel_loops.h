@@ -97,6 +97,7 @@ const Kernels kTable = {.single = {intoFrame<float>, nearerRound<float>, sampleN
                         .add_plane = millPlane<+1>,
                         .lay_plane = layPlane,
                         .cell_patches = cellPatches,
+                        .cell_fills = cellFills,
                         .project_into_cells = projectIntoCells,
                         .move_onto_surface = moveOntoSurface,
                         .cell_triangles = cellTriangles,

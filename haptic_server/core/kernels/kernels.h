@@ -248,6 +248,8 @@ struct Kernels {
     // not all zero; it is zero beyond the last triangle.
     void (*cell_patches)(const CellArrays& cells, const int* triangles, const float steps[3],
                          const CellPatches& out);
+    // Writes which share of each cell is bone, 0 to 1: the volume behind its triangles.
+    void (*cell_fills)(const CellArrays& cells, const int* triangles, float* fills);
     // Makes at most `most_steps` Newton steps along the slope times `steepness`, until the density is within
     // `tolerance` times the largest excess at the corners.
     void (*project_into_cells)(const CellArrays& cells, const float steepness[3],

@@ -1,77 +1,54 @@
-// Says how much of a cell is bone: the volume behind the surface that is drawn (marching cubes). It is
-// RT-safe, for any thread, but for the first construction, which makes the tables.
+// Says how much of each cell is bone: the volume behind the surface that is drawn (marching cubes). What is
+// bone on a face only depends on the face, as for the triangles: the cells' volumes add up to that of the
+// closed surface.
 //
-// By the divergence theorem with the field (0, 0, z) it is ∫ z n_z over the cell's triangles, plus the bone's
-// part of the face z = 1. What is bone on a face only depends on the face, as for the triangles: the cells'
-// volumes add up to that of the closed surface.
+// Construction allocates; all else is RT-safe, for one thread.
 #pragma once
 
-#include <array>
+#include <utility>
+#include <vector>
 
 #include "haptic_server/core/contact/cell_corners.h"
+#include "haptic_server/core/kernels/kernels.h"
 #include "haptic_server/core/volume/marching_cubes_table.h"
 
 namespace bonemill {
 
-class CellFill {
+class CellFills {
   public:
-    CellFill() : triangles_(cubeTriangles()) {}
+    static constexpr int kMost = 64;
 
-    // This share of the cell is bone, 0 .. 1.
-    double operator()(const CellCorners& corners) const noexcept {
-        unsigned inside = 0;
-        for (unsigned c = 0; c < 8; ++c) inside |= unsigned(corners.excess[c] >= 0) << c;
-        if (inside == 0) return 0;
-        if (inside == 0xff) return 1;
-        double fill = topFace(corners, inside >> 4);
-        const CubeTriangles& cell = triangles_[inside];
-        std::array<Eigen::Vector3d, 12> on_edge;  // of those that the surface crosses
-        unsigned known = 0;
-        const auto at = [&](unsigned edge) -> const Eigen::Vector3d& {
-            if (!(known >> edge & 1)) on_edge[edge] = crossing(corners, int(edge));
-            known |= 1u << edge;
-            return on_edge[edge];
-        };
-        for (size_t n = 0; n < cell.count; ++n) {
-            const Eigen::Vector3d& a = at(cell.edges[n][0]);
-            const Eigen::Vector3d& b = at(cell.edges[n][1]);
-            const Eigen::Vector3d& c = at(cell.edges[n][2]);
-            const double area_z = ((b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x())) / 2;
-            fill += (a.z() + b.z() + c.z()) / 3 * area_z;
+    CellFills() : triangles_(packedCubeTriangles()) {}
+
+    bool isFull() const noexcept { return count_ == kMost; }
+    // Adds a cell; it must not be full.
+    void add(const CellCorners& corners) noexcept {
+        const auto n = size_t(count_++);
+        int inside = 0;
+        for (size_t c = 0; c < 8; ++c) {
+            excess_[c][n] = corners.excess[c];
+            inside |= int(corners.excess[c] >= 0) << c;
         }
-        return fill;
+        inside_[n] = inside;
+    }
+    // Forgets the cells that were added, and calls visit(n, fill) with the share of each that is bone, 0
+    // .. 1.
+    template <class Visit>
+    void take(Visit&& visit) noexcept {
+        CellArrays cells;
+        for (size_t c = 0; c < 8; ++c) cells.excess[c] = excess_[c];
+        cells.inside = inside_;
+        cells.count = std::exchange(count_, 0);
+        alignas(64) float fills[kMost];
+        kernels().cell_fills(cells, triangles_.data(), fills);
+        for (int n = 0; n < cells.count; ++n) visit(n, fills[n]);
     }
 
   private:
-    // The surface lies at this share of the way from one density to the other, of which one is inside.
-    static double share(double from, double to) noexcept { return from / (from - to); }
-    static Eigen::Vector3d crossing(const CellCorners& corners, int edge) noexcept {
-        const unsigned low = kCubeEdges[size_t(edge)].low_corner, axis = kCubeEdges[size_t(edge)].axis;
-        Eigen::Vector3d place(low & 1, low >> 1 & 1, low >> 2 & 1);
-        place[axis] = share(double(corners.excess[low]), double(corners.excess[low | 1u << axis]));
-        return place;
-    }
-    // So much of the face z = 1 is bone; each inside corner, or run of such, is cut off by itself.
-    static double topFace(const CellCorners& corners, unsigned inside) noexcept {
-        constexpr unsigned kAround[4] = {0, 1, 3, 2};
-        if (inside == 0xf) return 1;
-        double area = 0;
-        for (unsigned n = 0; n < 4; ++n) {
-            const auto corner = [&](unsigned step) { return kAround[(n + step) & 3]; };
-            const auto is_in = [&](unsigned step) { return (inside >> corner(step) & 1) != 0; };
-            const auto e = [&](unsigned step) { return double(corners.excess[4 + corner(step)]); };
-            if (!is_in(0)) continue;
-            if (!is_in(3) && !is_in(1))  // a corner by itself
-                area += share(e(0), e(3)) * share(e(0), e(1)) / 2;
-            else if (!is_in(3) && !is_in(2))  // the first of two
-                area += (share(e(0), e(3)) + share(e(1), e(2))) / 2;
-            else if (is_in(3) && is_in(1))  // the middle one of three
-                area += 1 - share(e(2), e(1)) * share(e(2), e(3)) / 2;
-        }
-        return area;
-    }
-
-    const std::array<CubeTriangles, 256>& triangles_;
+    std::vector<int> triangles_;
+    alignas(64) float excess_[8][kMost];
+    alignas(64) int inside_[kMost];
+    int count_ = 0;
 };
 
 }  // namespace bonemill

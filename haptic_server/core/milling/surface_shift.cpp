@@ -307,6 +307,24 @@ void SurfaceShift::forEachCell(const BoneModel& bone, Visit&& visit) noexcept {
         }
 }
 
+// The same, with the share of the cell that is bone: visit(cell, node, share).
+template <class Visit>
+void SurfaceShift::forEachFill(const BoneModel& bone, Visit&& visit) noexcept {
+    Vector3i cells[CellFills::kMost];
+    Node* nodes[CellFills::kMost];
+    int count = 0;
+    const auto takeAll = [&] {
+        fills_.take([&](int n, float fill) { visit(cells[n], *nodes[n], fill); });
+        count = 0;
+    };
+    forEachCell(bone, [&](const Vector3i& cell, Node& node) {
+        cells[count] = cell, nodes[count++] = &node;
+        fills_.add(readCorners(bone.volume, cell));
+        if (fills_.isFull()) takeAll();
+    });
+    takeAll();
+}
+
 double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double share, size_t ticks,
                            MillingResult& result) noexcept {
     if (patch_count_ == 0 || !(share > 0)) return 0;
@@ -318,14 +336,11 @@ double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double shar
     spreadRest(bone);
     collect(bone, result);
     if (collector_.isEmpty()) return 0;
-    forEachCell(bone, [&](const Vector3i& cell, Node& node) {
-        node.fill = float(fill_(readCorners(bone.volume, cell)));
-    });
+    forEachFill(bone, [](const Vector3i&, Node& node, float fill) { node.fill = fill; });
     result.shell_is_complete &= collector_.write(bone.volume, bone.lattice, bone.shell, -1);
     double spent = 0;
-    forEachCell(bone, [&](const Vector3i& cell, const Node& node) {
-        const double gone = double(node.fill) - double(float(fill_(readCorners(bone.volume, cell))));
-        if (gone != 0) spent += u.ofCell(cell) * gone;
+    forEachFill(bone, [&](const Vector3i& cell, const Node& node, float fill) {
+        if (const double gone = double(node.fill) - double(fill); gone != 0) spent += u.ofCell(cell) * gone;
     });
     return spent * bone.volume.voxelVolume();
 }

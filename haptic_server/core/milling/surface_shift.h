@@ -84,6 +84,8 @@ class SurfaceShift {
                         Visit&& visit) const noexcept;
     template <class Visit>
     void forEachCell(const BoneModel& bone, Visit&& visit) noexcept;
+    template <class Visit>
+    void forEachFill(const BoneModel& bone, Visit&& visit) noexcept;
     Wish wishOf(const VoxelVolume& volume, const Eigen::Vector3f& point, double recession) const noexcept;
     void spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share, double most) noexcept;
     void spreadRest(const BoneModel& bone) noexcept;
@@ -97,7 +99,7 @@ class SurfaceShift {
                     MillingResult& of_part) noexcept;
     void forget() noexcept;
 
-    CellFill fill_;
+    CellFills fills_;
     Eigen::Vector3i size_;                             // of the scratch box
     Eigen::Vector3i first_ = Eigen::Vector3i::Zero();  // its first voxel
     std::vector<Node> nodes_;

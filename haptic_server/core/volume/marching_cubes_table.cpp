@@ -1,7 +1,8 @@
 #include "haptic_server/core/volume/marching_cubes_table.h"
 
 #include <stdexcept>
-#include <vector>
+
+#include "haptic_server/core/kernels/kernels.h"
 
 namespace bonemill {
 namespace {
@@ -102,6 +103,19 @@ bool shareCubeFace(int edge_a, int edge_b) noexcept {
 const std::array<CubeTriangles, 256>& cubeTriangles() {
     static const std::array<CubeTriangles, 256> kTable = buildTable();
     return kTable;
+}
+
+std::vector<int> packedCubeTriangles() {
+    static_assert(kMaxCubeTriangles == kTrianglesPerCell);
+    std::vector<int> packed(256 * kTrianglesPerCell, 0);
+    for (size_t inside = 0; inside < 256; ++inside) {
+        const CubeTriangles& triangles = cubeTriangles()[inside];
+        for (size_t n = 0; n < triangles.count; ++n) {
+            const auto& [a, b, c] = triangles.edges[n];
+            packed[inside * kTrianglesPerCell + n] = a | b << 4 | c << 8;
+        }
+    }
+    return packed;
 }
 
 }  // namespace bonemill

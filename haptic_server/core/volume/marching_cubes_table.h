@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace bonemill {
 
@@ -39,5 +40,9 @@ bool shareCubeFace(int edge_a, int edge_b) noexcept;
 
 // Indexed by the set of inside corners (bit c: corner c is inside). Built at the first call; thread-safe.
 const std::array<CubeTriangles, 256>& cubeTriangles();
+
+// The same as the kernels want it (kernels/kernels.h): kTrianglesPerCell numbers for each set, one per
+// triangle, its edges in four bits each; 0: there is none. It allocates.
+std::vector<int> packedCubeTriangles();
 
 }  // namespace bonemill

@@ -8,11 +8,24 @@
 namespace bonemill {
 namespace {
 
+double fillOf(const CellCorners& corners) {
+    CellFills fills;
+    fills.add(corners);
+    double result = 0;
+    fills.take([&](int, float fill) { result = double(fill); });
+    return result;
+}
+
 double filled(const VoxelVolume& volume) {
-    const CellFill fill;
+    CellFills fills;
     double sum = 0;
+    const auto take = [&] { fills.take([&](int, float fill) { sum += double(fill); }); };
     forEachIndex({Eigen::Vector3i::Constant(-1), volume.dims().array() - 1},
-                 [&](const Eigen::Vector3i& cell) { sum += fill(readCorners(volume, cell)); });
+                 [&](const Eigen::Vector3i& cell) {
+                     fills.add(readCorners(volume, cell));
+                     if (fills.isFull()) take();
+                 });
+    take();
     return sum * volume.voxelVolume();
 }
 
@@ -33,7 +46,6 @@ TEST(CellFill, AddsUpToTheVolumeOfTheDrawnSurface) {
 }
 
 TEST(CellFill, IsTheShareBelowAPlane) {
-    const CellFill fill;
     for (const double height : {0.0625, 0.25, 0.5, 0.875}) {
         CellCorners flat, slanted;
         for (unsigned c = 0; c < 8; ++c) {
@@ -41,9 +53,9 @@ TEST(CellFill, IsTheShareBelowAPlane) {
             flat.excess[c] = float(1000 * (height - z));
             slanted.excess[c] = float(1000 * (height - (x + z) / 2));
         }
-        EXPECT_NEAR(fill(flat), height, 1e-6);
+        EXPECT_NEAR(fillOf(flat), height, 1e-6);
         const double corner = height <= 0.5 ? 2 * height * height : 1 - 2 * (1 - height) * (1 - height);
-        EXPECT_NEAR(fill(slanted), corner, 1e-6);
+        EXPECT_NEAR(fillOf(slanted), corner, 1e-6);
     }
 }
 
