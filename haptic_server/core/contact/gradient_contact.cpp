@@ -35,11 +35,28 @@ GradientContactResult resultOf(const ContactSums& sums, uint32_t contacts) noexc
     return result;
 }
 
-constexpr size_t kSampleTests = 4;  // an exact sample by itself takes as long as N distances in a batch
+constexpr size_t kSampleTests = 4;  // a sample in double precision takes no longer than N distances in single
 
 double smoothstep(double t) noexcept {
     t = std::clamp(t, 0.0, 1.0);
     return t * t * (3 - 2 * t);
+}
+
+// Calls visit(candidate, distance, gradient in T) for all of them.
+template <class Visit>
+void forEachSample(const Candidates& candidates, const ToolField& tool, const Pose& X_VT,
+                   const Vector3d& origin, Visit&& visit) noexcept {
+    constexpr size_t kBatch = PointBatch<double>::kCapacity;
+    const IntoTool<double> into_tool(X_VT, origin);
+    PointBatch<double> batch;
+    SampleBatch<double> at;
+    const Candidates& c = candidates;
+    for (size_t first = 0; first < c.count; first += kBatch) {
+        into_tool.fill(batch, &c.x[first], &c.y[first], &c.z[first], int(std::min(kBatch, c.count - first)));
+        tool.sample(batch, at);
+        for (int i = 0; i < batch.count; ++i)
+            visit(first + size_t(i), at.distance[i], Vector3d(at.gx[i], at.gy[i], at.gz[i]));
+    }
 }
 
 // Few of the candidates touch: those are collected first, then summed.
@@ -228,33 +245,29 @@ void GradientContact::guardFarSide(const VoxelVolume& volume, const ToolField& t
     const double guard = volume.isBoneAt(X_VT.position) ? 1 : smoothstep((deepest_ - from) / (full - from));
     if (guard == 0) return;
     point_tests_ += kSampleTests * candidates_.count;
-    const Pose X_TV = X_VT.inverse();
-    for (size_t i = 0; i < candidates_.count; ++i) {
+    const Matrix3d R_VT = X_VT.rotation.toRotationMatrix();
+    forEachSample(candidates_, tool, X_VT, origin_, [&](size_t i, double, const Vector3d& gradient) {
         const Vector3d n = candidates_.normal(i).cast<double>();
-        if (n.isZero(0)) continue;
-        const Vector3d g = X_VT.rotation * tool.sample(X_TV * positionOf(i)).gradient;
-        candidates_.weight[i] *= float(1 - guard * (1 - smoothstep(-n.dot(g) / kGuardWidth)));
-    }
+        if (n.isZero(0)) return;
+        candidates_.weight[i] *= float(1 - guard * (1 - smoothstep(-n.dot(R_VT * gradient) / kGuardWidth)));
+    });
 }
 
 void GradientContact::capStiffness(const ToolField& tool, const Pose& X_VT) noexcept {
     if (most_stiffness_ <= config_.stiffness_cap) return;
     point_tests_ += kSampleTests * candidates_.count;
-    const Pose X_TV = X_VT.inverse();
     Matrix3d stiffness = Matrix3d::Zero();  // T axes
-    for (size_t i = 0; i < candidates_.count; ++i) {
-        const ToolSample sample = tool.sample(X_TV * positionOf(i));
-        const double weight = shareInContact(sample.distance) * double(candidates_.weight[i]);
-        if (weight > 0) stiffness += weight * sample.gradient * sample.gradient.transpose();
-    }
+    forEachSample(candidates_, tool, X_VT, origin_, [&](size_t i, double distance, const Vector3d& g) {
+        const double weight = shareInContact(distance) * double(candidates_.weight[i]);
+        if (weight > 0) stiffness += weight * g * g.transpose();
+    });
     if (stiffness.trace() <= config_.stiffness_cap) return;
     point_tests_ += kSampleTests * candidates_.count;
-    for (size_t i = 0; i < candidates_.count; ++i) {
-        const Vector3d g = tool.sample(X_TV * positionOf(i)).gradient;
+    forEachSample(candidates_, tool, X_VT, origin_, [&](size_t i, double, const Vector3d& g) {
         const double in_direction = g.dot(stiffness * g);
         if (in_direction > config_.stiffness_cap)
             candidates_.weight[i] *= float(config_.stiffness_cap / in_direction);
-    }
+    });
 }
 
 template <class Scalar>
@@ -276,7 +289,8 @@ size_t GradientContact::list(const ToolField& tool, const Pose& X_VT,
     constexpr int kBatch = PointBatch<float>::kCapacity;
     const double depth_cap = kDepthCap * tool.thinnestRadius();
     const IntoTool<float> into_tool(X_VT, origin_);
-    const Eigen::Vector3d to_origin = origin_ - X_VT.position;
+    const Vector3d to_origin = origin_ - X_VT.position;
+    const Matrix3d R_VT = X_VT.rotation.toRotationMatrix();
     PointBatch<float> batch;
     SampleBatch<float> at;
     size_t count = 0;
@@ -293,7 +307,7 @@ size_t GradientContact::list(const ToolField& tool, const Pose& X_VT,
             const double force = double(candidates_.weight[n]) * std::min(depth, depth_cap) * slope;
             if (!(force > 0)) continue;
             out[count++] = {(candidates_.position(n).cast<double>() + to_origin).cast<float>(),
-                            (X_VT.rotation * gradient_T / -slope).cast<float>(), float(depth), float(force),
+                            (R_VT * gradient_T / -slope).cast<float>(), float(depth), float(force),
                             uint32_t(n)};
         }
     }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "haptic_server/core/contact/cell_corners.h"
+#include "haptic_server/core/volume/floor_index.h"
 
 namespace bonemill {
 namespace {
@@ -161,15 +162,11 @@ void SurfaceShift::findPatches(const BoneModel& bone) noexcept {
 
 // Returns those that can be written where the hat around `at`, in voxel steps, is > 0.
 IndexBox SurfaceShift::voxelsAround(const BoneModel& bone, const Vector3f& at) const noexcept {
-    const auto width = float(blockOf(bone));
+    const Vector3f width = Vector3f::Constant(float(blockOf(bone)));
     const Vector3i room_low = first_.array() + 1, room_high = (first_ + size_).array() - 2;
-    const Vector3i low =
-        ((at.array() - width).floor().cast<int>() + 1).matrix().cwiseMax(room_low).cwiseMax(Vector3i::Zero());
-    const Vector3i high = ((at.array() + width).ceil().cast<int>() - 1)
-                              .matrix()
-                              .cwiseMin(room_high)
-                              .cwiseMin((bone.volume.dims().array() - 1).matrix());
-    return {low, high};
+    const Vector3i low = floorIndices(at - width).array() + 1, high = ceilIndices(at + width).array() - 1;
+    return {low.cwiseMax(room_low).cwiseMax(Vector3i::Zero()),
+            high.cwiseMin(room_high).cwiseMin((bone.volume.dims().array() - 1).matrix())};
 }
 
 // Calls visit(voxel, weight) with the hat's weights, for voxelsAround(at).
@@ -191,7 +188,7 @@ SurfaceShift::Wish SurfaceShift::wishOf(const VoxelVolume& volume, const Vector3
     const Vector3f inverse = volume.spacing().cwiseInverse().cast<float>();
     const Vector3i last = volume.dims().array() - 1;
     const auto cellAt = [&](const Vector3f& at) -> Vector3i {
-        return at.array().floor().cast<int>().matrix().cwiseMax(-1).cwiseMin(last);
+        return floorIndices(at).cwiseMax(-1).cwiseMin(last);
     };
     const Vector3f at = point.cwiseProduct(inverse);
     const Vector3i cell = cellAt(at);
@@ -252,7 +249,7 @@ void SurfaceShift::spreadWishes(const BoneModel& bone, const SpecificEnergy& u, 
         const Node& node = nodes_[patch.node];
         if (!(node.energy > 0)) continue;
         const float area = patch.area;
-        const Vector3i cell = patch.at.cwiseProduct(inverse).array().floor().cast<int>();
+        const Vector3i cell = floorIndices(patch.at.cwiseProduct(inverse));
         const double wanted = share * double(node.energy) / (u.ofCell(cell) * double(area));
         is_too_fast_ |= wanted > most;
         const Wish wish = wishOf(bone.volume, patch.at, std::min({wanted, double(node.depth), most}));

@@ -41,6 +41,7 @@
 #include "haptic_server/core/effects/energy_removal/leaf_turns.h"
 #include "haptic_server/core/effects/haptic_effect.h"
 #include "haptic_server/core/milling/surface_shift.h"
+#include "haptic_server/core/volume/floor_index.h"
 
 namespace bonemill {
 namespace {
@@ -176,7 +177,7 @@ class EnergyRemoval final : public HapticEffect {
     }
     // The places of a patch follow each other.
     double specificEnergyAt(const Eigen::Vector3d& p_V) noexcept {
-        const Eigen::Vector3i cell = (p_V.array() * inverse_spacing_).floor().cast<int>();
+        const Eigen::Vector3i cell = floorIndices((p_V.array() * inverse_spacing_).matrix());
         if (cell != last_cell_) last_energy_ = specific_energy_.ofCell(last_cell_ = cell);
         return last_energy_;
     }

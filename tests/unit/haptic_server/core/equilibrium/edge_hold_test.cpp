@@ -113,14 +113,28 @@ double unsolved(const AskewBone& bone, Preset preset, double lean, double height
     return worst;
 }
 
+// How far a solve gets depends on how the voxels lie to the face, hence many of them.
 TEST(EdgeHold, AQuickHandOverAFlatFaceIsFollowedInOneTick) {
     const auto flat = [](const Vector3d& p_F) { return p_F.y(); };
+    const auto most = [](Preset preset, bool is_worst) {
+        if (preset == Preset::kFast) return is_worst ? 2.0 : 1.2;
+        return preset == Preset::kBalanced ? (is_worst ? 0.4 : 0.1) : 0.001;
+    };
+    constexpr unsigned kBones = 7;
     for (const double voxel : {0.125e-3, 0.5e-3}) {
-        const AskewBone bone(1, voxel, 12e-3, flat, kFlatDrill);
+        std::vector<AskewBone> bones;
+        for (unsigned seed = 1; seed <= kBones; ++seed)
+            bones.emplace_back(seed, voxel, 12e-3, flat, kFlatDrill);
         for (const Preset preset : kHeldBy)
-            for (const double lean : {0.0, 0.35})
-                EXPECT_LE(unsolved(bone, preset, lean, -0.5e-3), preset == Preset::kFast ? 0.9 : 0.1)
+            for (const double lean : {0.0, 0.35}) {
+                std::vector<double> left;
+                for (const AskewBone& bone : bones) left.push_back(unsolved(bone, preset, lean, -0.5e-3));
+                std::sort(left.begin(), left.end());
+                EXPECT_LE(left[kBones / 2], most(preset, false))
                     << presetName(preset) << ", voxel " << voxel << ", lean " << lean;
+                EXPECT_LE(left.back(), most(preset, true))
+                    << presetName(preset) << ", voxel " << voxel << ", lean " << lean;
+            }
     }
 }
 

@@ -13,7 +13,8 @@ using namespace test;
 using Eigen::Vector3d;
 
 constexpr double kLimitVoxel = 0.3e-3, kLimitTop = 5.05e-3, kLimitRadius = 1.5e-3;
-const Vector3d kInTheAir(4.83e-3, 4.71e-3, kLimitTop + kLimitRadius + 5e-3);
+// Also when the hand turns it about a place 0.1 m away.
+const Vector3d kInTheAir(4.83e-3, 4.71e-3, kLimitTop + kLimitRadius + 60e-3);
 const Eigen::Quaterniond kStanding = expRotation({M_PI / 2, 0, 0});
 
 ContactScene faceAndBall() {

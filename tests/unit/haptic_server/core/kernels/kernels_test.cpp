@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "haptic_server/core/kernels/brick_layout.h"
+#include "haptic_server/core/volume/marching_cubes_table.h"
 #include "haptic_server/core/volume/voxel_volume.h"
 #include "tests/unit/haptic_server/core/kernels/every_level.h"
 
@@ -372,6 +373,121 @@ TEST_P(VoxelKernels, PointsMoveOntoTheSurface) {
             const double on_face = 9.3 + 0.2 * (p[0][0][i] + 2e-3) * 1e3 - 0.1 * (p[0][1][i] + 1e-3) * 1e3;
             EXPECT_NEAR(p[0][2][i] * 1e3, on_face, 2e-3);
         }
+    }
+}
+
+// Triangles of random cells and their halves, with the arrays that they live in.
+struct PieceCase {
+    std::vector<float> corner[9], area, longest, nx, ny, nz, sag, bend;
+    std::vector<int> edge, triangle, cell, finest;
+    explicit PieceCase(size_t room) {
+        for (auto& v : corner) v.resize(room);
+        for (auto* v : {&area, &longest, &nx, &ny, &nz, &sag, &bend}) v->resize(room);
+        for (auto* v : {&edge, &triangle, &cell, &finest}) v->resize(room);
+    }
+    SurfaceTriangles triangles() {
+        SurfaceTriangles t{{},         area.data(), nx.data(),   ny.data(),    nz.data(),
+                           sag.data(), bend.data(), cell.data(), finest.data()};
+        for (size_t n = 0; n < 9; ++n) t.corner[n] = corner[n].data();
+        return t;
+    }
+    PieceArrays pieces() {
+        PieceArrays p{{}, area.data(), longest.data(), edge.data(), triangle.data()};
+        for (size_t n = 0; n < 9; ++n) p.corner[n] = corner[n].data();
+        return p;
+    }
+};
+
+TEST_P(VoxelKernels, TrianglesAndTheirHalves) {
+    const std::vector<int> cases = packedCubeTriangles();
+    for (int round = 0; round < 50; ++round) {
+        CellCase cells{1 + below(64), {}, {}};
+        const size_t room = 1024;
+        for (auto& e : cells.excess) e = randoms<float>(int(room), -30000, 30000);
+        cells.inside.assign(room, 0);
+        for (size_t n = 0; n < room; ++n)
+            for (int c = 0; c < 8; ++c) cells.inside[n] |= int(cells.excess[c][n] >= 0) << c;
+        const auto x = randoms<float>(int(room), -1e-3, 1e-3), y = randoms<float>(int(room), -1e-3, 1e-3),
+                   z = randoms<float>(int(room), -1e-3, 1e-3);
+        const CellPlaces places{
+            x.data(), y.data(), z.data(), {1e-4f, 2e-4f, 3e-4f}, {0, 1, 0, 0, 0, 1, 1, 0, 0}, 5e-5f};
+        PieceCase made[2] = {PieceCase(room), PieceCase(room)};
+        std::vector<float> out[2][9];
+        std::vector<int> level[2];
+        int count[2], all = 0;
+        for (const int which : {0, 1}) {
+            const Kernels& k = which ? ours() : oracle();
+            PieceCase& m = made[which];
+            count[which] = k.cell_triangles(cells.arrays(), cases.data(), places, m.triangles());
+            for (int n = 0; n < count[which]; ++n) m.triangle[size_t(n)] = n, m.finest[size_t(n)] = n % 3 - 1;
+            for (auto& v : out[which]) v.resize(room);
+            level[which].resize(room);
+            const MeasuredPieces measured{out[which][0].data(), out[which][1].data(), out[which][2].data(),
+                                          out[which][3].data(), out[which][4].data(), out[which][5].data(),
+                                          out[which][6].data(), out[which][7].data(), out[which][8].data(),
+                                          level[which].data()};
+            k.measure_pieces(m.pieces(), m.triangles(), 0, count[which], measured);
+            std::vector<int> list(64);
+            const int halved = std::min(count[which], 20);
+            for (int n = 0; n < halved; ++n) list[size_t(n)] = count[which] - 1 - n;
+            k.halve_pieces(m.pieces(), list.data(), halved, 400);
+            all = halved;
+            k.measure_pieces(m.pieces(), m.triangles(), 400, halved, measured);
+            std::vector<float> centroids = out[which][0], near = out[which][1];
+            const PieceRules rules{8e-4f, 1e-4f, 4, 1e-4f, 1e10f};
+            k.level_pieces(rules, &m.longest[400], measured, centroids.data(), halved, near.data(),
+                           level[which].data());
+        }
+        ASSERT_EQ(count[0], count[1]);
+        for (size_t n = 0; n < 9; ++n) {
+            expectSameBits(made[0].corner[n], made[1].corner[n], count[0]);
+            expectSameBits(out[0][n], out[1][n], all);
+        }
+        expectSameBits(made[0].area, made[1].area, count[0]);
+        expectSameBits(made[0].bend, made[1].bend, count[0]);
+        expectSameBits(made[0].cell, made[1].cell, count[0]);
+        expectSameBits(level[0], level[1], all);
+        for (int n = 0; n < all; ++n) {  // two halves are the whole
+            const auto whole = size_t(count[0] - 1 - n), low = size_t(400 + n),
+                       high = low + size_t((all + 15) / 16 * 16);
+            EXPECT_EQ(made[0].area[low] + made[0].area[high], made[0].area[whole]);
+            EXPECT_EQ(made[0].triangle[low], int(whole));
+            EXPECT_LE(made[0].longest[low], made[0].longest[whole]);
+        }
+    }
+}
+
+// The share of bone in a cell that a slanted plane cuts, by counting.
+TEST_P(VoxelKernels, CellFills) {
+    const std::vector<int> cases = packedCubeTriangles();
+    CellCase cells{64, {}, {}};
+    for (auto& e : cells.excess) e.resize(64 + kCellLanes);
+    cells.inside.assign(64 + kCellLanes, 0);
+    std::vector<double> planes[4];
+    for (size_t n = 0; n < 64; ++n) {
+        const auto slope = randoms<float>(3, -1, 1);
+        const double a = slope[0], b = slope[1], c = slope[2], d = -(a + b + c) / 2 + 0.001 * double(n % 7);
+        for (int i = 0; i < 4; ++i) planes[i].push_back(i == 0 ? a : i == 1 ? b : i == 2 ? c : d);
+        for (int corner = 0; corner < 8; ++corner) {
+            const double e = 1e4 * (d + (corner & 1 ? a : 0) + (corner & 2 ? b : 0) + (corner & 4 ? c : 0));
+            cells.excess[corner][n] = float(e);
+            cells.inside[n] |= int(e >= 0) << corner;
+        }
+    }
+    std::vector<float> fills[2] = {std::vector<float>(64 + kCellLanes), std::vector<float>(64 + kCellLanes)};
+    oracle().cell_fills(cells.arrays(), cases.data(), fills[0].data());
+    ours().cell_fills(cells.arrays(), cases.data(), fills[1].data());
+    expectSameBits(fills[0], fills[1], 64);
+    constexpr int kSteps = 24;
+    for (size_t n = 0; n < 64; ++n) {
+        int inside = 0;
+        forEachIndex(
+            {Eigen::Vector3i::Zero(), Eigen::Vector3i::Constant(kSteps - 1)}, [&](const Eigen::Vector3i& v) {
+                const Eigen::Array3d p = (v.cast<double>().array() + 0.5) / kSteps;
+                inside +=
+                    planes[0][n] * p.x() + planes[1][n] * p.y() + planes[2][n] * p.z() + planes[3][n] >= 0;
+            });
+        EXPECT_NEAR(fills[0][n], double(inside) / (kSteps * kSteps * kSteps), 0.02);
     }
 }
 
