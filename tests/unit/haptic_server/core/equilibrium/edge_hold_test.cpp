@@ -1,6 +1,9 @@
 // Tools with edges in holes of their own shape, under quick hands, and on spikes thinner than a voxel.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "haptic_server/core/equilibrium/gradient_model.h"
 #include "tests/support/contact_scene.h"
 
