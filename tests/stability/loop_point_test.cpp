@@ -54,10 +54,13 @@ const NamedPoint kShakes[] = {
 class Shakes : public testing::TestWithParam<NamedPoint> {};
 TEST_P(Shakes, UntilTheDeviceSaysWhatItIsLike) {
     EXPECT_FALSE(tryLoop(GetParam().point, balanced(), false).isQuiet());
-    LoopVerdict verdict = tryLoop(GetParam().point, balanced(), true);
-    // Without any friction it may swing on by a step of its encoders or two; whether it does, depends on the
-    // last bit of where it begins.
-    if (GetParam().point.friction == 0) verdict.force_rms /= 2;
+    const LoopVerdict verdict = tryLoop(GetParam().point, balanced(), true);
+    if (GetParam().point.friction == 0) {
+        // It may swing on by a step of its encoders: whether it does, depends on how it lies to them.
+        EXPECT_LE(verdict.force_rms, 2 * kFeltForce);
+        EXPECT_FALSE(verdict.is_lost);
+        return;
+    }
     EXPECT_TRUE(verdict.isQuiet()) << verdict.force_rms << " N, " << verdict.torque_rms * 1e3
                                    << " N mm, lost " << verdict.is_lost;
 }

@@ -108,7 +108,8 @@ class GradientContact {
     double margin() const noexcept { return margin_; }
 
   private:
-    static constexpr size_t kMaxPieces = 65536;
+    // Four times as many as there may ever be samples: what was cut or is out of reach takes room, too.
+    static constexpr size_t kMaxPieces = 4 * 65536;
     // What was sampled as finely as asked for may come to N times most_samples.
     static constexpr size_t kMaxTimes = 2;
     // To cut the surface into samples and to solve with them takes as long as N point tests, each.
@@ -117,9 +118,6 @@ class GradientContact {
     static constexpr double kFullShareDepth = 20e-6;  // m
     static double shareInContact(double distance) noexcept {
         return std::clamp(-distance / kFullShareDepth, 0.0, 1.0);
-    }
-    Eigen::Vector3d positionOf(size_t candidate) const noexcept {  // V
-        return origin_ + candidates_.position(candidate).cast<double>();
     }
     // The spheres of these blocks of points are tested together.
     struct BlockBatch {

@@ -9,8 +9,7 @@ namespace {
 
 using Eigen::Vector3i;
 
-constexpr int kPlaceSteps = 2;         // from a place on a triangle onto the trilinear surface,
-constexpr double kReachOfPlace = 0.5;  // which is never so far off, in voxels
+constexpr int kPlaceSteps = 2;  // from a place on a triangle onto the trilinear surface
 
 }  // namespace
 
@@ -46,8 +45,8 @@ void GradientContact::cutPatches(const ShellView& bone, const ToolField& tool, c
     }
     for (size_t n = 0; n < split_count_; ++n) cutPatch(bone, split_[n]);
     const uint8_t level_of_new = pieces_.cut(bone.volume, most_of_new, most);
-    has_fewer_samples_ = pieces_.isCoarse() && affordable < kMaxTimes * asked_for &&
-                         (most_of_new < asked_for || pieces_.count() > most);
+    has_fewer_samples_ = pieces_.isFull() || (pieces_.isCoarse() && affordable < kMaxTimes * asked_for &&
+                                              (most_of_new < asked_for || pieces_.count() > most));
     for (size_t n = 0; n < split_count_; ++n)
         if (uint8_t& level = patch_memory_.levelOf(near_.patch[split_[n]]); level == PatchMemory::kNew)
             level = level_of_new;
@@ -122,9 +121,10 @@ void GradientContact::movePlacesOntoSurface(const VoxelVolume& volume, size_t fr
         view.origin[axis] = float(origin_[axis]);
     }
     Candidates& c = candidates_;
-    kernels().move_onto_surface(view, kPlaceSteps,
-                                {&c.x[from], &c.y[from], &c.z[from],
-                                 float(kReachOfPlace * volume.spacing().minCoeff()), int(c.count - from)});
+    kernels().move_onto_surface(
+        view, kPlaceSteps,
+        {&c.x[from], &c.y[from], &c.z[from], float(SurfacePieces::kMostSag * volume.spacing().minCoeff()),
+         int(c.count - from)});
 }
 
 }  // namespace bonemill

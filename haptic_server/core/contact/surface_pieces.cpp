@@ -4,12 +4,6 @@
 #include "haptic_server/core/volume/marching_cubes_table.h"
 
 namespace bonemill {
-namespace {
-
-constexpr double kMostSag = 0.5;  // voxels: the surface is taken to be no farther off a triangle
-
-}  // namespace
-
 SurfacePieces::SurfacePieces(size_t room)
     : into_tool_(Pose{}, Eigen::Vector3d::Zero()), cases_(packedCubeTriangles()), room_(room) {
     for (auto* values : {&nx_, &ny_, &nz_, &sag_, &bend_, &area_, &longest_, &nearest_})
@@ -20,11 +14,11 @@ SurfacePieces::SurfacePieces(size_t room)
     first_.fill(kNone);
 }
 
-PieceArrays SurfacePieces::pieces(size_t from) noexcept {
+PieceArrays SurfacePieces::pieces() noexcept {
     PieceArrays arrays;
-    for (size_t n = 0; n < 9; ++n) arrays.corner[n] = &corner_[n][from];
-    arrays.area = &area_[from], arrays.longest = &longest_[from];
-    arrays.edge = &edge_[from], arrays.triangle = &triangle_[from];
+    for (size_t n = 0; n < 9; ++n) arrays.corner[n] = corner_[n].data();
+    arrays.area = area_.data(), arrays.longest = longest_.data();
+    arrays.edge = edge_.data(), arrays.triangle = triangle_.data();
     return arrays;
 }
 
@@ -53,6 +47,7 @@ void SurfacePieces::start(const ToolField& tool, const Pose& X_VT, const Eigen::
     first_.fill(kNone);
     used_ = finished_count_ = count_ = triangle_count_ = 0;
     cell_count_ = 0;
+    is_full_ = false;
 }
 
 void SurfacePieces::add(const VoxelVolume& volume, const Eigen::Vector3i& cell, uint32_t patch,
@@ -74,7 +69,11 @@ void SurfacePieces::add(const VoxelVolume& volume, const Eigen::Vector3i& cell, 
 // Of the cells that wait. What there is no room for is left out.
 void SurfacePieces::makeTriangles(const VoxelVolume& volume) noexcept {
     const int cells = std::exchange(cell_count_, 0);
-    if (cells == 0 || isFull(size_t(cells * kTrianglesPerCell))) return;
+    if (cells == 0) return;
+    if (!hasRoomFor(size_t(cells * kTrianglesPerCell))) {
+        is_full_ = true;
+        return;
+    }
     CellArrays arrays;
     for (size_t corner = 0; corner < 8; ++corner) arrays.excess[corner] = excess_[corner];
     arrays.inside = inside_;
@@ -148,7 +147,10 @@ void SurfacePieces::finishAll(int level) noexcept {
 void SurfacePieces::cutAll(int level, bool has_room) noexcept {
     alignas(64) int which[kBatch / 2] = {};
     while (first_[size_t(level)] != kNone) {
-        if (isFull(kBatch)) return finishAll(level);
+        if (!hasRoomFor(kBatch)) {
+            is_full_ = true;
+            return finishAll(level);
+        }
         const int count = takeSome(level, has_room, which);
         if (count == 0) continue;
         const int padded = (count + kCellLanes - 1) / kCellLanes * kCellLanes, to = int(used_);

@@ -88,7 +88,10 @@ class SurfacePieces {
         return std::min(kLengthPerDistance * nearest, float(tool.thinnestRadius()));
     }
 
-    // It allocates room for N pieces.
+    // The trilinear surface is taken to be no farther off a triangle, in voxels.
+    static constexpr double kMostSag = 0.5;
+
+    // It allocates room for N pieces, those that are cut or dropped later included.
     explicit SurfacePieces(size_t room);
 
     // Begins anew with no piece, around a tool at X_VT that may move by `margin` (m, as `fine_within` and
@@ -103,9 +106,12 @@ class SurfacePieces {
     uint8_t cut(const VoxelVolume& volume, size_t most_of_new, size_t most) noexcept;
     size_t count() const noexcept { return finished_count_; }
     // The last cut() left pieces that are too long.
-    bool isCoarse() const noexcept { return is_coarse_; }
+    bool isCoarse() const noexcept { return is_coarse_ || is_full_; }
+    // There was no room for all: some surface may be missing.
+    bool isFull() const noexcept { return is_full_; }
 
-    // Calls visit(piece, patch) for those whose middles the tool can reach.
+    // Calls visit(piece, patch) for those whose samples the tool can reach, and for those that there was no
+    // time or room to cut.
     template <class Visit>
     void forEach(Visit&& visit) const noexcept {
         for (int next = first_[kPieceFinished]; next != kNone; next = next_[size_t(next)])
@@ -123,7 +129,8 @@ class SurfacePieces {
   private:
     static constexpr int kNone = -1;
     static constexpr int kBatch = PointBatch<float>::kCapacity;
-    static constexpr int kCells = kBatch;  // whose triangles are made together
+    static_assert(kBatch / 2 % kCellLanes == 0);  // their halves fit a batch
+    static constexpr int kCells = kBatch;         // whose triangles are made together
 
     void makeTriangles(const VoxelVolume& volume) noexcept;
     void sort(int first, int count, int gap = kNone, int behind_gap = kNone) noexcept;
@@ -134,8 +141,8 @@ class SurfacePieces {
         ++finished_count_;
     }
     void finishAll(int level) noexcept;
-    bool isFull(size_t more) const noexcept { return used_ + more + kBatch > room_; }
-    PieceArrays pieces(size_t from = 0) noexcept;
+    bool hasRoomFor(size_t more) const noexcept { return used_ + more + kBatch <= room_; }
+    PieceArrays pieces() noexcept;
     SurfaceTriangles triangles(size_t from = 0) noexcept;
 
     const ToolField* tool_ = nullptr;
@@ -164,7 +171,7 @@ class SurfacePieces {
     std::array<int, size_t(kPieceDropped) + 1> first_;
     size_t finished_count_ = 0;
     size_t count_ = 0;  // finished or waiting
-    bool is_coarse_ = false;
+    bool is_coarse_ = false, is_full_ = false;
     size_t point_tests_ = 0;
 };
 

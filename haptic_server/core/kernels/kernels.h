@@ -257,14 +257,15 @@ struct Kernels {
                                const CellProjections& out);
     // Takes Newton steps up or down the density's gradient, from cell to cell.
     void (*move_onto_surface)(const DensityView& density, int steps, const SurfacePoints& points);
-    // Appends the triangles in these cells; their corners, areas, normals, bends and cells are written.
+    // Appends the triangles in these cells; all but `finest` is written.
     // Returns how many there are.
     int (*cell_triangles)(const CellArrays& cells, const int* triangles, const CellPlaces& places,
                           const SurfaceTriangles& out);
     // Writes the halves of these pieces: the first ones from `to` on, the others from the next multiple of
     // kCellLanes behind their number on. The list of them goes on to that multiple, with any pieces.
     void (*halve_pieces)(const PieceArrays& pieces, const int* which, int count, int to);
-    // Finds the longest edges of the pieces from `first` on, and what sort() needs.
+    // Finds the longest edges of the pieces from `first` on, and what decides about them. Writes up to
+    // kCellLanes - 1 beyond them.
     void (*measure_pieces)(const PieceArrays& pieces, const SurfaceTriangles& triangles, int first, int count,
                            const MeasuredPieces& out);
     // Lowers the distances of pieces' centroids, and bounds of those of their other points, to those of a

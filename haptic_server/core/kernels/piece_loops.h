@@ -252,8 +252,9 @@ void levelPieces(const PieceRules& rules, const float* longest, const MeasuredPi
         const Floats enough = in_proportion < r.longest_enough ? in_proportion : Floats{} + r.longest_enough;
         const Ints is_long = (near < r.fine_within) | (length > enough * enough);
         const Ints is_cut = (times > 1) & ~(limit > at) & is_long;
+        // A sample lies where the surface is, which is off the triangle by about so much.
         const Ints finished =
-            centroid - off_triangle < r.margin ? Ints{} + kPieceFinished : Ints{} + kPieceFar;
+            centroid - 2 * off_triangle < r.margin ? Ints{} + kPieceFinished : Ints{} + kPieceFar;
         const Ints kept = is_cut ? at : finished;
         store(near < r.margin ? kept : Ints{} + kPieceDropped, level + i);
     }

@@ -1,7 +1,6 @@
 #include "haptic_server/core/tool/shape_field.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 

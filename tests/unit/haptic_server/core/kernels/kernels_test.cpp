@@ -447,14 +447,89 @@ TEST_P(VoxelKernels, TrianglesAndTheirHalves) {
         expectSameBits(made[0].bend, made[1].bend, count[0]);
         expectSameBits(made[0].cell, made[1].cell, count[0]);
         expectSameBits(level[0], level[1], all);
+        const int padded = (all + kCellLanes - 1) / kCellLanes * kCellLanes;
+        const auto cornerOf = [&](size_t piece, size_t c) -> Eigen::Vector3d {
+            const auto& k = made[0].corner;
+            return {k[3 * c][piece], k[3 * c + 1][piece], k[3 * c + 2][piece]};
+        };
+        const auto areaOf = [&](size_t p) {
+            return (cornerOf(p, 1) - cornerOf(p, 0)).cross(cornerOf(p, 2) - cornerOf(p, 0)).norm() / 2;
+        };
+        const auto middleOf = [&](size_t p) -> Eigen::Vector3d {
+            return (cornerOf(p, 0) + cornerOf(p, 1) + cornerOf(p, 2)) / 3;
+        };
         for (int n = 0; n < all; ++n) {  // two halves are the whole
-            const auto whole = size_t(count[0] - 1 - n), low = size_t(400 + n),
-                       high = low + size_t((all + 15) / 16 * 16);
-            EXPECT_EQ(made[0].area[low] + made[0].area[high], made[0].area[whole]);
-            EXPECT_EQ(made[0].triangle[low], int(whole));
-            EXPECT_LE(made[0].longest[low], made[0].longest[whole]);
+            const auto whole = size_t(count[0] - 1 - n), low = size_t(400 + n), high = low + size_t(padded);
+            for (const size_t half : {low, high}) {
+                EXPECT_EQ(made[0].area[half], made[0].area[whole] / 2);
+                EXPECT_NEAR(areaOf(half), made[0].area[whole] / 2, 1e-4 * made[0].area[whole] + 1e-14);
+                EXPECT_EQ(made[0].triangle[half], int(whole));
+                for (size_t c = 0; c < 9; ++c) EXPECT_EQ(made[0].corner[c][half], made[1].corner[c][half]);
+            }
+            EXPECT_LT((middleOf(low) + middleOf(high) - 2 * middleOf(whole)).norm(), 1e-9);
+            EXPECT_GT((middleOf(low) - middleOf(high)).norm(), 0);
         }
     }
+}
+
+// A piece's distance falls no faster along its plane than it does at its centroid.
+TEST_P(VoxelKernels, BoundsOfPieces) {
+    for (const int n : {1, 15, 16, 17, 64}) {
+        const size_t room = size_t(n) + kCellLanes;
+        const auto d = randoms<float>(int(room), -1, 1), reach = randoms<float>(int(room), 0, 1);
+        std::vector<float> g[3], normal[3];
+        for (int axis = 0; axis < 3; ++axis)
+            g[axis] = randoms<float>(int(room), -0.57f, 0.57f),
+            normal[axis] = randoms<float>(int(room), -0.57f, 0.57f);
+        auto centroids = randoms<float>(int(room), -1, 1), bounds = randoms<float>(int(room), -1, 1);
+        const auto before = centroids, bounds_before = bounds;
+        ours().lower_bounds(d.data(), g[0].data(), g[1].data(), g[2].data(), normal[0].data(),
+                            normal[1].data(), normal[2].data(), reach.data(), n, centroids.data(),
+                            bounds.data());
+        for (size_t i = 0; i < size_t(n); ++i) {
+            const double along = double(g[0][i]) * normal[0][i] + double(g[1][i]) * normal[1][i] +
+                                 double(g[2][i]) * normal[2][i];
+            const double bound = d[i] - std::sqrt(std::max(0.0, 1 - along * along)) * reach[i];
+            EXPECT_EQ(centroids[i], std::min(before[i], d[i]));
+            EXPECT_NEAR(bounds[i], std::min(double(bounds_before[i]), bound), 1e-5);
+        }
+    }
+}
+
+// Long pieces near the tool are cut, coarse ones first; those beyond are dropped.
+TEST_P(VoxelKernels, LevelsOfPieces) {
+    constexpr int kCount = 37;
+    const PieceRules rules{.margin = 8e-4f,
+                           .fine_within = 1e-4f,
+                           .length_per_distance = 4,
+                           .longest_enough = 2e-3f,
+                           .per_spacing_squared = 1e10f};
+    auto length = randoms<float>(kCount + kCellLanes, 0, 1e-7f),
+         near = randoms<float>(kCount + kCellLanes, -1e-4f, 1.2e-3f),
+         sag = randoms<float>(kCount + kCellLanes, 0, 1e-4f),
+         of_triangle = randoms<float>(kCount + kCellLanes, 0, 1e-4f),
+         centroids = randoms<float>(kCount + kCellLanes, 0, 1.5e-3f);
+    std::vector<int> finest(kCount + kCellLanes), level(kCount + kCellLanes);
+    for (size_t i = 0; i < finest.size(); ++i) finest[i] = int(i % 9) - 1;
+    const auto before = near;
+    MeasuredPieces measured{};
+    measured.sag = sag.data(), measured.triangle_sag = of_triangle.data(), measured.finest = finest.data();
+    ours().level_pieces(rules, length.data(), measured, centroids.data(), kCount, near.data(), level.data());
+    int kinds[3] = {};
+    for (size_t i = 0; i < kCount; ++i) {
+        const float off = before[i] - sag[i];
+        ASSERT_EQ(near[i], off);
+        const float times = length[i] * rules.per_spacing_squared, enough = std::min(4 * off, 2e-3f);
+        const int at = times > 1 ? std::ilogb(times) : -1;
+        const bool is_cut = times > 1 && finest[i] <= at && (off < 1e-4f || length[i] > enough * enough);
+        const int expected = !(off < 8e-4f)                              ? kPieceDropped
+                             : is_cut                                    ? at
+                             : centroids[i] - 2 * of_triangle[i] < 8e-4f ? kPieceFinished
+                                                                         : kPieceFar;
+        EXPECT_EQ(level[i], expected) << i;
+        ++kinds[expected == kPieceDropped ? 0 : expected < kPieceLevels ? 1 : 2];
+    }
+    for (const int kind : kinds) EXPECT_GT(kind, 0);
 }
 
 // The share of bone in a cell that a slanted plane cuts, by counting.
