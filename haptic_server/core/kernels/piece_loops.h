@@ -39,7 +39,8 @@ inline Floats sagOf(const Floats (&excess)[8], const Points (&at)[3], const floa
         Floats rise;
         rootOf(squared(slope), rise);
         const Floats off = (value < 0 ? -value : value) / rise;
-        most = (rise > 0) & (off > most) ? off : most;
+        const Ints is_more = (rise > 0) & (off > most);
+        most = is_more ? off : most;
     }
     return kMore * most;
 }
