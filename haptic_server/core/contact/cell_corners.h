@@ -16,6 +16,11 @@ namespace bonemill {
 struct CellCorners {
     std::array<float, 8> excess;
 
+    int inside() const noexcept {  // bit by corner
+        int result = 0;
+        for (int corner = 0; corner < 8; ++corner) result |= int(excess[size_t(corner)] >= 0) << corner;
+        return result;
+    }
     float largest() const noexcept {  // absolute value
         float result = 0;
         for (const float e : excess) result = std::max(result, std::abs(e));

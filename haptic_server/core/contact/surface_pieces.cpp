@@ -46,43 +46,36 @@ void SurfacePieces::start(const ToolField& tool, const Pose& X_VT, const Eigen::
               .per_spacing_squared = float(1 / (spacing * spacing))};
     first_.fill(kNone);
     used_ = finished_count_ = count_ = triangle_count_ = 0;
-    cell_count_ = 0;
+    cells_.take();
     is_full_ = false;
 }
 
 void SurfacePieces::add(const VoxelVolume& volume, const Eigen::Vector3i& cell, uint32_t patch,
                         uint8_t level) noexcept {
     const CellCorners corners = readCorners(volume, cell);
-    int inside = 0;
-    for (int corner = 0; corner < 8; ++corner) inside |= int(corners.excess[size_t(corner)] >= 0) << corner;
-    if (inside == 0 || inside == 255) return;
-    const auto n = size_t(cell_count_++);
-    for (size_t corner = 0; corner < 8; ++corner) excess_[corner][n] = corners.excess[corner];
+    if (const int inside = corners.inside(); inside == 0 || inside == 255) return;
+    const auto n = size_t(cells_.count());
+    cells_.add(corners);
     const Eigen::Vector3f at = (cell.cast<double>().cwiseProduct(volume.spacing()) - origin_).cast<float>();
     cell_x_[n] = at.x(), cell_y_[n] = at.y(), cell_z_[n] = at.z();
-    inside_[n] = inside;
     cell_patch_[n] = patch;
     cell_level_[n] = level == PatchMemory::kNew ? kNone : int(level);
-    if (cell_count_ == kCells) makeTriangles(volume);
+    if (cells_.isFull()) makeTriangles(volume);
 }
 
 // Of the cells that wait. What there is no room for is left out.
 void SurfacePieces::makeTriangles(const VoxelVolume& volume) noexcept {
-    const int cells = std::exchange(cell_count_, 0);
-    if (cells == 0) return;
-    if (!hasRoomFor(size_t(cells * kTrianglesPerCell))) {
+    const CellArrays cells = cells_.take();
+    if (cells.count == 0) return;
+    if (!hasRoomFor(size_t(cells.count * kTrianglesPerCell))) {
         is_full_ = true;
         return;
     }
-    CellArrays arrays;
-    for (size_t corner = 0; corner < 8; ++corner) arrays.excess[corner] = excess_[corner];
-    arrays.inside = inside_;
-    arrays.count = cells;
     CellPlaces places{.x = cell_x_, .y = cell_y_, .z = cell_z_, .steps = {}, .R_TV = {}, .most_sag = {}};
     for (int axis = 0; axis < 3; ++axis) places.steps[axis] = float(volume.spacing()[axis]);
     for (int i = 0; i < 9; ++i) places.R_TV[i] = R_TV_(i / 3, i % 3);
     places.most_sag = float(kMostSag * volume.spacing().minCoeff());
-    const int made = kernels().cell_triangles(arrays, cases_.data(), places, triangles(triangle_count_));
+    const int made = kernels().cell_triangles(cells, cases_.data(), places, triangles(triangle_count_));
     const size_t first = used_;
     for (int n = 0; n < made; ++n, ++triangle_count_) {
         const auto cell = size_t(cell_[triangle_count_]);
@@ -153,8 +146,7 @@ void SurfacePieces::cutAll(int level, bool has_room) noexcept {
         }
         const int count = takeSome(level, has_room, which);
         if (count == 0) continue;
-        const int padded = (count + kCellLanes - 1) / kCellLanes * kCellLanes, to = int(used_);
-        kernels().halve_pieces(pieces(), which, count, to);
+        const int to = int(used_), padded = kernels().halve_pieces(pieces(), which, count, to);
         used_ += size_t(2 * padded);
         count_ -= size_t(count);
         sort(to, padded + count, count, padded);

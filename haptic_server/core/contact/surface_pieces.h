@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "haptic_server/core/contact/cell_batch.h"
 #include "haptic_server/core/contact/into_tool.h"
 #include "haptic_server/core/contact/patch_id.h"
 #include "haptic_server/core/kernels/kernels.h"
@@ -130,7 +131,6 @@ class SurfacePieces {
     static constexpr int kNone = -1;
     static constexpr int kBatch = PointBatch<float>::kCapacity;
     static_assert(kBatch / 2 % kCellLanes == 0);  // their halves fit a batch
-    static constexpr int kCells = kBatch;         // whose triangles are made together
 
     void makeTriangles(const VoxelVolume& volume) noexcept;
     void sort(int first, int count, int gap = kNone, int behind_gap = kNone) noexcept;
@@ -151,10 +151,10 @@ class SurfacePieces {
     Eigen::Matrix3f R_TV_ = Eigen::Matrix3f::Identity();
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
     // Cells whose triangles are not made yet.
-    int cell_count_ = 0;
-    alignas(64) float excess_[8][kCells], cell_x_[kCells], cell_y_[kCells], cell_z_[kCells];
-    alignas(64) int inside_[kCells], cell_level_[kCells];
-    uint32_t cell_patch_[kCells];
+    CellBatch cells_;
+    alignas(64) float cell_x_[CellBatch::kMost], cell_y_[CellBatch::kMost], cell_z_[CellBatch::kMost];
+    int cell_level_[CellBatch::kMost];
+    uint32_t cell_patch_[CellBatch::kMost];
     // The triangles.
     std::vector<int> cases_;  // those of each set of inside corners
     std::vector<float> nx_, ny_, nz_, sag_, bend_;

@@ -69,26 +69,40 @@ inline void crossingOn(const float (&at)[12 * kWidth], const Ints& edge, const I
     crossingOnAxis<2>(edge, share, p.z);
 }
 
+// kWidth cells, and where the surface crosses their edges.
+struct CrossedLanes {
+    Ints lane, inside;
+    alignas(64) float at[12 * kWidth];
+};
+inline void findCrossings(const CellArrays& cells, int first, CrossedLanes& crossed) {
+    countLanes(crossed.lane);
+    crossings(cells, first, crossed.at);
+    load(cells.inside + first, crossed.inside);
+    crossed.inside = first + crossed.lane < cells.count ? crossed.inside : Ints{};
+}
+// Finds the n-th triangle of each cell that has so many: its corners are in cell steps. False: there is none.
+inline bool findTriangles(const CrossedLanes& crossed, const int* triangles, int n, Ints& is_one,
+                          Points (&corner)[3]) {
+    Ints edges;
+    gather(triangles, crossed.inside * kTrianglesPerCell + n, edges);
+    is_one = edges != 0;
+    if (!isAny(is_one)) return false;
+    crossingOn(crossed.at, edges & 15, crossed.lane, corner[0]);
+    crossingOn(crossed.at, edges >> 4 & 15, crossed.lane, corner[1]);
+    crossingOn(crossed.at, edges >> 8, crossed.lane, corner[2]);
+    return true;
+}
+
 void cellPatches(const CellArrays& cells, const int* triangles, const float steps[3],
                  const CellPatches& out) {
-    Ints lane;
-    for (int l = 0; l < kWidth; ++l) lane[l] = l;
     for (int first = 0; first < cells.count; first += kWidth) {
-        alignas(64) float at[12 * kWidth];
-        crossings(cells, first, at);
-        Ints inside;
-        load(cells.inside + first, inside);
-        inside = first + lane < cells.count ? inside : Ints{};
+        CrossedLanes crossed;
+        findCrossings(cells, first, crossed);
         Floats twice{}, mx{}, my{}, mz{};
-        for (int triangle = 0; triangle < kTrianglesPerCell; ++triangle) {
-            Ints edges;
-            gather(triangles, inside * kTrianglesPerCell + triangle, edges);
-            const Ints is_one = edges != 0;
-            if (!isAny(is_one)) break;
-            Points a, b, c;
-            crossingOn(at, edges & 15, lane, a);
-            crossingOn(at, edges >> 4 & 15, lane, b);
-            crossingOn(at, edges >> 8, lane, c);
+        Ints is_one;
+        Points corner[3];
+        for (int n = 0; n < kTrianglesPerCell && findTriangles(crossed, triangles, n, is_one, corner); ++n) {
+            const auto& [a, b, c] = corner;
             const Floats ux = (b.x - a.x) * steps[0], uy = (b.y - a.y) * steps[1],
                          uz = (b.z - a.z) * steps[2];
             const Floats vx = (c.x - a.x) * steps[0], vy = (c.y - a.y) * steps[1],
@@ -132,26 +146,16 @@ inline Floats filledTop(const Floats (&excess)[8], const Ints& inside) {
 // By the divergence theorem with the field (0, 0, z) it is the integral of z n_z over the cell's triangles,
 // plus the bone's part of the face z = 1.
 void cellFills(const CellArrays& cells, const int* triangles, float* fills) {
-    Ints lane;
-    for (int l = 0; l < kWidth; ++l) lane[l] = l;
     for (int first = 0; first < cells.count; first += kWidth) {
-        alignas(64) float at[12 * kWidth];
-        crossings(cells, first, at);
+        CrossedLanes crossed;
+        findCrossings(cells, first, crossed);
         Floats excess[8];
         for (int c = 0; c < 8; ++c) load(cells.excess[c] + first, excess[c]);
-        Ints inside;
-        load(cells.inside + first, inside);
-        inside = first + lane < cells.count ? inside : Ints{};
-        Floats fill = filledTop(excess, inside);
-        for (int triangle = 0; triangle < kTrianglesPerCell; ++triangle) {
-            Ints edges;
-            gather(triangles, inside * kTrianglesPerCell + triangle, edges);
-            const Ints is_one = edges != 0;
-            if (!isAny(is_one)) break;
-            Points a, b, c;
-            crossingOn(at, edges & 15, lane, a);
-            crossingOn(at, edges >> 4 & 15, lane, b);
-            crossingOn(at, edges >> 8, lane, c);
+        Floats fill = filledTop(excess, crossed.inside);
+        Ints is_one;
+        Points corner[3];
+        for (int n = 0; n < kTrianglesPerCell && findTriangles(crossed, triangles, n, is_one, corner); ++n) {
+            const auto& [a, b, c] = corner;
             const Floats across = ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
             fill += is_one ? (a.z + b.z + c.z) / 3 * across : Floats{};
         }

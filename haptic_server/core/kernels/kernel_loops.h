@@ -53,6 +53,10 @@ inline void store(const Floats& v, float* p) {
 inline void store(const Ints& v, int* p) {
     __builtin_memcpy(p, &v, sizeof v);
 }
+// The numbers of the lanes.
+inline void countLanes(Ints& lane) {
+    for (int l = 0; l < kWidth; ++l) lane[l] = l;
+}
 inline bool isAny(const Ints& mask) {
     int any = 0;
     for (int l = 0; l < kWidth; ++l) any |= mask[l];

@@ -261,9 +261,10 @@ struct Kernels {
     // Returns how many there are.
     int (*cell_triangles)(const CellArrays& cells, const int* triangles, const CellPlaces& places,
                           const SurfaceTriangles& out);
-    // Writes the halves of these pieces: the first ones from `to` on, the others from the next multiple of
-    // kCellLanes behind their number on. The list of them goes on to that multiple, with any pieces.
-    void (*halve_pieces)(const PieceArrays& pieces, const int* which, int count, int to);
+    // Writes the halves of these pieces: the first ones from `to` on, the others so much farther as it
+    // returns, which is the next multiple of kCellLanes. The list of pieces goes on to that multiple, with
+    // any of them.
+    int (*halve_pieces)(const PieceArrays& pieces, const int* which, int count, int to);
     // Finds the longest edges of the pieces from `first` on, and what decides about them. Writes up to
     // kCellLanes - 1 beyond them.
     void (*measure_pieces)(const PieceArrays& pieces, const SurfaceTriangles& triangles, int first, int count,

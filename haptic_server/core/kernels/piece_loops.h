@@ -52,9 +52,8 @@ struct TriangleLanes {
     alignas(64) int is_one[kCellLanes];
 };
 
-int appendTriangles(const TriangleLanes& lanes, int first_cell, int cells, int count,
-                    const SurfaceTriangles& out) {
-    for (int l = 0; l < cells; ++l) {
+int appendTriangles(const TriangleLanes& lanes, int first_cell, int count, const SurfaceTriangles& out) {
+    for (int l = 0; l < kCellLanes; ++l) {
         if (!lanes.is_one[l]) continue;
         for (int v = 0; v < 9; ++v) out.corner[v][count] = lanes.value[v][l];
         out.area[count] = lanes.value[9][l];
@@ -107,31 +106,23 @@ void triangleOf(const CellArrays& cells, const CellPlaces& places, int first, co
 int cellTriangles(const CellArrays& cells, const int* triangles, const CellPlaces& places,
                   const SurfaceTriangles& out) {
     constexpr int kParts = kCellLanes / kWidth;
-    Ints lane;
-    for (int l = 0; l < kWidth; ++l) lane[l] = l;
     TriangleLanes lanes;
     int count = 0;
     for (int block = 0; block < cells.count; block += kCellLanes) {
-        alignas(64) float at[kParts][12 * kWidth];
-        for (int part = 0; part < kParts; ++part) crossings(cells, block + part * kWidth, at[part]);
-        for (int n = 0; n < kTrianglesPerCell; ++n) {
-            int is_any = 0;
+        CrossedLanes crossed[kParts];
+        for (int part = 0; part < kParts; ++part) findCrossings(cells, block + part * kWidth, crossed[part]);
+        bool is_any = true;
+        for (int n = 0; n < kTrianglesPerCell && is_any; ++n) {
+            is_any = false;
+            for (int& is_one : lanes.is_one) is_one = 0;
             for (int part = 0; part < kParts; ++part) {
-                const int first = block + part * kWidth;
-                Ints inside, edges;
-                load(cells.inside + first, inside);
-                inside = first + lane < cells.count ? inside : Ints{};
-                gather(triangles, inside * kTrianglesPerCell + n, edges);
-                const Ints is_one = edges != 0;
-                is_any |= isAny(is_one);
+                Ints is_one;
                 Points corner[3];
-                crossingOn(at[part], edges & 15, lane, corner[0]);
-                crossingOn(at[part], edges >> 4 & 15, lane, corner[1]);
-                crossingOn(at[part], edges >> 8, lane, corner[2]);
-                triangleOf(cells, places, first, corner, is_one, lanes, part * kWidth);
+                if (!findTriangles(crossed[part], triangles, n, is_one, corner)) continue;
+                is_any = true;
+                triangleOf(cells, places, block + part * kWidth, corner, is_one, lanes, part * kWidth);
             }
-            if (!is_any) break;
-            count = appendTriangles(lanes, block, kCellLanes, count, out);
+            count = appendTriangles(lanes, block, count, out);
         }
     }
     return count;
@@ -162,7 +153,7 @@ inline void storeHalf(const PieceArrays& pieces, const Points (&corner)[3], cons
     store(triangle, pieces.triangle + to);
 }
 
-void halvePieces(const PieceArrays& pieces, const int* which, int count, int to) {
+int halvePieces(const PieceArrays& pieces, const int* which, int count, int to) {
     const int padded = (count + kCellLanes - 1) / kCellLanes * kCellLanes;
     for (int i = 0; i < padded; i += kWidth) {
         Ints piece, edge, triangle;
@@ -185,6 +176,7 @@ void halvePieces(const PieceArrays& pieces, const int* which, int count, int to)
         storeHalf(pieces, corner, next, middle, area / 2, triangle, to + i);
         storeHalf(pieces, corner, edge, middle, area / 2, triangle, to + padded + i);
     }
+    return padded;
 }
 
 void measurePieces(const PieceArrays& pieces, const SurfaceTriangles& triangles, int first, int count,
@@ -206,7 +198,7 @@ void measurePieces(const PieceArrays& pieces, const SurfaceTriangles& triangles,
         store(kReach * value, out.reach + i);
         load(pieces.triangle + first + i, triangle);
         Ints lane;
-        for (int l = 0; l < kWidth; ++l) lane[l] = l;
+        countLanes(lane);
         triangle = i + lane < count ? triangle : Ints{};  // beyond there is anything
         gather(triangles.nx, triangle, value), store(value, out.nx + i);
         gather(triangles.ny, triangle, value), store(value, out.ny + i);

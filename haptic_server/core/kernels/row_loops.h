@@ -43,7 +43,7 @@ void millRow(const BurrPlane& b, const RowPlace& place, const uint16_t* row, int
              MilledLanes& milled) {
     constexpr float kMax = 65535, kCore = kDirection < 0 ? 0 : kMax;
     Ints lane;
-    for (int l = 0; l < kWidth; ++l) lane[l] = l;
+    countLanes(lane);
     for (int i = 0; i < kBrickCells; i += kWidth) {
         Words words;
         loadWords(row + i, words);
@@ -107,7 +107,7 @@ struct LaidLanes {
 void layRow(const BurrPlane& b, const RowPlace& place, const uint16_t* shall, const uint16_t* row, int count,
             uint16_t* out, LaidLanes& laid) {
     Ints lane;
-    for (int l = 0; l < kWidth; ++l) lane[l] = l;
+    countLanes(lane);
     for (int i = 0; i < kBrickCells; i += kWidth) {
         Words words, wanted;
         loadWords(row + i, words);

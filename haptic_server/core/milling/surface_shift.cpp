@@ -309,13 +309,9 @@ template <class Visit>
 void SurfaceShift::forEachFill(const BoneModel& bone, Visit&& visit) noexcept {
     Vector3i cells[CellFills::kMost];
     Node* nodes[CellFills::kMost];
-    int count = 0;
-    const auto takeAll = [&] {
-        fills_.take([&](int n, float fill) { visit(cells[n], *nodes[n], fill); });
-        count = 0;
-    };
+    const auto takeAll = [&] { fills_.take([&](int n, float fill) { visit(cells[n], *nodes[n], fill); }); };
     forEachCell(bone, [&](const Vector3i& cell, Node& node) {
-        cells[count] = cell, nodes[count++] = &node;
+        cells[fills_.count()] = cell, nodes[fills_.count()] = &node;
         fills_.add(readCorners(bone.volume, cell));
         if (fills_.isFull()) takeAll();
     });

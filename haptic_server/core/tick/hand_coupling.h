@@ -120,7 +120,7 @@ class EnergyTank {
 // Decides how stiffly the gradient law's coupling holds the device that is in the hand.
 //
 // A hand damps what the device alone does not. So the coupling is as stiff as the scene and the device's own
-// word allow until energy has been made at the hand's port (hand_coupling.h): then it gives way to what the
+// word allow until energy has been made at the hand's port (EnergyTank): then it gives way to what the
 // device carries without a hand (hand_side.h), and by half and half again should that not be enough. It
 // comes back when the tool has been in the air for a while, where no spring is stretched. What costs no
 // stiffness of the wall is in force from the start: a larger share of the relaxing spring, a softer rotation.
