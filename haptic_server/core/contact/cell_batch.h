@@ -13,10 +13,10 @@ class CellBatch {
     int count() const noexcept { return count_; }
     bool isFull() const noexcept { return count_ == kMost; }
     // It must not be full.
-    void add(const CellCorners& corners) noexcept {
+    void add(const CellCorners& corners, int inside) noexcept {
         const auto n = size_t(count_++);
         for (size_t c = 0; c < 8; ++c) excess_[c][n] = corners.excess[c];
-        inside_[n] = corners.inside();
+        inside_[n] = inside;
     }
     // They stay in memory until others are added.
     CellArrays take() noexcept {

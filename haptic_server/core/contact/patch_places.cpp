@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "haptic_server/core/contact/gradient_contact.h"
+#include "haptic_server/core/volume/density_view.h"
 
 namespace bonemill {
 namespace {
@@ -107,22 +108,9 @@ void GradientContact::takePieces() noexcept {
 }
 
 void GradientContact::movePlacesOntoSurface(const VoxelVolume& volume, size_t from) noexcept {
-    const BrickStore& bricks = volume.bricks();
-    DensityView view{.bricks = bricks.data(),
-                     .slots = bricks.slots(),
-                     .bricks_x = bricks.bricksPerAxis().x(),
-                     .bricks_y = bricks.bricksPerAxis().y(),
-                     .dims = {volume.dims().x(), volume.dims().y(), volume.dims().z()},
-                     .iso = volume.iso(),
-                     .inverse_spacing = {},
-                     .origin = {}};
-    for (int axis = 0; axis < 3; ++axis) {
-        view.inverse_spacing[axis] = float(1 / volume.spacing()[axis]);
-        view.origin[axis] = float(origin_[axis]);
-    }
     Candidates& c = candidates_;
     kernels().move_onto_surface(
-        view, kPlaceSteps,
+        densityView(volume, origin_), kPlaceSteps,
         {&c.x[from], &c.y[from], &c.z[from], float(SurfacePieces::kMostSag * volume.spacing().minCoeff()),
          int(c.count - from)});
 }

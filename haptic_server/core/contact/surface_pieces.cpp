@@ -53,9 +53,10 @@ void SurfacePieces::start(const ToolField& tool, const Pose& X_VT, const Eigen::
 void SurfacePieces::add(const VoxelVolume& volume, const Eigen::Vector3i& cell, uint32_t patch,
                         uint8_t level) noexcept {
     const CellCorners corners = readCorners(volume, cell);
-    if (const int inside = corners.inside(); inside == 0 || inside == 255) return;
+    const int inside = corners.inside();
+    if (inside == 0 || inside == 255) return;
     const auto n = size_t(cells_.count());
-    cells_.add(corners);
+    cells_.add(corners, inside);
     const Eigen::Vector3f at = (cell.cast<double>().cwiseProduct(volume.spacing()) - origin_).cast<float>();
     cell_x_[n] = at.x(), cell_y_[n] = at.y(), cell_z_[n] = at.z();
     cell_patch_[n] = patch;

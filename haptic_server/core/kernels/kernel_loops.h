@@ -88,6 +88,7 @@ inline void loadWords(const uint16_t* p, W& words) {
 #include "haptic_server/core/kernels/piece_loops.h"
 #include "haptic_server/core/kernels/point_loops.h"
 #include "haptic_server/core/kernels/row_loops.h"
+#include "haptic_server/core/kernels/shift_loops.h"
 
 namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE {
 
@@ -104,6 +105,9 @@ const Kernels kTable = {.single = {intoFrame<float>, nearerRound<float>, sampleN
                         .cell_fills = cellFills,
                         .project_into_cells = projectIntoCells,
                         .move_onto_surface = moveOntoSurface,
+                        .sink_surface = sinkSurface,
+                        .add_hat = addHat,
+                        .add_hat_where_any = addHatWhereAny,
                         .cell_triangles = cellTriangles,
                         .halve_pieces = halvePieces,
                         .measure_pieces = measurePieces,

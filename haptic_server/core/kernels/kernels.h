@@ -224,6 +224,23 @@ struct PieceRules {
     float per_spacing_squared;  // 1/m²
 };
 
+// Places on the surface that sink into the bone, against the density's gradient, as structure of arrays that
+// go on to the next multiple of kCellLanes.
+struct SinkingPoints {
+    float *x, *y, *z;           // in: m; out: where they come to, voxel steps
+    const float* recession;     // m
+    const float* least_excess;  // counts: there is taken to be so much density where they come to
+    float* drop;                // out: the densities around there must fall by so many counts
+    int count;
+};
+// These are voxels around a place, with weights that fall to zero at `width` along each axis.
+struct VoxelHat {
+    float at[3];  // voxel steps
+    float width;
+    int first[3], count[3];  // voxels
+    size_t stride_y, stride_z;
+};
+
 struct Kernels {
     PointKernels<float> single;
     PointKernels<double> twice;
@@ -257,6 +274,14 @@ struct Kernels {
                                const CellProjections& out);
     // Takes Newton steps up or down the density's gradient, from cell to cell.
     void (*move_onto_surface)(const DensityView& density, int steps, const SurfacePoints& points);
+    // Takes a step down into the bone from each place. By its drop all corners of the cell there must fall,
+    // so that the surface comes to it; those that come to rest at zero leave the rest to the others.
+    void (*sink_surface)(const DensityView& density, const SinkingPoints& points);
+    // Adds the hat's weights times the area, and those times the drop, to sums whose first ones are those of
+    // the hat's first voxel. Rows may be read and written up to kCellLanes - 1 beyond their ends.
+    void (*add_hat)(const VoxelHat& hat, float area, float drop, float* drops, float* weights);
+    // The same for weights alone, where there are any.
+    void (*add_hat_where_any)(const VoxelHat& hat, float area, float* weights);
     // Appends the triangles in these cells; all but `finest` is written.
     // Returns how many there are.
     int (*cell_triangles)(const CellArrays& cells, const int* triangles, const CellPlaces& places,

@@ -20,8 +20,8 @@ class CellFills {
 
     int count() const noexcept { return cells_.count(); }
     bool isFull() const noexcept { return cells_.isFull(); }
-    // Adds a cell; it must not be full.
-    void add(const CellCorners& corners) noexcept { cells_.add(corners); }
+    // Adds a cell with these corners inside; it must not be full.
+    void add(const CellCorners& corners, int inside) noexcept { cells_.add(corners, inside); }
     // Forgets the cells that were added, and calls visit(n, fill) with the share of each that is bone, 0
     // .. 1.
     template <class Visit>

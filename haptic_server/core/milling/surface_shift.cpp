@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "haptic_server/core/contact/cell_corners.h"
+#include "haptic_server/core/kernels/kernels.h"
+#include "haptic_server/core/volume/density_view.h"
 #include "haptic_server/core/volume/floor_index.h"
 
 namespace bonemill {
@@ -20,7 +22,6 @@ using Eigen::Vector3i;
 // voxel count as this, so that a surface on a plateau moves on.
 constexpr double kMinSlope = 0.02;
 constexpr double kGoldenRatio = 0.6180339887498949;  // spreads the roundings evenly
-constexpr int kUnclampedRounds = 3;                  // of corners that come to rest at zero
 
 int coarsestFactor(const PointShell& shell) noexcept {
     int factor = 1;
@@ -40,25 +41,10 @@ Vector3i scratchSize(const BoneModel& bone, double reach) noexcept {
     return voxels.min((bone.volume.dims().array() + 2).cast<double>()).cast<int>().matrix();
 }
 
-// All corners of a cell must fall by this, so that the density at `t` falls by `excess`. Those that come to
-// rest at zero leave the rest to the others.
-float equalDrop(const CellCorners& corners, float iso, const Vector3f& t, float excess) noexcept {
-    float drop = excess;
-    for (int round = 0; round < kUnclampedRounds; ++round) {
-        float done = 0, share = 0;
-        for (int c = 0; c < 8; ++c) {
-            const float weight =
-                (c & 1 ? t.x() : 1 - t.x()) * (c & 2 ? t.y() : 1 - t.y()) * (c & 4 ? t.z() : 1 - t.z());
-            const float density = corners.excess[size_t(c)] + iso;
-            if (density < drop)
-                done += weight * density;
-            else
-                share += weight;
-        }
-        if (!(share > 0)) break;
-        drop = (excess - done) / share;
-    }
-    return std::clamp(drop, 0.0f, float(kMaxDensity));
+// These are the bits of a word of such a row that stand for low .. high, which it has some of.
+uint64_t bitsIn(int word, int low, int high) noexcept {
+    const int first = std::max(low - word * 64, 0), last = std::min(high - word * 64, 63);
+    return (~uint64_t(0) >> (63 - last)) & (~uint64_t(0) << first);
 }
 
 // Calls visit(voxels from the scratch box on) for the bits of this word of a row of SurfaceShift.
@@ -72,30 +58,34 @@ void forEachBit(int word, uint64_t bits, Visit&& visit) noexcept {
 SurfaceShift::SurfaceShift(const BoneModel& bone, double largest_reach, size_t most_contacts,
                            size_t most_cells)
     : size_(scratchSize(bone, largest_reach)),
-      nodes_(size_t(size_.cast<int64_t>().prod())),
+      orders_(size_t(size_.cast<int64_t>().prod())),
+      drops_(orders_.size() + kCellLanes),
+      weights_(drops_.size()),
       row_words_((size_.x() + kRowBits - 1) / kRowBits),
       asked_(size_t(row_words_) * size_t(size_.y()) * size_t(size_.z())),
       patches_(most_contacts),
-      near_(nodes_.size()),
+      near_(orders_.size()),
+      cells_(orders_.size()),
+      fills_before_(orders_.size()),
+      fills_after_(orders_.size()),
       old_(size_t(size_.x() + VoxelVolume::kReadSlack)),
       fresh_(size_t(size_.x())),
       collector_(bone.lattice, size_, most_cells) {}
-
-int SurfaceShift::blockOf(const BoneModel& bone) noexcept {
-    return bone.shell.scalingFactor(bone.shell.followed());
-}
 
 void SurfaceShift::begin(const BoneModel& bone, const Vector3d& p_VB) noexcept {
     forget();
     const Eigen::Array3d middle = p_VB.array() / bone.volume.spacing().array();
     const Eigen::Array3d last = (bone.volume.dims().array() + 1 - size_.array()).cast<double>();
     first_ = (middle - size_.cast<double>().array() / 2).max(-1.0).min(last).floor().cast<int>().matrix();
+    room_ = {(first_.array() + 1).max(0), (first_ + size_).array() - 2};
+    room_.max = room_.max.cwiseMin((bone.volume.dims().array() - 1).matrix());
+    block_ = bone.shell.scalingFactor(bone.shell.followed());
     rounding_ += kGoldenRatio;
     rounding_ -= std::floor(rounding_);
 }
 
 void SurfaceShift::forget() noexcept {
-    for (size_t n = 0; n < patch_count_; ++n) nodes_[patches_[n]].energy = nodes_[patches_[n]].depth = 0;
+    for (size_t n = 0; n < patch_count_; ++n) orders_[patches_[n]] = {};
     patch_count_ = 0;
     last_node_ = kNoNode;
     patch_cells_ = {};
@@ -104,10 +94,8 @@ void SurfaceShift::forget() noexcept {
         for (int j = touched_.min.y(); j <= touched_.max.y(); ++j) {
             const size_t first_word = row(j, k), in_row = index({first_.x(), j, k});
             for (int word = 0; word < row_words_; ++word)
-                forEachBit(word, std::exchange(asked_[first_word + size_t(word)], 0), [&](int i) {
-                    Node& node = nodes_[in_row + size_t(i)];
-                    node.drop = node.weight = 0;
-                });
+                forEachBit(word, std::exchange(asked_[first_word + size_t(word)], 0),
+                           [&](int i) { drops_[in_row + size_t(i)] = weights_[in_row + size_t(i)] = 0; });
         }
     touched_ = {};
 }
@@ -119,10 +107,10 @@ bool SurfaceShift::isInScratch(const Vector3i& voxel) const noexcept {
 
 void SurfaceShift::add(const BoneModel& bone, PatchId patch, double energy, double depth) noexcept {
     if (last_node_ == kNoNode || patch != last_patch_) {
-        const Vector3i cell = bone.lattice.cellsOf(patch.leaf).min + patch.block.index() * blockOf(bone);
+        const Vector3i cell = bone.lattice.cellsOf(patch.leaf).min + patch.block.index() * block_;
         if (!isInScratch(cell)) return;
         const size_t at = index(cell);
-        if (nodes_[at].depth == 0) {
+        if (orders_[at].depth == 0) {
             if (patch_count_ == patches_.size()) return;
             patches_[patch_count_++] = at;
         }
@@ -130,26 +118,31 @@ void SurfaceShift::add(const BoneModel& bone, PatchId patch, double energy, doub
         last_patch_ = patch;
         last_node_ = at;
     }
-    Node& node = nodes_[last_node_];
-    node.energy += float(energy);
-    node.depth = std::max(node.depth, float(depth));
+    Order& order = orders_[last_node_];
+    order.energy += float(energy);
+    order.depth = std::max(order.depth, float(depth));
 }
 
 // Lists the shell's points around those with energy.
 void SurfaceShift::findPatches(const BoneModel& bone) noexcept {
     near_count_ = 0;
-    const int factor = blockOf(bone);
-    const IndexBox cells = patch_cells_.grown(2 * factor);
+    const IndexBox cells = patch_cells_.grown(2 * block_);
     const IndexBox reachable{cells.min.cwiseMax(first_),
                              cells.max.cwiseMin(first_ + size_ - Vector3i::Ones())};
     const auto has_surface = [iso = bone.volume.iso()](const DensityRange& range, const IndexBox&) {
         return range.holds(iso);
     };
+    // A point lies in its block.
+    const Eigen::Array3f step = bone.volume.spacing().cast<float>();
+    const Eigen::AlignedBox3f box{(reachable.min.cast<float>().array() - 1) * step,
+                                  (reachable.max.cast<float>().array() + float(block_ + 1)) * step};
     bone.lattice.forEachLeaf(cells, has_surface, [&](LeafId leaf) {
         const Vector3i first = bone.lattice.cellsOf(leaf).min;
         bone.shell.forEachBlock(bone.shell.followed(), leaf, [&](const ShellBlock& b, uint32_t count) {
+            const Vector3f center(b.center[0], b.center[1], b.center[2]);
+            if (box.squaredExteriorDistance(center) > b.radius * b.radius) return;
             for (uint32_t n = 0; n < count && near_count_ < near_.size(); ++n) {
-                const Vector3i cell = first + b.key[n].index() * factor;
+                const Vector3i cell = first + b.key[n].index() * block_;
                 const bool is_near = (cell.array() >= reachable.min.array()).all() &&
                                      (cell.array() <= reachable.max.array()).all();
                 if (is_near)
@@ -160,105 +153,105 @@ void SurfaceShift::findPatches(const BoneModel& bone) noexcept {
     });
 }
 
-// Returns those that can be written where the hat around `at`, in voxel steps, is > 0.
-IndexBox SurfaceShift::voxelsAround(const BoneModel& bone, const Vector3f& at) const noexcept {
-    const Vector3f width = Vector3f::Constant(float(blockOf(bone)));
-    const Vector3i room_low = first_.array() + 1, room_high = (first_ + size_).array() - 2;
-    const Vector3i low = floorIndices(at - width).array() + 1, high = ceilIndices(at + width).array() - 1;
-    return {low.cwiseMax(room_low).cwiseMax(Vector3i::Zero()),
-            high.cwiseMin(room_high).cwiseMin((bone.volume.dims().array() - 1).matrix())};
+// It has the voxels that can be written; `at` in voxel steps.
+VoxelHat SurfaceShift::hatAround(const Vector3f& at) const noexcept {
+    const Vector3f width = Vector3f::Constant(float(block_));
+    const Vector3i low = (floorIndices(at - width).array() + 1).max(room_.min.array());
+    const Vector3i high = (ceilIndices(at + width).array() - 1).min(room_.max.array());
+    VoxelHat hat{.at = {at.x(), at.y(), at.z()},
+                 .width = width.x(),
+                 .first = {low.x(), low.y(), low.z()},
+                 .count = {},
+                 .stride_y = size_t(size_.x()),
+                 .stride_z = size_t(size_.x()) * size_t(size_.y())};
+    const bool is_empty = (low.array() > high.array()).any();
+    for (int axis = 0; axis < 3; ++axis) hat.count[axis] = is_empty ? 0 : high[axis] - low[axis] + 1;
+    return hat;
 }
 
-// Calls visit(voxel, weight) with the hat's weights, for voxelsAround(at).
+// Calls visit(its word of asked_, its bits) for the rows of a hat, until that returns true; returns whether
+// it did.
 template <class Visit>
-void SurfaceShift::forEachVoxelIn(const BoneModel& bone, const IndexBox& voxels, const Vector3f& at,
-                                  Visit&& visit) const noexcept {
-    const auto width = float(blockOf(bone));
-    const auto hat = [&](int voxel, float place) { return width - std::abs(float(voxel) - place); };
-    for (int k = voxels.min.z(); k <= voxels.max.z(); ++k)
-        for (int j = voxels.min.y(); j <= voxels.max.y(); ++j) {
-            const float off_row = hat(k, at.z()) * hat(j, at.y());
-            for (int i = voxels.min.x(); i <= voxels.max.x(); ++i)
-                visit(Vector3i(i, j, k), off_row * hat(i, at.x()));
+bool SurfaceShift::forEachRow(const VoxelHat& hat, Visit&& visit) const noexcept {
+    const int low = hat.first[0] - first_.x(), high = low + hat.count[0] - 1;
+    for (int k = 0; k < hat.count[2]; ++k)
+        for (int j = 0; j < hat.count[1]; ++j) {
+            const size_t first_word = row(hat.first[1] + j, hat.first[2] + k);
+            for (int word = low / kRowBits; word <= high / kRowBits; ++word)
+                if (visit(first_word + size_t(word), bitsIn(word, low, high))) return true;
         }
+    return false;
 }
 
-SurfaceShift::Wish SurfaceShift::wishOf(const VoxelVolume& volume, const Vector3f& point,
-                                        double recession) const noexcept {
-    const Vector3f inverse = volume.spacing().cwiseInverse().cast<float>();
-    const Vector3i last = volume.dims().array() - 1;
-    const auto cellAt = [&](const Vector3f& at) -> Vector3i {
-        return floorIndices(at).cwiseMax(-1).cwiseMin(last);
-    };
-    const Vector3f at = point.cwiseProduct(inverse);
-    const Vector3i cell = cellAt(at);
-    const FieldSample here = sampleField(readCorners(volume, cell), at - cell.cast<float>());
-    const Vector3f inward = here.slope.cwiseProduct(inverse);
-    const float slope = inward.norm();
-    Vector3f target = at;
-    if (slope > 0) target += float(recession) / slope * inward.cwiseProduct(inverse);
-    const Vector3i target_cell = cellAt(target);
-    const Vector3f t = target - target_cell.cast<float>();
-    const CellCorners corners = readCorners(volume, target_cell);
-    const int to_iso = std::min(int(volume.iso()), kMaxDensity - volume.iso());
-    const double least = kMinSlope * to_iso / volume.spacing().maxCoeff() * recession;
-    // The point itself is on the surface but for its projection's tolerance.
-    const float excess = std::max(sampleField(corners, t).excess - here.excess, float(least));
-    return {target, equalDrop(corners, float(volume.iso()), t, excess)};
+void SurfaceShift::touch(const VoxelHat& hat) noexcept {
+    if (hat.count[0] == 0) return;
+    forEachRow(hat, [&](size_t word, RowBits bits) {
+        asked_[word] |= bits;
+        return false;
+    });
+    const Vector3i first(hat.first[0], hat.first[1], hat.first[2]);
+    touched_.include(first);
+    touched_.include(first + Vector3i(hat.count[0] - 1, hat.count[1] - 1, hat.count[2] - 1));
 }
 
-void SurfaceShift::touch(const Vector3i& voxel) noexcept {
-    const int i = voxel.x() - first_.x();
-    asked_[row(voxel.y(), voxel.z()) + size_t(i / kRowBits)] |= RowBits(1) << (i % kRowBits);
-    touched_.include(voxel);
+bool SurfaceShift::isAnyTouched(const VoxelHat& hat) const noexcept {
+    return forEachRow(hat, [&](size_t word, RowBits bits) { return (asked_[word] & bits) != 0; });
 }
 
 // Nothing is asked of this voxel any more.
 void SurfaceShift::forgetVoxel(const Vector3i& voxel) noexcept {
     const int i = voxel.x() - first_.x();
     asked_[row(voxel.y(), voxel.z()) + size_t(i / kRowBits)] &= ~(RowBits(1) << (i % kRowBits));
-    Node& node = nodes_[index(voxel)];
-    node.drop = node.weight = 0;
-}
-
-bool SurfaceShift::isAnyTouched(const IndexBox& voxels) const noexcept {
-    const IndexBox box = voxels.clamped(touched_.min, touched_.max);
-    for (int k = box.min.z(); k <= box.max.z(); ++k)
-        for (int j = box.min.y(); j <= box.max.y(); ++j) {
-            const Span span = touchedIn(row(j, k), box.min.x(), box.max.x());
-            if (span.low <= span.high) return true;
-        }
-    return false;
+    drops_[index(voxel)] = weights_[index(voxel)] = 0;
 }
 
 // The span reaches from the first to the last of the row's touched voxels within low .. high.
 SurfaceShift::Span SurfaceShift::touchedIn(size_t row, int low, int high) const noexcept {
-    const auto isTouched = [&](int voxel) {
-        const int i = voxel - first_.x();
-        return (asked_[row + size_t(i / kRowBits)] >> (i % kRowBits) & 1) != 0;
-    };
-    while (low <= high && !isTouched(low)) ++low;
-    while (low <= high && !isTouched(high)) --high;
-    return {low, high};
+    const int low_bit = low - first_.x(), high_bit = high - first_.x();
+    Span span;
+    for (int word = low_bit / kRowBits; word <= high_bit / kRowBits; ++word) {
+        const RowBits bits = asked_[row + size_t(word)] & bitsIn(word, low_bit, high_bit);
+        if (bits == 0) continue;
+        const int first = first_.x() + word * kRowBits;
+        if (span.low > span.high) span.low = first + std::countr_zero(bits);
+        span.high = first + kRowBits - 1 - std::countl_zero(bits);
+    }
+    return span;
 }
 
 void SurfaceShift::spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share,
                                 double most) noexcept {
     const Vector3f inverse = bone.volume.spacing().cwiseInverse().cast<float>();
+    const int to_iso = std::min(int(bone.volume.iso()), kMaxDensity - bone.volume.iso());
+    const double least_slope = kMinSlope * to_iso / bone.volume.spacing().maxCoeff();
+    alignas(64) float x[kSinkBatch], y[kSinkBatch], z[kSinkBatch], recession[kSinkBatch],
+        least_excess[kSinkBatch], drop[kSinkBatch], area[kSinkBatch];
+    SinkingPoints wishes{x, y, z, recession, least_excess, drop, 0};
     for (const NearPatch& patch : std::span(near_).first(near_count_)) {
-        const Node& node = nodes_[patch.node];
-        if (!(node.energy > 0)) continue;
-        const float area = patch.area;
+        const Order& order = orders_[patch.node];
+        if (!(order.energy > 0)) continue;
         const Vector3i cell = floorIndices(patch.at.cwiseProduct(inverse));
-        const double wanted = share * double(node.energy) / (u.ofCell(cell) * double(area));
+        const double wanted = share * double(order.energy) / (u.ofCell(cell) * double(patch.area));
         is_too_fast_ |= wanted > most;
-        const Wish wish = wishOf(bone.volume, patch.at, std::min({wanted, double(node.depth), most}));
-        forEachVoxelIn(bone, voxelsAround(bone, wish.at), wish.at, [&](const Vector3i& voxel, float hat) {
-            touch(voxel);
-            Node& to = nodes_[index(voxel)];
-            to.drop += hat * area * wish.drop;
-            to.weight += hat * area;
-        });
+        const double s = std::min({wanted, double(order.depth), most});
+        const int n = wishes.count++;
+        x[n] = patch.at.x(), y[n] = patch.at.y(), z[n] = patch.at.z();
+        area[n] = patch.area, recession[n] = float(s), least_excess[n] = float(least_slope * s);
+        if (wishes.count < kSinkBatch) continue;
+        spread(bone.volume, wishes, area);
+        wishes.count = 0;
+    }
+    spread(bone.volume, wishes, area);
+}
+
+void SurfaceShift::spread(const VoxelVolume& volume, const SinkingPoints& wishes,
+                          const float* areas) noexcept {
+    kernels().sink_surface(densityView(volume), wishes);
+    for (int n = 0; n < wishes.count; ++n) {
+        const VoxelHat hat = hatAround({wishes.x[n], wishes.y[n], wishes.z[n]});
+        touch(hat);
+        const size_t at = index({hat.first[0], hat.first[1], hat.first[2]});
+        kernels().add_hat(hat, areas[n], wishes.drop[n], &drops_[at], &weights_[at]);
     }
 }
 
@@ -266,24 +259,20 @@ void SurfaceShift::spreadWishes(const BoneModel& bone, const SpecificEnergy& u, 
 void SurfaceShift::spreadRest(const BoneModel& bone) noexcept {
     const Vector3f inverse = bone.volume.spacing().cwiseInverse().cast<float>();
     for (const NearPatch& patch : std::span(near_).first(near_count_)) {
-        if (nodes_[patch.node].energy > 0) continue;
-        const Vector3f at = patch.at.cwiseProduct(inverse);
-        const IndexBox voxels = voxelsAround(bone, at);
-        if (!isAnyTouched(voxels)) continue;
-        forEachVoxelIn(bone, voxels, at, [&](const Vector3i& voxel, float hat) {
-            Node& to = nodes_[index(voxel)];
-            if (to.weight > 0) to.weight += hat * patch.area;
-        });
+        if (orders_[patch.node].energy > 0) continue;
+        const VoxelHat hat = hatAround(patch.at.cwiseProduct(inverse));
+        if (isAnyTouched(hat))
+            kernels().add_hat_where_any(hat, patch.area,
+                                        &weights_[index({hat.first[0], hat.first[1], hat.first[2]})]);
     }
 }
 
-// Calls visit(cell, node) for the cells that have a touched voxel.
+// Calls visit(cell) for the cells that have a touched voxel.
 template <class Visit>
-void SurfaceShift::forEachCell(const BoneModel& bone, Visit&& visit) noexcept {
-    const Vector3i last = bone.volume.dims().array() - 1;
+void SurfaceShift::forEachCell(const VoxelVolume& volume, Visit&& visit) const noexcept {
+    const Vector3i last = volume.dims().array() - 1;
     for (int k = touched_.min.z() - 1; k <= std::min(touched_.max.z(), last.z()); ++k)
         for (int j = touched_.min.y() - 1; j <= std::min(touched_.max.y(), last.y()); ++j) {
-            const size_t in_row = index({first_.x(), j, k});
             const size_t rows[4] = {row(j, k), row(j + 1, k), row(j, k + 1), row(j + 1, k + 1)};
             const auto voxels = [&](int word) {
                 RowBits bits = 0;
@@ -296,26 +285,48 @@ void SurfaceShift::forEachCell(const BoneModel& bone, Visit&& visit) noexcept {
                 // A cell has its own voxel and the next one.
                 const RowBits cells = bits | bits >> 1 | next << (kRowBits - 1);
                 forEachBit(word, cells, [&](int i) {
-                    if (first_.x() + i <= last.x())
-                        visit(Vector3i(first_.x() + i, j, k), nodes_[in_row + size_t(i)]);
+                    if (first_.x() + i <= last.x()) visit(Vector3i(first_.x() + i, j, k));
                 });
                 bits = next;
             }
         }
 }
 
-// The same, with the share of the cell that is bone: visit(cell, node, share).
-template <class Visit>
-void SurfaceShift::forEachFill(const BoneModel& bone, Visit&& visit) noexcept {
-    Vector3i cells[CellFills::kMost];
-    Node* nodes[CellFills::kMost];
-    const auto takeAll = [&] { fills_.take([&](int n, float fill) { visit(cells[n], *nodes[n], fill); }); };
-    forEachCell(bone, [&](const Vector3i& cell, Node& node) {
-        cells[fills_.count()] = cell, nodes[fills_.count()] = &node;
-        fills_.add(readCorners(bone.volume, cell));
-        if (fills_.isFull()) takeAll();
+// Lists the cells that may lose bone, and measures how much they have.
+void SurfaceShift::findCells(const VoxelVolume& volume) noexcept {
+    cell_count_ = 0;
+    forEachCell(volume, [&](const Vector3i& cell) {
+        const CellCorners corners = readCorners(volume, cell);
+        const int inside = corners.inside();
+        if (inside == 0) return;
+        cells_[cell_count_] = cell;
+        measure(cell_count_++, corners, inside, fills_before_);
     });
-    takeAll();
+    finishMeasuring(fills_before_);
+}
+
+void SurfaceShift::measureAgain(const VoxelVolume& volume) noexcept {
+    for (size_t n = 0; n < cell_count_; ++n) {
+        const CellCorners corners = readCorners(volume, cells_[n]);
+        measure(n, corners, corners.inside(), fills_after_);
+    }
+    finishMeasuring(fills_after_);
+}
+
+// Those that the surface crosses wait for others.
+void SurfaceShift::measure(size_t cell, const CellCorners& corners, int inside,
+                           std::vector<float>& fills) noexcept {
+    if (inside == 0 || inside == 255) {
+        fills[cell] = inside == 0 ? 0 : 1;
+        return;
+    }
+    crossed_[fills_.count()] = cell;
+    fills_.add(corners, inside);
+    if (fills_.isFull()) finishMeasuring(fills);
+}
+
+void SurfaceShift::finishMeasuring(std::vector<float>& fills) noexcept {
+    fills_.take([&](int n, float fill) { fills[crossed_[n]] = fill; });
 }
 
 double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double share, size_t ticks,
@@ -329,12 +340,13 @@ double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double shar
     spreadRest(bone);
     collect(bone, result);
     if (collector_.isEmpty()) return 0;
-    forEachFill(bone, [](const Vector3i&, Node& node, float fill) { node.fill = fill; });
+    findCells(bone.volume);
     result.shell_is_complete &= collector_.write(bone.volume, bone.lattice, bone.shell, -1);
+    measureAgain(bone.volume);
     double spent = 0;
-    forEachFill(bone, [&](const Vector3i& cell, const Node& node, float fill) {
-        if (const double gone = double(node.fill) - double(fill); gone != 0) spent += u.ofCell(cell) * gone;
-    });
+    for (size_t n = 0; n < cell_count_; ++n)
+        if (const double gone = double(fills_before_[n]) - double(fills_after_[n]); gone != 0)
+            spent += u.ofCell(cells_[n]) * gone;
     return spent * bone.volume.voxelVolume();
 }
 
@@ -365,13 +377,13 @@ bool SurfaceShift::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, Mill
 void SurfaceShift::collectRow(const VoxelVolume& volume, const Vector3i& first, int count, ChangedRuns& rows,
                               MillingResult& of_part) noexcept {
     volume.readRow(first, count, old_.data());
-    const Node* node = &nodes_[index(first)];
+    const float *drop = &drops_[index(first)], *weight = &weights_[index(first)];
     bool is_changed = false;
     for (int i = 0; i < count; ++i) {
         const Density old = old_[size_t(i)];
         Density& fresh = fresh_[size_t(i)] = old;
-        if (node[i].drop > 0) {
-            const double left = double(old) - double(node[i].drop) / double(node[i].weight);
+        if (drop[i] > 0) {
+            const double left = double(old) - double(drop[i]) / double(weight[i]);
             fresh = std::min(old, Density(std::floor(std::max(left, 0.0) + rounding_)));
         }
         if (fresh == old) forgetVoxel(first + Vector3i(i, 0, 0));

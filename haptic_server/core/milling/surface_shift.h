@@ -44,11 +44,9 @@ class SurfaceShift {
                  MillingResult& result) noexcept;
 
   private:
-    // It is one voxel, and the cell that begins there.
-    struct Node {
-        float drop = 0, weight = 0;   // voxel: weighted sum of what is asked for, and of the weights
-        float energy = 0, depth = 0;  // of the patch whose block begins at the cell
-        float fill = 0;               // of the cell, before
+    // Of the patch whose block begins at this voxel.
+    struct Order {
+        float energy = 0, depth = 0;
     };
     // It is a point of the shell near those with energy; `at` in m, V, and the node of its block.
     struct NearPatch {
@@ -56,15 +54,11 @@ class SurfaceShift {
         float area;
         uint32_t node;
     };
-    // A patch wishes that the densities around a place fall by so much.
-    struct Wish {
-        Eigen::Vector3f at;  // voxel steps
-        float drop;          // counts
-    };
     // Something was asked of these voxels of a row, one bit each from the scratch box on.
     using RowBits = uint64_t;
     static constexpr int kRowBits = 64;
     static constexpr size_t kNoNode = ~size_t(0);
+    static constexpr int kSinkBatch = 2 * kCellLanes;
     struct Span {  // of voxels along x; empty: low > high
         int low = 1, high = 0;
     };
@@ -75,23 +69,23 @@ class SurfaceShift {
         return size_t(row_words_) * (size_t(j - first_.y()) + size_t(size_.y()) * size_t(k - first_.z()));
     }
     bool isInScratch(const Eigen::Vector3i& voxel) const noexcept;
-    static int blockOf(const BoneModel& bone) noexcept;
 
     void findPatches(const BoneModel& bone) noexcept;
-    IndexBox voxelsAround(const BoneModel& bone, const Eigen::Vector3f& at) const noexcept;
-    template <class Visit>
-    void forEachVoxelIn(const BoneModel& bone, const IndexBox& voxels, const Eigen::Vector3f& at,
-                        Visit&& visit) const noexcept;
-    template <class Visit>
-    void forEachCell(const BoneModel& bone, Visit&& visit) noexcept;
-    template <class Visit>
-    void forEachFill(const BoneModel& bone, Visit&& visit) noexcept;
-    Wish wishOf(const VoxelVolume& volume, const Eigen::Vector3f& point, double recession) const noexcept;
     void spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share, double most) noexcept;
+    void spread(const VoxelVolume& volume, const SinkingPoints& wishes, const float* areas) noexcept;
     void spreadRest(const BoneModel& bone) noexcept;
-    void touch(const Eigen::Vector3i& voxel) noexcept;
+    VoxelHat hatAround(const Eigen::Vector3f& at) const noexcept;
+    template <class Visit>
+    bool forEachRow(const VoxelHat& hat, Visit&& visit) const noexcept;
+    template <class Visit>
+    void forEachCell(const VoxelVolume& volume, Visit&& visit) const noexcept;
+    void findCells(const VoxelVolume& volume) noexcept;
+    void measureAgain(const VoxelVolume& volume) noexcept;
+    void measure(size_t cell, const CellCorners& corners, int inside, std::vector<float>& fills) noexcept;
+    void finishMeasuring(std::vector<float>& fills) noexcept;
+    void touch(const VoxelHat& hat) noexcept;
     void forgetVoxel(const Eigen::Vector3i& voxel) noexcept;
-    bool isAnyTouched(const IndexBox& voxels) const noexcept;
+    bool isAnyTouched(const VoxelHat& hat) const noexcept;
     Span touchedIn(size_t row, int low, int high) const noexcept;
     void collect(BoneModel& bone, MillingResult& result) noexcept;
     bool collectLeaf(VoxelVolume& volume, const IndexBox& voxels, MillingResult& of_leaf) noexcept;
@@ -100,9 +94,14 @@ class SurfaceShift {
     void forget() noexcept;
 
     CellFills fills_;
+    size_t crossed_[CellFills::kMost];                 // those that wait there
     Eigen::Vector3i size_;                             // of the scratch box
     Eigen::Vector3i first_ = Eigen::Vector3i::Zero();  // its first voxel
-    std::vector<Node> nodes_;
+    IndexBox room_;                                    // of voxels that can be written
+    int block_ = 1;                                    // of the shell in force, in voxels
+    std::vector<Order> orders_;
+    // Voxel by voxel: the weighted sum of what is asked for, and of the weights.
+    std::vector<float> drops_, weights_;
     int row_words_;
     std::vector<RowBits> asked_;   // row by row: voxels that something was asked of
     IndexBox touched_;             // all of those
@@ -113,6 +112,10 @@ class SurfaceShift {
     std::vector<NearPatch> near_;  // the first near_count_
     size_t near_count_ = 0;
     IndexBox patch_cells_;  // blocks of those begin in it
+    // Cells with a touched voxel and some bone, and the shares of them that are bone; the first cell_count_.
+    std::vector<Eigen::Vector3i> cells_;
+    std::vector<float> fills_before_, fills_after_;
+    size_t cell_count_ = 0;
     std::vector<Density> old_, fresh_;
     ChangeCollector collector_;
     bool is_too_fast_ = false;

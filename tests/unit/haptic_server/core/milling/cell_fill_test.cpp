@@ -10,7 +10,7 @@ namespace {
 
 double fillOf(const CellCorners& corners) {
     CellFills fills;
-    fills.add(corners);
+    fills.add(corners, corners.inside());
     double result = 0;
     fills.take([&](int, float fill) { result = double(fill); });
     return result;
@@ -22,7 +22,8 @@ double filled(const VoxelVolume& volume) {
     const auto take = [&] { fills.take([&](int, float fill) { sum += double(fill); }); };
     forEachIndex({Eigen::Vector3i::Constant(-1), volume.dims().array() - 1},
                  [&](const Eigen::Vector3i& cell) {
-                     fills.add(readCorners(volume, cell));
+                     const CellCorners corners = readCorners(volume, cell);
+                     fills.add(corners, corners.inside());
                      if (fills.isFull()) take();
                  });
     take();
