@@ -112,6 +112,13 @@ class GradientContact {
     static constexpr size_t kMaxPieces = 4 * 65536;
     // What was sampled as finely as asked for may come to N times most_samples.
     static constexpr size_t kMaxTimes = 2;
+    // Where many patches are near, each is small against the contact, and half as many of them as there may
+    // be pieces are samples enough. From half of that on there are fewer pieces the more patches there are,
+    // of the nearest of them.
+    static constexpr size_t kPiecesPerPatch = 4;
+    static size_t piecesBeside(size_t coarse_patches, size_t most) noexcept {
+        return std::min(most, 2 * (most - std::min(most, 2 * coarse_patches)));
+    }
     // To cut the surface into samples and to solve with them takes as long as N point tests, each.
     static constexpr size_t kTestsPerSample = 20;
     // A contact counts for the stiffness cap in proportion to its depth, so that a new one comes in smoothly.
@@ -147,6 +154,7 @@ class GradientContact {
     void refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT, size_t most_tests) noexcept;
     void cutPatches(const ShellView& bone, const ToolField& tool, const Pose& X_VT,
                     size_t most_tests) noexcept;
+    void keepNearest(size_t most) noexcept;
     void cutPatch(const ShellView& bone, uint32_t near) noexcept;
     void takeWholePatches() noexcept;
     size_t countPieces() noexcept;

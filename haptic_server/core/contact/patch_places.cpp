@@ -39,19 +39,33 @@ void GradientContact::cutPatches(const ShellView& bone, const ToolField& tool, c
     const size_t asked_for = size_t(bone.most_samples);
     const size_t most_of_new = std::min(asked_for, affordable),
                  most = std::min(kMaxTimes * asked_for, affordable);
-    if (2 * split_count_ > most_of_new) {  // there are points enough
-        has_fewer_samples_ = 2 * split_count_ <= asked_for;
-        split_count_ = 0;
-        return;
-    }
+    const size_t coarse = split_count_, most_pieces = piecesBeside(coarse, most_of_new);
+    keepNearest(most_pieces / kPiecesPerPatch);
+    has_fewer_samples_ = split_count_ < std::min(coarse, piecesBeside(coarse, asked_for) / kPiecesPerPatch);
+    if (split_count_ == 0) return;
     for (size_t n = 0; n < split_count_; ++n) cutPatch(bone, split_[n]);
-    const uint8_t level_of_new = pieces_.cut(bone.volume, most_of_new, most);
-    has_fewer_samples_ = pieces_.isFull() || (pieces_.isCoarse() && affordable < kMaxTimes * asked_for &&
-                                              (most_of_new < asked_for || pieces_.count() > most));
+    const uint8_t level_of_new = pieces_.cut(bone.volume, most_pieces, most);
+    has_fewer_samples_ |= pieces_.isFull() || (pieces_.isCoarse() && affordable < kMaxTimes * asked_for &&
+                                               (most_of_new < asked_for || pieces_.count() > most));
     for (size_t n = 0; n < split_count_; ++n)
         if (uint8_t& level = patch_memory_.levelOf(near_.patch[split_[n]]); level == PatchMemory::kNew)
             level = level_of_new;
     point_tests_ += pieces_.takePointTests();
+}
+
+// Of the patches to be cut the farthest stay whole, where they are many.
+void GradientContact::keepNearest(size_t most) noexcept {
+    if (split_count_ <= most) return;
+    if (most == 0) {
+        split_count_ = 0;
+        return;
+    }
+    const auto begin = split_.begin(), end = begin + ptrdiff_t(most);
+    std::nth_element(begin, end, begin + ptrdiff_t(split_count_), [&](uint32_t a, uint32_t b) {
+        return std::pair(near_.nearest[a], a) < std::pair(near_.nearest[b], b);
+    });
+    std::sort(begin, end);
+    split_count_ = most;
 }
 
 // Gives a patch's cells.
