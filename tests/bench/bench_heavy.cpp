@@ -29,6 +29,7 @@ constexpr double kWideSpeedRpm = 60000;
 
 struct HeavyOptions {
     int rounds = 5;
+    double slowed = 0;
     std::string only, scene, json;
 };
 
@@ -44,21 +45,25 @@ int64_t processorNs() {
 
 class TimedIo final : public TickIo {
   public:
-    explicit TimedIo(std::span<const DeviceInput> path) : path_(path) {}
+    // The processor is `slowed` times as slow, and ticks have a period of dt seconds; 0: they have all time.
+    TimedIo(std::span<const DeviceInput> path, double slowed, double dt)
+        : path_(path), slowed_(slowed), period_ns_(int64_t(dt * double(kNsPerSecond))) {}
 
     bool read(DeviceInput& input) noexcept override {
         if (path_.empty()) return false;
         input = path_.front();
         path_ = path_.subspan(1);
-        input.start_ns = processorNs();
-        input.deadline_ns = INT64_MAX;
+        input.start_ns = now();
+        input.deadline_ns = slowed_ > 0 ? input.start_ns + period_ns_ : INT64_MAX;
         return true;
     }
-    int64_t write(const Wrench&) noexcept override { return processorNs(); }
-    int64_t now() noexcept override { return processorNs(); }
+    int64_t write(const Wrench&) noexcept override { return now(); }
+    int64_t now() noexcept override { return int64_t((slowed_ > 0 ? slowed_ : 1) * double(processorNs())); }
 
   private:
     std::span<const DeviceInput> path_;
+    double slowed_;
+    int64_t period_ns_;
 };
 
 // What is run is timed on one bone, which is put back before each round.
@@ -73,15 +78,16 @@ class HeavyCase {
 
     const std::string& name() const { return name_; }
     // {p50, p99, p999, max} of ticks in contact, µs; their number, and the share beyond 0.8 of the period.
-    nlohmann::json run() {
+    nlohmann::json run(double slowed) {
         history_->restore();
         history_->restoreAll(*simulation_.bone);
         std::vector<int64_t> durations_ns;
-        size_t late = 0;
+        size_t late = 0, overruns = 0;
         uint32_t faults = 0, contacts = 0;
-        TimedIo io(path_);
+        TimedIo io(path_, slowed, config_.dt);
         FixedTick(config_, *simulation_.bone).run(io, [&](const TickRecord& record) {
             faults |= record.faults;
+            overruns += (record.faults & kFaultOverrun) != 0;
             if (record.contacts == 0) return;
             durations_ns.push_back(record.compute_ns);
             contacts = std::max(contacts, record.contacts);
@@ -89,8 +95,9 @@ class HeavyCase {
         });
         const size_t ticks = durations_ns.size();
         const TickTimes us = timesOf(std::move(durations_ns));
-        return {{"p50", us.p50},  {"p99", us.p99}, {"p999", us.p99_9},          {"max", us.max},
-                {"ticks", ticks}, {"late", late},  {"most_contacts", contacts}, {"faults", faults}};
+        return {{"p50", us.p50},       {"p99", us.p99}, {"p999", us.p99_9},          {"max", us.max},
+                {"ticks", ticks},      {"late", late},  {"most_contacts", contacts}, {"faults", faults},
+                {"overruns", overruns}};
     }
 
   private:
@@ -192,11 +199,12 @@ HeavyCase wideCase(const std::string& name, double voxel_mm, WideEffects effects
 
 void print(const nlohmann::json& medians, const std::vector<HeavyCase>& cases) {
     Table table({"ticks in contact, us", "p50", "p99", "p99.9", "max", "p99 / corridor's", "ticks",
-                 "above 0.8 ms", "contacts", "faults"});
+                 "above 0.8 ms", "overruns", "contacts", "faults"});
     for (const HeavyCase& one : cases) {
         const nlohmann::json& us = medians[one.name()];
         std::vector<std::string> row{one.name()};
-        for (const char* key : {"p50", "p99", "p999", "max", "p99_ratio", "ticks", "late", "most_contacts"})
+        for (const char* key :
+             {"p50", "p99", "p999", "max", "p99_ratio", "ticks", "late", "overruns", "most_contacts"})
             row.push_back(number(us[key].get<double>()));
         row.push_back(faultNames(us["faults"].get<uint32_t>()));
         table.add(std::move(row));
@@ -225,12 +233,12 @@ std::vector<HeavyCase> casesWith(const HeavyOptions& o) {
 
 void measure(const HeavyOptions& o) {
     std::vector<HeavyCase> cases = casesWith(o);
-    for (HeavyCase& one : cases) one.run();  // opens the bricks that milling needs
+    for (HeavyCase& one : cases) one.run(0);  // opens the bricks that milling needs
     std::vector<nlohmann::json> runs;
     for (int round = 0; round < o.rounds; ++round) {
         nlohmann::json run;
         for (HeavyCase& one : cases) {
-            run[one.name()] = one.run();
+            run[one.name()] = one.run(o.slowed);
             run[one.name()]["p99_ratio"] =
                 run[one.name()]["p99"].get<double>() / run[cases[0].name()]["p99"].get<double>();
         }
@@ -248,6 +256,12 @@ void addHeavyCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "heavy", "scenes with many effects and wide burrs, in multiples of the tooth's corridor");
     command->add_option("--rounds", o->rounds, "of all cases in turn")->check(CLI::Range(1, 999));
+    command
+        ->add_option(
+            "--slowed", o->slowed,
+            "as on a processor that is so many times as slow, with deadlines, so that ticks put work "
+            "off; 0: without")
+        ->check(CLI::Range(0.0, 100.0));
     command->add_option("--only", o->only, "beside the corridor only cases with this in their name");
     command->add_option("--scene", o->scene, "beside the corridor only this scene, with its own hand");
     addJsonOption(*command, o->json);

@@ -1,5 +1,6 @@
 #include "tests/bench/bench_tick.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "common/base/units.h"
@@ -44,7 +45,11 @@ TickFigures measureTicks(const TickCase& c) {
     ToolConfig tool_config;
     tool_config.burr_radius = c.burr_radius;
     const ToolModel tool = buildTool(tool_config).model;
-    const WeaveConfig way{.burr_radius = c.burr_radius, .ticks = c.ticks, .mills = c.mills};
+    const WeaveConfig way{.burr_radius = c.burr_radius,
+                          .depth = c.depth,
+                          .clearance = std::max(0.5e-3, -c.depth),
+                          .ticks = c.ticks,
+                          .mills = c.mills};
     test::ScriptedIo io(weave(bone.volume, way));
     FixedTick tick(configOf(c, tool), bone);
     io.lead(tick);
@@ -54,7 +59,7 @@ TickFigures measureTicks(const TickCase& c) {
 void addTickCommand(CLI::App& app) {
     struct Options {
         TickCase tick_case;
-        double voxel_mm = 0.096, burr_radius_mm = 3;
+        double voxel_mm = 0.096, burr_radius_mm = 3, depth_mm = 1;
         std::string preset = "balanced", json;
         bool is_still = false;
         int runs = 1, neighbour_mb = 0;
@@ -64,6 +69,9 @@ void addTickCommand(CLI::App& app) {
     command->add_option("--volume", o->tick_case.edge, "voxels per edge")->check(CLI::Range(32, 1024));
     command->add_option("--voxel-mm", o->voxel_mm)->check(CLI::Range(0.01, 10.0));
     command->add_option("--burr-radius-mm", o->burr_radius_mm)->check(CLI::Range(0.1, 20.0));
+    command
+        ->add_option("--depth-mm", o->depth_mm, "of the hand below the face; negative: the burr stays above")
+        ->check(CLI::Range(-20.0, 5.0));
     command->add_option("--preset", o->preset, "One of " + presetNames());
     command->add_option("--ticks", o->tick_case.ticks)->check(CLI::Range(1000, 1'000'000));
     command->add_option("--runs", o->runs, "repeat, and take each figure's median")->check(CLI::Range(1, 99));
@@ -79,6 +87,7 @@ void addTickCommand(CLI::App& app) {
         o->tick_case.preset = *preset;
         o->tick_case.spacing = o->voxel_mm * kMillimetre;
         o->tick_case.burr_radius = o->burr_radius_mm * kMillimetre;
+        o->tick_case.depth = o->depth_mm * kMillimetre;
         o->tick_case.mills = !o->is_still;
         const Neighbour neighbour(size_t(o->neighbour_mb) << 20);
         std::vector<nlohmann::json> runs;

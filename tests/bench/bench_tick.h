@@ -11,6 +11,7 @@ struct TickCase {
     double spacing = 0.096e-3;  // m
     double burr_radius = 3e-3;  // m
     Preset preset = Preset::kBalanced;
+    double depth = 1e-3;  // m, commanded, below the face; negative: above it
     bool mills = true;
     int ticks = 4000;
 };

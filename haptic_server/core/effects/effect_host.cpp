@@ -78,7 +78,8 @@ void EffectHost::mill(BoneModel& bone, MillingResult& result) noexcept {
     for (const auto& effect : effects_) effect->mill(tick_, bone, result);
 }
 
-const EffectRecord& EffectHost::finish() noexcept {
+const EffectRecord& EffectHost::finish(bool has_time) noexcept {
+    tick_.has_time = has_time;
     tick_.record = {};
     tick_.record.spin_speed = float(tick_.spin_speed);
     if (any(HapticEffect::kReadsContacts)) {

@@ -31,7 +31,8 @@ class EffectHost final : private ContactWeights, private SolveEnergy {
     // Tells, after the force went out, where the solve ended and what its contacts are.
     void afterSolve(const Pose& X_VT, SpoModel& model) noexcept;
     void mill(BoneModel& bone, MillingResult& result) noexcept;
-    const EffectRecord& finish() noexcept;
+    // Without time for it heat waits for the next tick.
+    const EffectRecord& finish(bool has_time) noexcept;
 
     bool isEmpty() const noexcept { return effects_.empty(); }
 

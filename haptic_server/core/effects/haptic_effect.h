@@ -30,12 +30,15 @@ struct BurrLoad {
 struct EffectStart {
     double dt = 1e-3;            // s: of all periods that the tick lives through
     int periods = 1;             // of the loop
+    double milled_dt = 1e-3;     // s: of all periods for which the bone is milled in this tick: the last
+    int milled_periods = 1;      // milling may have been put off
     bool may_mill = false;       // milling is neither paused nor stale
     bool is_pedal_down = false;  // and may mill
     bool is_add_wanted = false;  // the add button alone, likewise
     const SpoTool* tool = nullptr;
     MillingShape shape = MillingShape::kSubVoxel;  // that the contact law calls for
     Pose X_VT_start;
+    Pose X_VT_milled;  // where the tool was when the bone was last milled; X_VT_start if that was not put off
 };
 
 // This is what effects see of the tick and tell each other, in SI and axes V unless the name says otherwise.
@@ -56,6 +59,8 @@ struct EffectTick : EffectStart {
     std::span<const float> place_area;         // per candidate: what it stands for, m²
     BurrLoad burr_load;                        // of the contacts on the burr
     const Candidates* candidates = nullptr;    // of the last gathering
+
+    bool has_time = true;  // at the end of the tick: else what nobody feels waits for the next one
 
     // It is made anew at the end of each tick (EffectHost::finish): zeros, spin, force and power of the burr,
     // then what each effect's finish() writes. Until then it is the last tick's.

@@ -26,9 +26,10 @@ struct TickDecisions {
     uint32_t tool = 0;      // of ToolSwitch
     uint32_t accuracy = 0;  // of AccuracySwitch
     bool is_milling_paused = false;
-    bool is_write_refused = false;  // by BoneHistory::beginWrite()
-    uint32_t most_samples = 0;      // SampleCap after the tick; 0: no cap
-    uint64_t bone_order = 0;        // BoneHistory::takenUpOrder() after the tick's milling
+    bool is_write_refused = false;                             // by BoneHistory::beginWrite()
+    bool is_milling_put_off = false, is_heat_put_off = false;  // by LaterWork
+    uint32_t most_samples = 0;                                 // SampleCap after the tick; 0: no cap
+    uint64_t bone_order = 0;  // BoneHistory::takenUpOrder() after the tick's milling
 };
 
 // Those of DeviceInput that are not in the record anyway: t_s, buttons, device and start_ns are.

@@ -132,7 +132,7 @@ void HapticTick::decide(const DeviceInput& input) noexcept {
     decisions_.tool = uint32_t(tools_.chosen());
     decisions_.accuracy = uint32_t(accuracy_.choice());
     decisions_.is_milling_paused = history_ && history_->isMillingPaused();
-    decisions_.is_write_refused = false;
+    decisions_.is_write_refused = decisions_.is_milling_put_off = decisions_.is_heat_put_off = false;
     decisions_.bone_order = history_ ? history_->takenUpOrder() : 0;
 }
 
@@ -160,9 +160,9 @@ const TickRecord* HapticTick::tick(TickIo& io) noexcept {
     estimate_.sent(input.device.isEngaged() ? step.wrench_hand_V : Wrench{});
 
     effects_.afterSolve(X_VT_, *model_);
-    const MillingResult milled = mill(faults);
+    const MillingResult milled = mill(input, io, faults);
     keepWaiting(step);
-    const EffectRecord& effects = effects_.finish();
+    const EffectRecord& effects = finishEffects(input, io);
     chooseSettings(step, faults);
     TickRecord& record = record_ = makeRecord(input, step);
     record.removed_voxels = milled.removed_voxels;
@@ -175,8 +175,10 @@ const TickRecord* HapticTick::tick(TickIo& io) noexcept {
     const int64_t end_ns = io.now();
     record.compute_ns = end_ns - input.start_ns;
     if (end_ns > input.deadline_ns) faults |= kFaultOverrun;
-    const double load = double(record.compute_ns) / double(input.deadline_ns - input.start_ns);
-    capSamples(input, load, step);
+    capSamples(input, {.whole = input.shareGone(end_ns),
+                       .force = input.shareGone(force_at_ns),
+                       .samples = step.candidates,
+                       .is_work_put_off = decisions_.is_milling_put_off});
     record.faults = faults;
     record.input = recordedInput(input, decisions_);
     latched_faults_ |= faults;
@@ -185,9 +187,9 @@ const TickRecord* HapticTick::tick(TickIo& io) noexcept {
 }
 
 // The clock decides that; a replay has it from then.
-void HapticTick::capSamples(const DeviceInput& input, double load, const SpoStep& step) noexcept {
+void HapticTick::capSamples(const DeviceInput& input, const TickLoad& load) noexcept {
     if (!input.decisions) {
-        sample_cap_.after(load, step.candidates);
+        sample_cap_.after(load);
         decisions_.most_samples = sample_cap_.most() < UINT32_MAX ? uint32_t(sample_cap_.most()) : 0;
     }
     if (decisions_.most_samples == std::exchange(most_samples_, decisions_.most_samples)) return;
@@ -226,6 +228,7 @@ void HapticTick::placeTool() noexcept {
     noteSuddenChange(SuddenChange::kHandJumps);
     if (steps == kMaxSteps) return;  // it comes as it can
     X_VT_ = X_VT;
+    unmilled_periods_ = 0;
     model_->restart();
     models_.forEach([](SpoModel& model) { model.expectOtherBone(); });
     effects_.restart(Restart::kOtherLaw);
@@ -279,6 +282,10 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     start.shape =
         model_->traits().mills_voxel_centres ? MillingShape::kVoxelCentres : MillingShape::kSubVoxel;
     start.X_VT_start = X_VT_;
+    if (unmilled_periods_ == 0) X_VT_milled_ = X_VT_;
+    start.X_VT_milled = X_VT_milled_;
+    start.milled_periods = input.periods + unmilled_periods_;
+    start.milled_dt = config_.dt * start.milled_periods;
     model_->setCutting(start.is_pedal_down);
     effects_.begin(start);
 }
@@ -300,45 +307,6 @@ SpoStep HapticTick::moveAndFeel(const DeviceInput& input, uint32_t& faults) noex
         {step.wrench_hand_V, is_felt, X_VT_device_, input.stale_factor, place_.hasJumped()});
     if (hand_limits_.wasLimited()) faults |= kFaultForceClamped;
     return step;
-}
-
-MillingResult HapticTick::mill(uint32_t& faults) noexcept {
-    if (!history_) return millWithEffects(faults);
-    if (decisions_.is_write_refused || !history_->beginWrite(tick_)) {
-        decisions_.is_write_refused = true;
-        return {};
-    }
-    MillingResult milled;
-    bool shell_is_complete = true;
-    if (history_->restoreSome(bone_, shell_is_complete)) {
-        waits_for_release_ = true;
-        noteSuddenChange(SuddenChange::kBone);
-        models_.forEach([](SpoModel& model) { model.expectOtherBone(); });
-        effects_.restart(history_->isTargetScanned() ? Restart::kScanPutBack : Restart::kBonePutBack);
-    } else {
-        milled = millWithEffects(faults);
-    }
-    if (!shell_is_complete) faults |= kFaultShellOverflow;
-    decisions_.bone_order = history_->takenUpOrder();
-    history_->endWrite(milled.removed_voxels, milled.added_voxels);
-    return milled;
-}
-
-// Bone that is put back around a burr at work is not cut before somebody wants it: the pedal is let go once,
-// or the burr has left the bone by so much that no tremor leads there.
-void HapticTick::keepWaiting(const SpoStep& step) noexcept {
-    constexpr double kAway = 2;  // radii of the burr from its middle
-    if (!waits_for_release_ || history_->finishedOrder() != history_->takenUpOrder()) return;
-    waits_for_release_ = step.contacts > 0 || isInBone(X_VT_, kAway * tools_[tool_].burr.radius);
-}
-
-MillingResult HapticTick::millWithEffects(uint32_t& faults) noexcept {
-    MillingResult milled;
-    effects_.mill(bone_, milled);
-    if (!milled.shell_is_complete) faults |= kFaultShellOverflow;
-    if (!milled.has_room) faults |= kFaultVolumeFull;
-    if (milled.is_cut_short) faults |= kFaultMillingCutShort;
-    return milled;
 }
 
 TickRecord HapticTick::makeRecord(const DeviceInput& input, const SpoStep& step) const noexcept {

@@ -67,8 +67,10 @@ class HapticTick {
     void chooseTool() noexcept;
     void beginEffects(const DeviceInput& input) noexcept;
     SpoStep moveAndFeel(const DeviceInput& input, uint32_t& faults) noexcept;
-    MillingResult mill(uint32_t& faults) noexcept;
-    void capSamples(const DeviceInput& input, double load, const SpoStep& step) noexcept;
+    MillingResult mill(const DeviceInput& input, TickIo& io, uint32_t& faults) noexcept;
+    MillingResult millOrRestore(uint32_t& faults) noexcept;
+    const EffectRecord& finishEffects(const DeviceInput& input, TickIo& io) noexcept;
+    void capSamples(const DeviceInput& input, const TickLoad& load) noexcept;
     void keepWaiting(const SpoStep& step) noexcept;
     MillingResult millWithEffects(uint32_t& faults) noexcept;
     TickRecord makeRecord(const DeviceInput& input, const SpoStep& step) const noexcept;
@@ -86,6 +88,7 @@ class HapticTick {
     AccuracySettings settings_;
     AffordableShell affordable_;
     SampleCap sample_cap_;
+    LaterWork later_work_;
     EffectHost effects_;
     HandLimits hand_limits_;
     HandCoupling hand_coupling_;
@@ -96,6 +99,8 @@ class HapticTick {
     HandPlace place_;
     uint32_t placements_ = 0;                               // of the hand, that were followed
     bool was_pedal_down_ = false, was_add_wanted_ = false;  // in the last tick
+    int unmilled_periods_ = 0;          // since the bone was last milled, while it should have been
+    Pose X_VT_milled_;                  // then
     bool waits_for_release_ = false;    // the bone was put back: it is not milled by a pedal that was down
     bool has_changed_suddenly_ = true;  // what the simulated side stores, by no work, since the last account
     TickRecord record_{};               // of the last tick

@@ -73,9 +73,51 @@ class AffordableShell {
     int quiet_ = 0;
 };
 
+// How much of a tick's period its work took.
+struct TickLoad {
+    double whole, force;
+    size_t samples;
+    bool is_work_put_off;  // LaterWork says so
+};
+
+// Says whether what a tick does when its force is out still fits into the period, by what it took in the last
+// ticks. What does not waits for the next tick: heat first, then milling; but no more than kMostWaits ticks.
+//
+// Without a deadline, in `simulate`, all fits. It is RT-safe, for the tick thread only.
+class LaterWork {
+  public:
+    enum Stage : uint8_t { kMilling, kHeat };
+    static constexpr double kFull = 0.8;  // of the period: more is not begun
+    static constexpr int kMostWaits = 3;  // ticks
+
+    // The tick has used this share of its period.
+    bool fits(Stage stage, double used) noexcept {
+        Work& work = work_[stage];
+        const bool does = used + work.share <= kFull || work.waits == kMostWaits;
+        work.waits = does ? 0 : work.waits + 1;
+        return does;
+    }
+    // It was done in this share of the period. It is expected to take as long as it mostly does at most: one
+    // tick that was interrupted says little.
+    void took(Stage stage, double share) noexcept {
+        double& expected = work_[stage].share;
+        expected =
+            share > expected ? expected + kRise * (std::min(share, 1.0) - expected) : (1 - kFall) * expected;
+    }
+
+  private:
+    static constexpr double kRise = 0.25, kFall = 0.01;  // of the way, in a tick
+    struct Work {
+        double share = 0;
+        int waits = 0;
+    };
+    Work work_[2];
+};
+
 // Finds how many samples of the bone's surface a tick has time for, on this machine and beside what else runs
-// on it. Three ticks within a tenth of a second that fill most of their period halve the number; when the
-// ticks have been quick for a second it doubles again, until nothing is capped.
+// on it: by what a sample mostly costs, as many as fill kForce of the period. Three ticks within a tenth of a
+// second that fill most of their period, or had to put work off, halve the number; when the ticks have been
+// quick for a second it doubles again, until nothing is capped.
 //
 // Without a deadline, in `simulate`, nothing is late and nothing is capped: the same work gives the same
 // bits. It is RT-safe, for the tick thread only.
@@ -83,6 +125,7 @@ class SampleCap {
   public:
     // Of the period: a tick is slow beyond the first, and is quick below the second.
     static constexpr double kSlow = 0.7, kQuick = 0.3;
+    static constexpr double kForce = 0.6;   // of the period, for the force
     static constexpr size_t kFewest = 128;  // which any tick has time for
 
     // A tick takes dt seconds.
@@ -90,11 +133,12 @@ class SampleCap {
 
     size_t most() const noexcept { return most_; }
 
-    // A tick with so many samples took this share of its period. Returns whether the cap is another one now.
-    bool after(double load, size_t samples) noexcept {
-        slow_ = load > kSlow ? slow_ + 1 : std::max(0.0, slow_ - dt_ * kSlowTicks / kSlowWithin);
-        quick_for_ = load < kQuick ? quick_for_ + dt_ : 0;
-        const size_t before = most_;
+    // Returns whether the cap is another one now.
+    bool after(const TickLoad& load) noexcept {
+        const bool is_slow = load.whole > kSlow || load.is_work_put_off;
+        slow_ = is_slow ? slow_ + 1 : std::max(0.0, slow_ - dt_ * kSlowTicks / kSlowWithin);
+        quick_for_ = load.whole < kQuick ? quick_for_ + dt_ : 0;
+        const size_t before = most_, samples = load.samples, affordable = affordableAfter(load);
         // One that is slow for another reason has no more samples than it may have, and loses none for it.
         if (slow_ > kSlowTicks - 1) {
             slow_ = 0;
@@ -103,15 +147,27 @@ class SampleCap {
             quick_for_ = 0;
             most_ = most_ < kMany ? 2 * most_ : SIZE_MAX;
         }
+        most_ = std::min(most_, affordable);
         return most_ != before;
     }
 
   private:
+    // In steps, so that it does not change with every tick.
+    size_t affordableAfter(const TickLoad& load) noexcept {
+        if (load.samples > kFewest) {
+            const double cost = std::min(load.force, 1.0) / double(load.samples);
+            cost_ = cost > cost_ ? cost_ + kRise * (cost - cost_) : (1 - kFall) * cost_;
+        }
+        if (cost_ * double(kMany) < kForce) return SIZE_MAX;
+        return kFewest * std::max<size_t>(1, size_t(kForce / cost_) / kFewest);
+    }
+    static constexpr double kRise = 0.02, kFall = 0.001;                    // of the way, in a tick
     static constexpr double kSlowTicks = 3, kSlowWithin = 0.1, kQuiet = 1;  // s
     static constexpr size_t kMany = 8192;                                   // more are never asked for
 
     double dt_;
     size_t most_ = SIZE_MAX;
+    double cost_ = 0;       // of a sample: the share of a period that it mostly takes at most
     double slow_ = 0;       // ticks, forgotten by and by
     double quick_for_ = 0;  // s
 };

@@ -30,6 +30,11 @@ struct DeviceInput {
     // In a replay: what was decided for this tick when it ran first, instead of what others say now. It is
     // good until the next read().
     const TickDecisions* decisions = nullptr;
+
+    // Says which share of the period from start to deadline has gone by.
+    double shareGone(int64_t now_ns) const noexcept {
+        return double(now_ns - start_ns) / double(deadline_ns - start_ns);
+    }
 };
 
 // A tick talks to this. Implementations are RT-safe: they make no allocation, lock or system call beyond the
@@ -42,7 +47,7 @@ class TickIo {
     // Sends the wrench on the hand, in axes W about the tool point that the hand holds, and returns the
     // time then (ns).
     virtual int64_t write(const Wrench& wrench_hand_W) noexcept = 0;
-    // Is called at the end of the tick's work, and returns the time (ns).
+    // Returns the time (ns); the last call is at the end of the tick's work.
     virtual int64_t now() noexcept = 0;
 };
 

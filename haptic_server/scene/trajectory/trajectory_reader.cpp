@@ -17,8 +17,15 @@
 namespace bonemill {
 namespace {
 
-enum InputFlag : uint64_t { kRepeated = 1, kStale = 2, kPaused = 4, kRefused = 8 };
-constexpr uint64_t kAllFlags = kRepeated | kStale | kPaused | kRefused;
+enum InputFlag : uint64_t {
+    kRepeated = 1,
+    kStale = 2,
+    kPaused = 4,
+    kRefused = 8,
+    kNotMilled = 16,
+    kNoHeat = 32
+};
+constexpr uint64_t kAllFlags = kRepeated | kStale | kPaused | kRefused | kNotMilled | kNoHeat;
 constexpr uint64_t kMaxPeriods = 10'000;
 constexpr size_t kDigitsPerByte = 2;
 
@@ -206,7 +213,9 @@ std::array<uint64_t, kRecordedNumbers.size()> numbersOf(const TickInput& input, 
     const uint64_t flags = (input.is_repeated ? uint64_t(kRepeated) : 0) |
                            (input.is_stale ? uint64_t(kStale) : 0) |
                            (decisions.is_milling_paused ? uint64_t(kPaused) : 0) |
-                           (decisions.is_write_refused ? uint64_t(kRefused) : 0);
+                           (decisions.is_write_refused ? uint64_t(kRefused) : 0) |
+                           (decisions.is_milling_put_off ? uint64_t(kNotMilled) : 0) |
+                           (decisions.is_heat_put_off ? uint64_t(kNoHeat) : 0);
     return {flags,
             uint64_t(std::max(input.periods, 0)),
             input.placements,
@@ -230,6 +239,8 @@ bool takeNumbers(const std::array<uint64_t, kRecordedNumbers.size()>& numbers, T
     input.is_stale = flags & kStale;
     input.decisions.is_milling_paused = flags & kPaused;
     input.decisions.is_write_refused = flags & kRefused;
+    input.decisions.is_milling_put_off = flags & kNotMilled;
+    input.decisions.is_heat_put_off = flags & kNoHeat;
     input.periods = int32_t(numbers[1]);
     input.placements = uint32_t(numbers[2]);
     input.faults = uint32_t(numbers[3]);

@@ -52,13 +52,13 @@ class AddMaterial final : public HapticEffect {
         if (tick.shape == MillingShape::kVoxelCentres) {
             if (!tick.is_add_wanted) return;
             milling_.setBurrRadius(radius);
-            return result.include(
-                milling_.apply(bone.volume, bone.lattice, bone.shell, tick.X_VT.position, +1, tick.dt));
+            return result.include(milling_.apply(bone.volume, bone.lattice, bone.shell, tick.X_VT.position,
+                                                 +1, tick.milled_dt));
         }
         if (tick.is_add_wanted)
-            deposit_.owe(bone.volume, {tick.X_VT_start.position, tick.X_VT.position, longest_way_}, radius);
+            deposit_.owe(bone.volume, {tick.X_VT_milled.position, tick.X_VT.position, longest_way_}, radius);
         if (deposit_.isOwing())
-            result.include(deposit_.lay(bone, placeOf(tick), tick.dt, tick.is_add_wanted));
+            result.include(deposit_.lay(bone, placeOf(tick), tick.milled_dt, tick.is_add_wanted));
     }
 
   private:
@@ -70,7 +70,7 @@ class AddMaterial final : public HapticEffect {
         return {.p_VB = tick.X_VT.position,
                 .axis_V = tick.X_VT.rotation * Eigen::Vector3d::UnitY(),
                 .radius = tool_radius_,
-                .way = std::min(longest_way_, (tick.X_VT.position - tick.X_VT_start.position).norm())};
+                .way = std::min(longest_way_, (tick.X_VT.position - tick.X_VT_milled.position).norm())};
     }
 
     double longest_way_;  // m

@@ -32,6 +32,7 @@
 #include <array>
 #include <climits>
 #include <cmath>
+#include <utility>
 
 #include "common/math/pinned_math.h"
 #include "haptic_server/core/contact/into_tool.h"
@@ -70,7 +71,7 @@ class EnergyRemoval final : public HapticEffect {
     }
     void begin(EffectTick& tick) noexcept override {
         is_cutting_ = tick.may_mill && !tick.is_add_wanted && tick.spin_speed != 0;
-        takeTurn(tick);
+        if (std::exchange(has_milled_, false)) takeTurn(tick);
         removal_power_ = removed_energy_ = 0;
     }
     double scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,
@@ -100,20 +101,21 @@ class EnergyRemoval final : public HapticEffect {
         return largest;
     }
     void mill(EffectTick& tick, BoneModel& bone, MillingResult& result) noexcept override {
+        has_milled_ = true;
         if (!is_cutting_ || tick.contacts.empty()) return;
         const double energy = spendContacts(tick, bone);
         if (!(energy > 0)) return;
         const double factor = energyFactor(tick.tool->burr);
         if (turn_ == 0) to_repay_ = account_;
         const double of_turns = energy * double(turns_);
-        const double repaid = to_repay_ * (1 - pinned::exp(-tick.dt * double(turns_) / kRepayTime));
+        const double repaid = to_repay_ * (1 - pinned::exp(-tick.milled_dt * double(turns_) / kRepayTime));
         const double share = std::clamp((of_turns + repaid) / of_turns, 0.0, kMaxShare);
         removed_energy_ =
             factor * shift_.apply(bone, specific_energy_, share / factor,
-                                  std::min(turns_ * size_t(tick.periods), kMaxTurnsAtOnce), result);
+                                  std::min(turns_ * size_t(tick.milled_periods), kMaxTurnsAtOnce), result);
         account_ += energy - removed_energy_;
         // What the surface could not take, as it was too quick or there was no time, is lost.
-        account_ = std::min(account_, energy * kRepayTime / tick.dt);
+        account_ = std::min(account_, energy * kRepayTime / tick.milled_dt);
     }
     void finish(EffectTick& tick) noexcept override {
         tick.record.removal_power = float(removal_power_);
@@ -133,7 +135,7 @@ class EnergyRemoval final : public HapticEffect {
         const double u =
             energyFactor(burr) * specificEnergyAt(origin_V + candidates.position(n).cast<double>());
         const double c = burr.friction * std::abs(tick.spin_speed) * rho / u;
-        return 1 / (1 + stiffness * c * tick.dt * double(turns_));
+        return 1 / (1 + stiffness * c * tick.milled_dt * double(turns_));
     }
     struct Region {
         double force = 0, area = 0;  // N, m²: of its patches that touch
@@ -198,7 +200,7 @@ class EnergyRemoval final : public HapticEffect {
             const double speed =
                 std::abs(tick.spin_speed) * rubbingRadius(contact.r_V.cast<double>(), axis, area);
             const double above = double(contact.force) * shareAboveThreshold(tick, contact);
-            const double of_contact = burr.friction * speed * above * tick.dt;
+            const double of_contact = burr.friction * speed * above * tick.milled_dt;
             energy += of_contact;
             const PatchId patch = tick.candidates->patch[contact.candidate];
             if (turns_ > 1 && patch.leaf != leaf)
@@ -242,8 +244,9 @@ class EnergyRemoval final : public HapticEffect {
     size_t turn_ = 0, turns_ = 1;
     LeafTurns leaf_turns_;
     bool is_cutting_ = false;
-    double account_ = 0;   // J not yet spent; negative: too much was
-    double to_repay_ = 0;  // J: the account when the turns began
+    bool has_milled_ = true;  // in the tick before
+    double account_ = 0;      // J not yet spent; negative: too much was
+    double to_repay_ = 0;     // J: the account when the turns began
     // These are of this tick.
     double removal_power_ = 0, removed_energy_ = 0;
 };

@@ -220,11 +220,12 @@ void HeatGrid::irrigate(const Eigen::Vector3d& center_V, double radius) noexcept
     wet_radius_ = radius;
 }
 
-void HeatGrid::step() noexcept {
+void HeatGrid::step(bool has_time) noexcept {
     now_ += dt_;
     lookups_ = kLookupsPerStep;
-    reviewDead();
     turns_due_ = std::min(turns_due_ + double(active_.size()) * dt_ / turn_, double(most_turns_));
+    if (!has_time) return;
+    reviewDead();
     for (; turns_due_ >= 1 && !active_.empty(); --turns_due_) {
         if (next_ >= active_.size()) next_ = 0;
         Brick& brick = pool_[active_[next_]];

@@ -32,8 +32,8 @@ class HeatGrid {
     void forget() noexcept;
     // From now on the bone's surface is irrigated within `radius` (m) of here; 0 means nowhere.
     void irrigate(const Eigen::Vector3d& center_V, double radius) noexcept;
-    // Time goes on by dt.
-    void step() noexcept;
+    // Time goes on by dt. Bricks take their turns, or they wait for the next step.
+    void step(bool has_time = true) noexcept;
 
     double temperatureAt(const Eigen::Vector3d& p_V) const noexcept;  // °C
     double hottest() const noexcept;                                  // °C, of bone that is there

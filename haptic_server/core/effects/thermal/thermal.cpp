@@ -29,7 +29,7 @@ class Thermal final : public HapticEffect {
     void finish(EffectTick& tick) noexcept override {
         putIn(tick);
         heat_.irrigate(tick.X_VT.position, tick.is_pedal_down ? config_.irrigation_radius : 0);
-        heat_.step();
+        heat_.step(tick.has_time);
         EffectRecord& record = tick.record;
         const double hottest = heat_.hottest();
         record.temperature = float(hottest);

@@ -46,7 +46,7 @@ class TimeRemoval final : public HapticEffect {
                  const ToolField& tool, const Pose& X_VT) noexcept override {
         if (!is_cutting_) return 1;
         const auto radius = float(tick.tool->burr.radius + burrSlack(tool));
-        const auto recession = float(milling_.removalSpeed() * tick.dt);
+        const auto recession = float(milling_.removalSpeed() * tick.milled_dt);
         const float reach_squared = (radius + recession) * (radius + recession);
         const Eigen::Vector3f p_OB = (X_VT.position - origin_V).cast<float>();
         const Eigen::Vector3f axis = (X_VT.rotation * Eigen::Vector3d::UnitY()).cast<float>();
@@ -75,8 +75,8 @@ class TimeRemoval final : public HapticEffect {
     void mill(EffectTick& tick, BoneModel& bone, MillingResult& result) noexcept override {
         if (!is_cutting_) return;
         const bool is_swept = tick.shape == MillingShape::kSubVoxel;
-        const BurrWay way(tick.X_VT_start.position, tick.X_VT.position, is_swept ? longest_way_ : 0);
-        result.include(milling_.apply(bone.volume, bone.lattice, bone.shell, way, -1, tick.dt));
+        const BurrWay way(tick.X_VT_milled.position, tick.X_VT.position, is_swept ? longest_way_ : 0);
+        result.include(milling_.apply(bone.volume, bone.lattice, bone.shell, way, -1, tick.milled_dt));
     }
 
   private:

@@ -13,7 +13,8 @@ constexpr double kCapDt = 1e-3;
 constexpr int kCapSecond = 1000;  // ticks
 
 size_t capAfter(SampleCap& cap, int ticks, double load, size_t samples) {
-    for (int n = 0; n < ticks; ++n) cap.after(load, samples);
+    for (int n = 0; n < ticks; ++n)
+        cap.after({.whole = load, .force = 0, .samples = samples, .is_work_put_off = false});
     return cap.most();
 }
 
@@ -41,6 +42,29 @@ TEST(SampleCap, ComesBackAStepASecondWhileTicksAreQuick) {
     EXPECT_EQ(capAfter(cap, 10 * kCapSecond, 0.5, 1000), 1000u);
     EXPECT_EQ(capAfter(cap, kCapSecond + 1, 0.1, 1000), 2000u);
     EXPECT_EQ(capAfter(cap, 10 * kCapSecond, 0.1, 1000), SIZE_MAX);
+}
+
+TEST(SampleCap, WorkThatIsPutOffCountsAsASlowTick) {
+    SampleCap cap(kCapDt);
+    for (int n = 0; n < 3; ++n)
+        cap.after({.whole = 0.5, .force = 0.1, .samples = 1000, .is_work_put_off = true});
+    EXPECT_EQ(cap.most(), 500u);
+}
+
+// By what samples cost there are as many as there is time for, before any tick is slow.
+TEST(SampleCap, AsManyAsThereIsTimeFor) {
+    SampleCap cap(kCapDt);
+    for (int n = 0; n < 1000; ++n)
+        cap.after({.whole = 0.4, .force = 0.3, .samples = 300, .is_work_put_off = false});
+    EXPECT_LE(cap.most(), 600u);
+    EXPECT_GE(cap.most(), 512u);
+    // A tick that was interrupted is no measure.
+    SampleCap steady(kCapDt);
+    for (int n = 0; n < 1000; ++n) {
+        const double force = n % 100 == 0 ? 5 : 0.05;
+        steady.after({.whole = force, .force = force, .samples = 1000, .is_work_put_off = false});
+        EXPECT_GE(steady.most(), 4000u) << n;
+    }
 }
 
 // A machine on which a sample takes so long, whatever machine it runs on.
