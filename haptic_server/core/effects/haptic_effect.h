@@ -32,6 +32,7 @@ struct EffectStart {
     int periods = 1;             // of the loop
     double milled_dt = 1e-3;     // s: of all periods for which the bone is milled in this tick: the last
     int milled_periods = 1;      // milling may have been put off
+    int milling_thrift = 0;      // milling may work on its cells divided by 2 to this power
     bool may_mill = false;       // milling is neither paused nor stale
     bool is_pedal_down = false;  // and may mill
     bool is_add_wanted = false;  // the add button alone, likewise

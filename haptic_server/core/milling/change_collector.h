@@ -127,6 +127,9 @@ class ChangeCollector {
         return changes_.write(volume, lattice, shell, direction);
     }
 
+    // From now on it is at most so many.
+    void limit(size_t most_cells) noexcept { most_cells_ = most_cells; }
+
     // Gives up what waits.
     void forgetTurn() noexcept { next_leaf_ = kNoLeaf; }
 

@@ -49,6 +49,8 @@ class TimedMilling {
 
     // These take effect with the next apply().
     void setShape(MillingShape shape) noexcept { config_.shape = shape; }
+    // There may be so many cells of the surface divided by 2 to this power.
+    void setThrift(int thrift) noexcept { collector_.limit(config_.most_cells >> thrift); }
     void setBurrRadius(double burr_radius) noexcept {
         const double radius = std::min(burr_radius, largest_burr_radius_);
         if (radius == burr_radius_) return;

@@ -21,6 +21,8 @@ struct DeviceReport {
     bool isEngaged() const noexcept { return state == uint32_t(SafetyState::kEngaged); }
 };
 
+inline constexpr int kMostThrift = 3;
+
 // What the tick found decided when it asked.
 struct TickDecisions {
     uint32_t tool = 0;      // of ToolSwitch
@@ -28,6 +30,7 @@ struct TickDecisions {
     bool is_milling_paused = false;
     bool is_write_refused = false;                             // by BoneHistory::beginWrite()
     bool is_milling_put_off = false, is_heat_put_off = false;  // by LaterWork
+    uint8_t milling_thrift = 0;                                // LaterWork::millingThrift()
     uint32_t most_samples = 0;                                 // SampleCap after the tick; 0: no cap
     uint64_t bone_order = 0;  // BoneHistory::takenUpOrder() after the tick's milling
 };

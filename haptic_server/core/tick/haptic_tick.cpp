@@ -47,6 +47,7 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
       model_(&models_.of(accuracy_.chosen().law)),
       affordable_(config.dt),
       sample_cap_(config.dt),
+      later_work_(config.dt),
       effects_(makeEffects(config.effects, bone_,
                            {config.dt, tools_.largestBurrRadius(), tools_.largestBurrReach(),
                             models_.mostCandidates(), config.most_milled_cells,
@@ -132,6 +133,7 @@ void HapticTick::decide(const DeviceInput& input) noexcept {
     decisions_.tool = uint32_t(tools_.chosen());
     decisions_.accuracy = uint32_t(accuracy_.choice());
     decisions_.is_milling_paused = history_ && history_->isMillingPaused();
+    decisions_.milling_thrift = uint8_t(later_work_.millingThrift());
     decisions_.is_write_refused = decisions_.is_milling_put_off = decisions_.is_heat_put_off = false;
     decisions_.bone_order = history_ ? history_->takenUpOrder() : 0;
 }
@@ -285,6 +287,7 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     if (unmilled_periods_ == 0) X_VT_milled_ = X_VT_;
     start.X_VT_milled = X_VT_milled_;
     start.milled_periods = input.periods + unmilled_periods_;
+    start.milling_thrift = decisions_.milling_thrift;
     start.milled_dt = config_.dt * start.milled_periods;
     model_->setCutting(start.is_pedal_down);
     effects_.begin(start);

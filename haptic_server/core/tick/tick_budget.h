@@ -11,6 +11,7 @@
 #include "haptic_server/core/contact/point_shell.h"
 #include "haptic_server/core/equilibrium/spo_model.h"
 #include "haptic_server/core/milling/timed_milling.h"
+#include "haptic_server/core/telemetry/tick_input.h"
 
 namespace bonemill {
 
@@ -82,6 +83,8 @@ struct TickLoad {
 
 // Says whether what a tick does when its force is out still fits into the period, by what it took in the last
 // ticks. What does not waits for the next tick: heat first, then milling; but no more than kMostWaits ticks.
+// Milling that mostly takes more than kMostMilling of the period may work on half as many cells in a tick,
+// and half of those, until it has been quick for a second.
 //
 // Without a deadline, in `simulate`, all fits. It is RT-safe, for the tick thread only.
 class LaterWork {
@@ -89,6 +92,10 @@ class LaterWork {
     enum Stage : uint8_t { kMilling, kHeat };
     static constexpr double kFull = 0.8;  // of the period: more is not begun
     static constexpr int kMostWaits = 3;  // ticks
+    static constexpr double kMostMilling = 0.35;
+
+    // A tick takes dt seconds.
+    explicit LaterWork(double dt) noexcept : ticks_of_quiet_(int(kQuiet / dt)) {}
 
     // The tick has used this share of its period.
     bool fits(Stage stage, double used) noexcept {
@@ -103,15 +110,31 @@ class LaterWork {
         double& expected = work_[stage].share;
         expected =
             share > expected ? expected + kRise * (std::min(share, 1.0) - expected) : (1 - kFall) * expected;
+        if (stage == kMilling) chooseThrift(expected);
     }
+    // Milling may work on so many cells divided by 2 to this power.
+    int millingThrift() const noexcept { return thrift_; }
 
   private:
+    void chooseThrift(double& expected) noexcept {
+        quiet_ = expected < kMostMilling / 4 ? quiet_ + 1 : 0;
+        if (expected > kMostMilling && thrift_ < kMostThrift) {
+            ++thrift_;
+            expected /= 2;
+        } else if (quiet_ > ticks_of_quiet_ && thrift_ > 0) {
+            --thrift_;
+            quiet_ = 0;
+        }
+    }
+    static constexpr double kQuiet = 1;                  // s
     static constexpr double kRise = 0.25, kFall = 0.01;  // of the way, in a tick
     struct Work {
         double share = 0;
         int waits = 0;
     };
     Work work_[2];
+    int ticks_of_quiet_;
+    int thrift_ = 0, quiet_ = 0;
 };
 
 // Finds how many samples of the bone's surface a tick has time for, on this machine and beside what else runs

@@ -217,7 +217,7 @@ class EnergyRemoval final : public HapticEffect {
         if (++turn_ < turns_) return;
         turn_ = 0;
         leaf_turns_.clear();
-        turns_ = tick.contacts.size() / most_contacts_ + 1;
+        turns_ = tick.contacts.size() / std::max<size_t>(1, most_contacts_ >> tick.milling_thrift) + 1;
     }
     // The contacts of a patch follow each other.
     void shareLeaves(const EffectTick& tick) noexcept {

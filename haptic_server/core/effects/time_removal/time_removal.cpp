@@ -41,6 +41,7 @@ class TimeRemoval final : public HapticEffect {
         is_cutting_ = tick.is_pedal_down && !is_stalled;
         milling_.setShape(tick.shape);
         milling_.setBurrRadius(tick.tool->burr.radius);
+        milling_.setThrift(tick.milling_thrift);
     }
     double scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,
                  const ToolField& tool, const Pose& X_VT) noexcept override {

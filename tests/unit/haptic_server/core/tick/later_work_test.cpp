@@ -10,7 +10,7 @@ namespace bonemill {
 namespace {
 
 TEST(LaterWork, WaitsWhileItDoesNotFitButNotForEver) {
-    LaterWork work;
+    LaterWork work(1e-3);
     EXPECT_TRUE(work.fits(LaterWork::kMilling, 0.5));
     for (int n = 0; n < 50; ++n) work.took(LaterWork::kMilling, 0.4);
     EXPECT_TRUE(work.fits(LaterWork::kMilling, 0.3));
@@ -22,12 +22,22 @@ TEST(LaterWork, WaitsWhileItDoesNotFitButNotForEver) {
 }
 
 TEST(LaterWork, OneTickThatWasInterruptedPutsNothingOffForLong) {
-    LaterWork work;
+    LaterWork work(1e-3);
     for (int n = 0; n < 1000; ++n) work.took(LaterWork::kMilling, 0.1);
     work.took(LaterWork::kMilling, 50);
     EXPECT_TRUE(work.fits(LaterWork::kMilling, 0.4));
     for (int n = 0; n < 300; ++n) work.took(LaterWork::kMilling, 0.1);
     EXPECT_TRUE(work.fits(LaterWork::kMilling, 0.65));
+}
+
+TEST(LaterWork, MillingThatTakesLongWorksOnFewerCellsUntilItIsQuick) {
+    LaterWork work(1e-3);
+    for (int n = 0; n < 10; ++n) work.took(LaterWork::kMilling, 0.6);
+    EXPECT_GT(work.millingThrift(), 0);
+    for (int n = 0; n < 1000; ++n) work.took(LaterWork::kMilling, 0.6);
+    EXPECT_EQ(work.millingThrift(), kMostThrift);
+    for (int n = 0; n < 5000; ++n) work.took(LaterWork::kMilling, 0.02);
+    EXPECT_EQ(work.millingThrift(), 0);
 }
 
 // A machine whose force is out after `force` of the period, and whose milling takes `milling` of it.
