@@ -71,7 +71,8 @@ void HapticTick::chooseSettings(const SpoStep& step, uint32_t& faults) noexcept 
     PointShell& shell = bone_.shell;
     AccuracySettings chosen = accuracy_[decisions_.accuracy];
     const int asked_for = chosen.shell_factor;
-    chosen.shell_factor = affordable_.factor(shell, asked_for, settings_.shell_factor, step);
+    chosen.shell_factor =
+        affordable_.factor(shell, asked_for, settings_.shell_factor, step, decisions_.force_load);
     if (chosen.shell_factor > asked_for) faults |= kFaultCoarserShell;
     if (chosen == settings_) return shell.follow(shell.followed());  // not even the one being prepared
     const auto [is_ready, is_complete] =
@@ -133,6 +134,7 @@ void HapticTick::decide(const DeviceInput& input) noexcept {
     decisions_.tool = uint32_t(tools_.chosen());
     decisions_.accuracy = uint32_t(accuracy_.choice());
     decisions_.is_milling_paused = history_ && history_->isMillingPaused();
+    decisions_.force_load = uint8_t(sample_cap_.forceLoad());
     decisions_.milling_thrift = uint8_t(later_work_.millingThrift());
     decisions_.is_write_refused = decisions_.is_milling_put_off = decisions_.is_heat_put_off = false;
     decisions_.bone_order = history_ ? history_->takenUpOrder() : 0;

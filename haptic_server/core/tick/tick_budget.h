@@ -35,15 +35,20 @@ class AffordableShell {
     // A tick takes dt seconds.
     explicit AffordableShell(double dt) noexcept : ticks_of_quiet_(int(kQuiet / dt)) {}
 
+    // The force takes so many fifteenths of a tick's period (TickDecisions::force_load), or more: too much.
+    static constexpr int kTooMuchForce = 12;
+
     // After a tick at the factor `in_force`, returns the one to compute with, or to prepare. From a coarser
     // level than asked for it goes on to the next finer one when that could have been afforded twice over
     // for a second.
-    int factor(const PointShell& shell, int asked_for, int in_force, const SpoStep& step) noexcept {
-        if (step.has_contact_overflow) finest_ = nextCoarser(shell, in_force);
+    int factor(const PointShell& shell, int asked_for, int in_force, const SpoStep& step,
+               int force_load) noexcept {
+        const bool is_too_much = step.has_contact_overflow || force_load >= kTooMuchForce;
+        const double share = std::max(step.budget_share, double(force_load) / kMostForceLoad);
+        if (is_too_much) finest_ = nextCoarser(shell, in_force);
         if (finest_ <= asked_for) finest_ = 1;
         const double times = double(in_force) / nextFiner(shell, in_force);
-        const bool is_quiet =
-            !step.has_contact_overflow && in_force == finest_ && step.budget_share * times * times < 0.5;
+        const bool is_quiet = !is_too_much && in_force == finest_ && share * times * times < 0.5;
         quiet_ = is_quiet ? quiet_ + 1 : 0;
         if (quiet_ > ticks_of_quiet_) {
             finest_ = nextFiner(shell, in_force);
@@ -155,6 +160,8 @@ class SampleCap {
     explicit SampleCap(double dt) noexcept : dt_(dt) {}
 
     size_t most() const noexcept { return most_; }
+    // The force mostly takes so many fifteenths of the period at most.
+    int forceLoad() const noexcept { return force_load_; }
 
     // Returns whether the cap is another one now.
     bool after(const TickLoad& load) noexcept {
@@ -171,10 +178,18 @@ class SampleCap {
             most_ = most_ < kMany ? 2 * most_ : SIZE_MAX;
         }
         most_ = std::min(most_, affordable);
+        trackForce(load.force);
         return most_ != before;
     }
 
   private:
+    // What was too much is expected to be less now.
+    void trackForce(double share) noexcept {
+        constexpr double kRise = 0.25, kFall = 0.01;  // of the way, in a tick
+        force_ = share > force_ ? force_ + kRise * (std::min(share, 1.0) - force_) : (1 - kFall) * force_;
+        force_load_ = int(force_ * kMostForceLoad);
+        if (force_load_ >= AffordableShell::kTooMuchForce) force_ /= 2;
+    }
     // In steps, so that it does not change with every tick.
     size_t affordableAfter(const TickLoad& load) noexcept {
         if (load.samples > kFewest) {
@@ -190,7 +205,9 @@ class SampleCap {
 
     double dt_;
     size_t most_ = SIZE_MAX;
-    double cost_ = 0;       // of a sample: the share of a period that it mostly takes at most
+    double cost_ = 0;   // of a sample: the share of a period that it mostly takes at most
+    double force_ = 0;  // of the period: what it mostly takes at most
+    int force_load_ = 0;
     double slow_ = 0;       // ticks, forgotten by and by
     double quick_for_ = 0;  // s
 };

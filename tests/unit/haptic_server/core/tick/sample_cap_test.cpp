@@ -51,6 +51,22 @@ TEST(SampleCap, WorkThatIsPutOffCountsAsASlowTick) {
     EXPECT_EQ(cap.most(), 500u);
 }
 
+TEST(SampleCap, SaysHowMuchTheForceMostlyTakes) {
+    SampleCap cap(kCapDt);
+    const auto after = [&](double force) {
+        cap.after({.whole = force, .force = force, .samples = 100, .is_work_put_off = false});
+        return cap.forceLoad();
+    };
+    for (int n = 0; n < 1000; ++n) after(0.4);
+    EXPECT_NEAR(after(0.4), 0.4 * kMostForceLoad, 1);
+    EXPECT_LT(after(7), AffordableShell::kTooMuchForce) << "one that was interrupted";
+    int most = 0;
+    for (int n = 0; n < 20; ++n) most = std::max(most, after(0.95));
+    EXPECT_GE(most, AffordableShell::kTooMuchForce);
+    for (int n = 0; n < 500; ++n) after(0.1);
+    EXPECT_LE(after(0.1), 2);
+}
+
 // By what samples cost there are as many as there is time for, before any tick is slow.
 TEST(SampleCap, AsManyAsThereIsTimeFor) {
     SampleCap cap(kCapDt);

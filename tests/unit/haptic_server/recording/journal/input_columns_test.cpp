@@ -47,6 +47,7 @@ void expectSame(const JournalTick& a, const JournalTick& b) {
     EXPECT_EQ(x.decisions.is_milling_put_off, y.decisions.is_milling_put_off);
     EXPECT_EQ(x.decisions.is_heat_put_off, y.decisions.is_heat_put_off);
     EXPECT_EQ(x.decisions.milling_thrift, y.decisions.milling_thrift);
+    EXPECT_EQ(x.decisions.force_load, y.decisions.force_load);
     EXPECT_EQ(x.decisions.most_samples, y.decisions.most_samples);
     EXPECT_EQ(x.decisions.bone_order, y.decisions.bone_order);
 }
