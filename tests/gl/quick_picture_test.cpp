@@ -150,6 +150,19 @@ TEST_F(QuickPicture, DrawsOnlyTheBoneThatMayHaveChanged) {
     EXPECT_LT(scene_.trianglesDrawn(), scene_.triangleCount() / 2);
 }
 
+TEST_F(QuickPicture, DrawsNoMoreForTheFirstChangeOfANodeThanForTheNext) {
+    draw();
+    const auto drawnFor = [this](const NodeMesh& mesh) {
+        scene_.setNode(mesh);
+        draw();
+        return scene_.trianglesDrawn();
+    };
+    NodeMesh milled = large_[0];
+    milled.indices.resize(milled.indices.size() - 3);
+    const size_t first = drawnFor(milled);
+    EXPECT_EQ(first + 1, drawnFor(large_[0])) << "the triangle that went and what is around it";
+}
+
 TEST_F(QuickPicture, LooksLikeTheFullOneButForShadowAndEdges) {
     const Picture quick = draw();
     scene_.settings().quality = Quality::kFull;
