@@ -130,9 +130,14 @@ void BonePainter::setPalette(const std::vector<Eigen::Vector4f>& colours) {
 
 void BonePainter::drawOpaque(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture) {
     const Look look{{1, 0}, kInsideSolid};
-    if (!frame.cuts_V.any()) return drawSurface(frame, nodes, shadow_texture, look);
-    beginMarking();
+    if (frame.cuts_V.any()) beginMarking();
+    if (!frame.has_shadow) {  // where the processor draws, only what is seen is shaded
+        drawDepth(frame, nodes);
+        gl_.DepthFunc(GL_EQUAL);
+    }
     drawSurface(frame, nodes, shadow_texture, look);
+    gl_.DepthFunc(GL_LESS);
+    if (!frame.cuts_V.any()) return;
     gl_.DepthFunc(GL_ALWAYS);  // at its rim the cap is as deep as the surface
     drawCap(frame, shadow_texture, 1);
     gl_.DepthFunc(GL_LESS);

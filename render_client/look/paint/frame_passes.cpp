@@ -75,6 +75,10 @@ int FramePasses::reach(int height) {
     return int(std::ceil(kOcclusionPicture * float(height))) + kFilterReach;
 }
 
+int FramePasses::blurReach(const Frame& frame, int height) {
+    return frame.blur_per_m > 0 ? int(std::ceil(kMaxBlur * float(height))) + 1 : 0;
+}
+
 void FramePasses::drawBackground() const {
     gl_.Disable(GL_DEPTH_TEST);
     background_.use();
@@ -82,12 +86,13 @@ void FramePasses::drawBackground() const {
     gl_.Enable(GL_DEPTH_TEST);
 }
 
-void FramePasses::drawOcclusion(const Frame& frame, const RenderTargets& targets) const {
+void FramePasses::drawOcclusion(const Frame& frame, const RenderTargets& targets,
+                                GLuint depth_texture) const {
     gl_.BindFramebuffer(GL_FRAMEBUFFER, targets.occlusion());
     gl_.Viewport(0, 0, targets.occlusionWidth(), targets.occlusionHeight());
     gl_.Disable(GL_DEPTH_TEST);
     gl_.ActiveTexture(GL_TEXTURE0);
-    gl_.BindTexture(GL_TEXTURE_2D, targets.depthTexture());
+    gl_.BindTexture(GL_TEXTURE_2D, depth_texture);
     occlusion_.use();
     occlusion_.set("depth_map", 0);
     occlusion_.set("near_far", frame.near_far);

@@ -19,8 +19,8 @@ class FramePasses {
 
     // Fills the bound framebuffer; leaves the depth test on.
     void drawBackground() const;
-    // Makes the half-size occlusion from the resolved depth.
-    void drawOcclusion(const Frame& frame, const RenderTargets& targets) const;
+    // Makes the half-size occlusion from this depth texture of the targets.
+    void drawOcclusion(const Frame& frame, const RenderTargets& targets, GLuint depth_texture) const;
     // Puts the finished picture (without figures) into `target`, from column x on.
     void compose(const Frame& frame, const RenderTargets& targets, int x, GLuint target) const;
 
@@ -28,9 +28,10 @@ class FramePasses {
     // framebuffer of its size without depth.
     void drawToolShadow(const Frame& frame, const RenderTargets& targets, GLuint target) const;
 
-    // Returns how many pixels beyond a changed one these passes may look different, in a
-    // picture of this height.
+    // Return how many pixels beyond a changed one the picture may look different, in a picture of this
+    // height: where the occlusion changes with it, and where it does not.
     static int reach(int height);
+    static int blurReach(const Frame& frame, int height);
 
   private:
     void drawFullScreen() const;

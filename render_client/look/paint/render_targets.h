@@ -95,8 +95,10 @@ class RenderTargets {
     GLuint occlusionTexture() const { return occlusion_texture_.name(); }
     GLuint shadowTexture() const { return shadow_texture_.name(); }
 
-    GLuint bone() const { return bone_.name(); }          // quick only
-    GLuint finished() const { return finished_.name(); }  // quick only
+    // In quick quality only.
+    GLuint bone() const { return bone_.name(); }
+    GLuint boneDepthTexture() const { return bone_depth_.name(); }
+    GLuint finished() const { return finished_.name(); }
 
     // Copies colour or depth, or both, of that part from one framebuffer to the other.
     void copy(GLuint from, GLuint to, const PixelBox& part, GLbitfield what) const;

@@ -91,7 +91,7 @@ void SceneRenderer::drawFull(const Frame& frame, const FrameView& view, const No
     drawSolids(frame, view, nodes, tool);
     drawOver(frame, view, tool);
     targets_->resolve();
-    passes_.drawOcclusion(frame, *targets_);
+    passes_.drawOcclusion(frame, *targets_, targets_->depthTexture());
     passes_.compose(frame, *targets_, area.x, target);
 }
 
@@ -103,8 +103,9 @@ void SceneRenderer::drawOver(const Frame& frame, const FrameView& view, const To
     markers_.draw(frame, view);
 }
 
-// The bone of the last picture is kept. Where it has changed it is drawn anew, and where something moves
-// before it, it is copied back.
+// The bone of the last picture is kept, with its occlusion. Where it has changed both are drawn anew, and
+// where something moves before it, it is copied back. What moves takes no part in the occlusion: it would
+// have to be made anew in every picture, far around it.
 void SceneRenderer::drawQuick(const Frame& frame, const FrameView& view, NodeStore& nodes,
                               const ToolMesh& tool, const PictureArea& area, GLuint target) {
     const PixelBox whole = PixelBox::whole(area.width, area.height);
@@ -114,19 +115,20 @@ void SceneRenderer::drawQuick(const Frame& frame, const FrameView& view, NodeSto
                           .merged(std::exchange(look_changed_, {}))
                           .merged(structures_.takeChanged(view.structures)),
                       movingPixels(frame, view, tool), stillLike(frame, view, tool));
-    PixelBox part =
-        dirty.all.isEmpty() ? dirty.all : dirty.all.grown(FramePasses::reach(area.height)).within(whole);
     gl_.Viewport(0, 0, area.width, area.height);
     gl_.Enable(GL_SCISSOR_TEST);
     if (view.bone_opacity) {  // the tool is seen through it: nothing can be kept
         changes_.forget();
-        part = whole;
         drawAllSolids(frame, view, nodes, tool);
-    } else if (!part.isEmpty()) {
+        drawOcclusion(frame, whole, targets_->depthTexture());
+        finishQuick(frame, whole);
+    } else if (!dirty.all.isEmpty()) {
+        const PixelBox occluded = grown(dirty.bone, FramePasses::reach(area.height));
         drawKeptBone(frame, view, nodes, dirty.bone);
-        drawToolOverKeptBone(frame, view, tool, part);
+        drawOcclusion(frame, occluded, targets_->boneDepthTexture());
+        drawToolOverKeptBone(frame, view, tool, dirty.all);
+        finishQuick(frame, grown(dirty.all, FramePasses::blurReach(frame, area.height)).joined(occluded));
     }
-    if (!part.isEmpty()) finishQuick(frame, view, tool, part);
     gl_.Disable(GL_SCISSOR_TEST);
     showFinished(area, target);
 }
@@ -138,6 +140,7 @@ void SceneRenderer::drawAllSolids(const Frame& frame, const FrameView& view, con
     gl_.Clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
     passes_.drawBackground();
     drawSolids(frame, view, nodes, tool);
+    drawOver(frame, view, tool);
 }
 
 void SceneRenderer::drawToolOverKeptBone(const Frame& frame, const FrameView& view, const ToolMesh& tool,
@@ -147,13 +150,23 @@ void SceneRenderer::drawToolOverKeptBone(const Frame& frame, const FrameView& vi
     gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->scene());
     gl_.Enable(GL_DEPTH_TEST);
     tool_.drawTool(frame, view, tool, targets_->shadowTexture());
+    drawOver(frame, view, tool);
 }
 
-void SceneRenderer::finishQuick(const Frame& frame, const FrameView& view, const ToolMesh& tool,
-                                const PixelBox& part) {
-    drawOver(frame, view, tool);
+PixelBox SceneRenderer::grown(const PixelBox& part, int pixels) const {
+    const PixelBox whole = PixelBox::whole(targets_->width(), targets_->height());
+    return part.isEmpty() ? part : part.grown(pixels).within(whole);
+}
+
+// Leaves the viewport that of the picture.
+void SceneRenderer::drawOcclusion(const Frame& frame, const PixelBox& part, GLuint depth_texture) const {
+    if (part.isEmpty()) return;
     scissor({part.x0 / 2 - 1, part.y0 / 2 - 1, part.x1 / 2 + 2, part.y1 / 2 + 2});  // half the size
-    passes_.drawOcclusion(frame, *targets_);
+    passes_.drawOcclusion(frame, *targets_, depth_texture);
+    gl_.Viewport(0, 0, targets_->width(), targets_->height());
+}
+
+void SceneRenderer::finishQuick(const Frame& frame, const PixelBox& part) {
     scissor(part);
     passes_.compose(frame, *targets_, 0, targets_->finished());
     if (!frame.tool_shadow) return;

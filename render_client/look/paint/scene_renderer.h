@@ -89,7 +89,9 @@ class SceneRenderer {
     void drawKeptBone(Frame frame, const FrameView& view, const NodeStore& nodes, const PixelBox& part);
     void drawToolOverKeptBone(const Frame& frame, const FrameView& view, const ToolMesh& tool,
                               const PixelBox& part);
-    void finishQuick(const Frame& frame, const FrameView& view, const ToolMesh& tool, const PixelBox& part);
+    PixelBox grown(const PixelBox& part, int pixels) const;
+    void drawOcclusion(const Frame& frame, const PixelBox& part, GLuint depth_texture) const;
+    void finishQuick(const Frame& frame, const PixelBox& part);
     void showFinished(const PictureArea& area, GLuint target) const;
     PixelBox shadowPixels(const Frame& frame) const;
     PixelBox movingPixels(const Frame& frame, const FrameView& view, const ToolMesh& tool);

@@ -50,11 +50,12 @@ void main() {
         float depth = depthOf(stored);
         ivec2 limit = textureSize(occlusion_map, 0) - 1;
         ivec2 base = ivec2(floor(pixel * 0.5 - 0.5)) - 1;
-        float sum = 0.0, weights = 1e-4, per_metre = 1.0 / depth_tolerance;
+        // What has no neighbour of its depth is open.
+        float sum = 1e-4, weights = 1e-4, per_metre = 1.0 / depth_tolerance;
         for (int y = 0; y < 4; ++y)
             for (int x = 0; x < 4; ++x) {
                 vec2 other = openAndDepth(texelFetch(occlusion_map, clamp(base + ivec2(x, y), ivec2(0), limit), 0));
-                float weight = max(1.0 - abs(other.y - depth) * per_metre, 0.0) + 1e-4;
+                float weight = max(1.0 - abs(other.y - depth) * per_metre, 0.0);
                 sum += other.x * weight;
                 weights += weight;
             }
