@@ -25,7 +25,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr size_t kRingRecords = 8192, kRingCuts = 8192;
-constexpr auto kPublishPeriod = 5ms, kRecordPeriod = 4ms;
+constexpr auto kPublishPause = 1ms, kNoNodesPause = 4ms, kRecordPeriod = 4ms;
 constexpr int64_t kLookEveryNs = 20 * kNsPerMillisecond;
 
 // The recorded scene, with the bone as its files have it now. Its threads stand around the player as those of
@@ -115,7 +115,12 @@ class ReplayServer {
         });
         threads_[2] = std::jthread([this](const std::stop_token& stop) { meshUntil(stop); });
         threads_[3] = std::jthread(
-            [this](const std::stop_token& stop) { loop(stop, kPublishPeriod, [this] { show_.round(); }); });
+            [this](const std::stop_token& stop) { loop(stop, kPublishPause, [this] { publishRound(); }); });
+    }
+
+    void publishRound() {
+        show_.round();
+        outbox_.awaitPut(kNoNodesPause);
     }
 
     void meshUntil(const std::stop_token& stop) {

@@ -29,7 +29,10 @@ using namespace std::chrono_literals;
 constexpr size_t kRingRecords = 8192;  // 8 s at 1 kHz: a stalled disk loses nothing
 constexpr size_t kRingCuts = 8192;
 constexpr int kTickPriority = 80;
-constexpr auto kPublishPeriod = 5ms;
+// What was milled goes out at once, and what is milled meanwhile once more after kCutPause: every picture of
+// it costs the mesher, the publisher and all viewers. Else the publisher looks around every 5 ms.
+constexpr auto kCutPause = 4ms;
+constexpr auto kPublishPause = 1ms, kNoNodesPause = 4ms;
 constexpr auto kRecordPeriod = 4ms;
 constexpr int64_t kWarmUpNs = kNsPerSecond;
 // At its end the session shows what was milled last. A bone that is not yet meshed, or a slow network, holds
@@ -168,7 +171,7 @@ void SceneRun::start() {
         [this](const std::stop_token& stop) { loop(stop, kRecordPeriod, [this] { recorder_.drain(); }); });
     mesher_thread_ = std::jthread([this](const std::stop_token& stop) { meshUntil(stop); });
     publisher_thread_ = std::jthread(
-        [this](const std::stop_token& stop) { loop(stop, kPublishPeriod, [this] { publishRound(); }); });
+        [this](const std::stop_token& stop) { loop(stop, kPublishPause, [this] { publishRound(); }); });
     spdlog::info("session {} of scene '{}' waits for a device", options_.session, loaded_.scene.name());
 }
 
@@ -235,13 +238,18 @@ void SceneRun::publishRound() {
     const int64_t start_ns = monotonicNowNs();
     show_.round();
     published_.rounds.record(monotonicNowNs() - start_ns);
+    outbox_.awaitPut(kNoNodesPause);
 }
 
 void SceneRun::meshUntil(const std::stop_token& stop) {
     const bool are_wanted = wantsVertexMaterials(shownSceneOf(loaded_.scene, simulation_.segment_colors));
     MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_,
                       are_wanted ? simulation_.tick.effects.properties.get() : nullptr);
-    const auto put = [this](NodeGroup&& group) { outbox_.put(std::move(group), monotonicNowNs()); };
+    bool has_cut = false;
+    const auto put = [&](NodeGroup&& group) {
+        has_cut |= group.oldest_cut_ns != 0;
+        outbox_.put(std::move(group), monotonicNowNs());
+    };
     const auto markWhole = [&] {
         if (rounds.hasMeshedAll()) outbox_.markWhole(monotonicNowNs());
     };
@@ -250,6 +258,7 @@ void SceneRun::meshUntil(const std::stop_token& stop) {
     loop(stop, MeshRounds::kPeriod, [&] {
         rounds.setPaint(zones && task_.showsZones() ? &*zones : nullptr);
         for (bool is_more = true; is_more && !stop.stop_requested(); markWhole()) is_more = rounds.round(put);
+        if (std::exchange(has_cut, false)) std::this_thread::sleep_for(kCutPause);
     });
     endOnFailure([&] {
         rounds.finish(put, monotonicNowNs() + kLastMeshingNs);

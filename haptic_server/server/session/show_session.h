@@ -35,7 +35,7 @@ class ShowSession {
     // Publishes the scene, before the first round; the protected structures follow with some round().
     void begin();
 
-    // The publisher thread makes one round about 200 times per second.
+    // The publisher thread makes a round whenever nodes have come, and about 200 times per second.
     void round();
 
     // Once the tick and the mesher have ended, whoever has joined the publisher thread publishes the nodes

@@ -82,6 +82,15 @@ void MeshOutbox::put(NodeGroup&& group, int64_t now_ns) {
     const uint64_t id = next_group_++;
     for (const uint32_t leaf : joined.leaves) group_of_[leaf] = id;
     groups_.emplace(id, std::move(joined));
+    if (group.since_ns != 0) return;
+    is_news_ = true;
+    has_come_.notify_one();
+}
+
+bool MeshOutbox::awaitPut(std::chrono::nanoseconds longest) {
+    std::unique_lock lock(mutex_);
+    has_come_.wait_for(lock, longest, [this] { return is_news_; });
+    return std::exchange(is_news_, false);
 }
 
 std::vector<NodeGroup> MeshOutbox::takeNearest(const Eigen::Vector3f& point, int64_t bytes, int64_t now_ns) {

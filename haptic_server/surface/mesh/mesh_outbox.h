@@ -2,6 +2,8 @@
 // changed together in one group. It is for any normal thread, never the tick.
 #pragma once
 
+#include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <map>
 #include <mutex>
@@ -27,6 +29,10 @@ class MeshOutbox {
     // that was taken and comes back has waited all the time.
     void put(NodeGroup&& group, int64_t now_ns);
 
+    // Sleeps until a group has been put since the last call, or for `longest`: then it is false. A group that
+    // was taken and comes back wakes nobody.
+    bool awaitPut(std::chrono::nanoseconds longest);
+
     // Takes whole groups, those nearest to the point (V, m) first, until their coded size is some `bytes`: at
     // least one, if any waits and bytes > 0. A group that waits comes nearer by kAgeing, so that none waits
     // for ever.
@@ -50,6 +56,8 @@ class MeshOutbox {
     void join(Waiting& into, Waiting&& other);
 
     mutable std::mutex mutex_;
+    std::condition_variable has_come_;
+    bool is_news_ = false;  // since awaitPut()
     std::map<uint64_t, Waiting> groups_;
     std::map<uint32_t, uint64_t> group_of_;  // by leaf
     uint64_t next_group_ = 0;

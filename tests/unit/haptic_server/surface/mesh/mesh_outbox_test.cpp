@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
+
 namespace bonemill {
 namespace {
 
@@ -54,6 +56,26 @@ TEST(MeshOutbox, HoldsTheNewestMeshOfEachLeafUntilItIsTaken) {
     EXPECT_EQ(taken[0].meshes[0].revision, 6u);
     EXPECT_TRUE(outbox.isEmpty());
     EXPECT_TRUE(outbox.takeNearest(kOrigin, kAll, 0).empty());
+}
+
+// Returns at once, or the test's time-out ends it.
+TEST(MeshOutbox, WakesWhoeverAwaitsAGroup) {
+    MeshOutbox outbox;
+    std::jthread mesher([&outbox] { outbox.put(groupOf({meshOf(7, 2)}), 1); });
+    EXPECT_TRUE(outbox.awaitPut(std::chrono::hours(1)));
+    outbox.put(groupOf({meshOf(8, 2)}), 1);
+    EXPECT_TRUE(outbox.awaitPut(std::chrono::hours(1))) << "it was put before";
+}
+
+// Or a network without room would keep the publisher awake.
+TEST(MeshOutbox, WhatWaitsOrComesBackWakesNobody) {
+    MeshOutbox outbox;
+    outbox.put(groupOf({meshOf(7, 2)}), 1);
+    EXPECT_TRUE(outbox.awaitPut(std::chrono::hours(1)));
+    EXPECT_FALSE(outbox.awaitPut(std::chrono::milliseconds(1))) << "it still waits";
+    std::vector<NodeGroup> taken = outbox.takeNearest(kOrigin, kAll, 2);
+    outbox.put(std::move(taken.at(0)), 3);
+    EXPECT_FALSE(outbox.awaitPut(std::chrono::milliseconds(1)));
 }
 
 TEST(MeshOutbox, GivesTheNearestFirstAndWithinTheBudget) {
