@@ -1,4 +1,5 @@
 // render_client shows a session (docs/teach/viewer.md), or does here what needs no picture.
+#include <malloc.h>
 #include <spdlog/spdlog.h>
 
 #include <fstream>
@@ -169,6 +170,12 @@ int runSendCommand(const ClientOptions& options) {
 // Mesa crashes where it gets no memory to draw and to compile shaders in.
 constexpr size_t kPictureBytes = size_t(1) << 30;
 
+// Every picture takes and frees some MB: given back, their pages would be faulted in again for the next one.
+void keepFreedHeap() {
+    mallopt(M_TRIM_THRESHOLD, -1);
+    mallopt(M_MMAP_MAX, 0);
+}
+
 int view(int argc, char** argv) {
     auto options = parseOptions(argc, argv);
     hideTokens(argc, argv);
@@ -182,6 +189,7 @@ int view(int argc, char** argv) {
     if (options->serve) return runGateway(*options);
     if (options->command) return runSendCommand(*options);
     requireMemory(kPictureBytes, "the pictures");
+    keepFreedHeap();
     if (options->measure) {
         runMeasurement(*options);
     } else if (options->offscreen && options->offscreen->video) {

@@ -61,7 +61,7 @@ class SceneFeed {
     SceneFeed(const SubscriberOptions& options, RenderScene& scene)
         : subscriber_(options), scene_(scene), nodes_(scene) {}
 
-    // Takes everything that has arrived. Never waits.
+    // Takes everything that has arrived; waits as SceneSubscriber::poll() does.
     void update();
     // Goes on updating until then, so that nothing piles up. Ends early when `stop` says so.
     template <class Stop>

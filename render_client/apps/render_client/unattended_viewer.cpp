@@ -37,6 +37,7 @@ void draw(RenderScene& scene, const ClientOptions& options) {
 
 struct Measured {
     CutToScreen cuts;
+    LatencyHistogram upload;  // taking, decoding and uploading what had come, where nodes were in it
     LatencyHistogram render;  // from the start of the drawing to the finished picture
     uint64_t frames = 0;
     double seconds = 0;
@@ -50,8 +51,11 @@ Measured drawFor(std::chrono::seconds time, const ClientOptions& options, const 
     const Clock::time_point end = Clock::now() + time;
     while (Clock::now() < end && !stopRequested()) {
         feed.subscriber().waitForData(kLongestFrame);
+        const int64_t update_ns = monotonicNowNs();
+        const uint64_t uploads = scene.uploads().nodes;
         feed.update();
         const int64_t draw_ns = monotonicNowNs();
+        if (scene.uploads().nodes != uploads) measured.upload.record(draw_ns - update_ns);
         draw(scene, options);
         gl.Finish();
         measured.render.record(monotonicNowNs() - draw_ns);
@@ -100,6 +104,8 @@ void measure(const ClientOptions& options, const GlApi& gl) {
         "{\"width\":%d,\"height\":%d,\"nodes\":%zu,\"triangles\":%zu,\"frames\":%llu,\"frame_rate_hz\":%.2f,",
         options.width, options.height, scene.nodeCount(), scene.triangleCount(),
         (unsigned long long)measured.frames, double(measured.frames) / measured.seconds);
+    printTimes("upload_ms", measured.upload);
+    std::printf(",");
     printTimes("render_ms", measured.render);
     std::printf(",");
     printTimes("cut_to_viewer_ms", measured.cuts.arrivals());

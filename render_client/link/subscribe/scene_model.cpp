@@ -11,6 +11,7 @@ void SceneModel::begin(uint64_t epoch) {
     if (epoch_ != 0) {
         changes_.is_cleared = true;
         changes_.nodes.clear();
+        change_of_.clear();
         nodes_.clear();
         waiting_.clear();
         triangles_ = waiting_triangles_ = 0;
@@ -72,7 +73,16 @@ void SceneModel::show(DecodedNode&& node) {
     const size_t triangles = node.mesh.indices.size() / 3;
     triangles_ += triangles;
     nodes_[leaf] = {node.mesh.revision, node.content, triangles};
-    changes_.nodes.push_back({std::move(node.mesh), node.tag.cut_stamp_ns});
+    note({std::move(node.mesh), node.tag.cut_stamp_ns});
+}
+
+// A newer mesh shows the older one's cut as well.
+void SceneModel::note(Change&& change) {
+    const auto [place, is_first] = change_of_.try_emplace(change.mesh.leaf, changes_.nodes.size());
+    if (is_first) return changes_.nodes.push_back(std::move(change));
+    Change& older = changes_.nodes[place->second];
+    if (older.cut_stamp_ns != 0) change.cut_stamp_ns = older.cut_stamp_ns;
+    older = std::move(change);
 }
 
 void SceneModel::removeNode(uint32_t leaf) {
@@ -94,11 +104,12 @@ void SceneModel::hide(uint32_t leaf) {
     nodes_.erase(known);
     Change removal;
     removal.mesh.leaf = leaf;
-    changes_.nodes.push_back(std::move(removal));
+    note(std::move(removal));
 }
 
 SceneModel::Changes SceneModel::takeChanges(Clock::time_point now) {
     if (now - waiting_since_ > kLongestWait) release();
+    change_of_.clear();
     return std::exchange(changes_, Changes());
 }
 

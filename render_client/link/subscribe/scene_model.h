@@ -29,7 +29,7 @@ class SceneModel {
     };
     struct Changes {
         bool is_cleared = false;    // first forget every node: another server run began
-        std::vector<Change> nodes;  // then, in this order: replace the leaf's mesh
+        std::vector<Change> nodes;  // then replace the leaves' meshes, each once
     };
 
     // Begins another run of a server, whose model is empty; in the run that is shown it does nothing.
@@ -45,7 +45,10 @@ class SceneModel {
     static constexpr size_t kMostNodes = size_t(1) << 16;
     static constexpr size_t kMaxTriangles = 6'000'000;
 
-    // Returns what changed since the last call.
+    // Nodes wait for others of their batch.
+    bool isWaiting() const noexcept { return !waiting_.empty(); }
+
+    // Returns what changed since the last call, of each leaf the newest.
     Changes takeChanges(Clock::time_point now);
 
     uint64_t epoch() const noexcept { return epoch_; }  // 0: nothing arrived yet
@@ -63,6 +66,7 @@ class SceneModel {
     void release();
     void show(DecodedNode&& node);
     void hide(uint32_t leaf);
+    void note(Change&& change);
 
     uint64_t epoch_ = 0;
     std::unordered_map<uint32_t, Node> nodes_;  // the leaves with a mesh
@@ -75,6 +79,7 @@ class SceneModel {
     Clock::time_point waiting_since_;
     NodeDigest digest_;
     Changes changes_;
+    std::unordered_map<uint32_t, size_t> change_of_;  // by leaf, in changes_.nodes
 };
 
 }  // namespace bonemill

@@ -33,6 +33,7 @@ SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
 SceneModel::Changes SceneSubscriber::poll(size_t max_nodes) {
     ear_.passTime();
     ear_.poll(max_nodes);
+    if (max_nodes == kAllNodes) ear_.takeRestOfBatch();
     if (link_) sendCommands();
     rejoinIfDeaf();
     return ear_.model().takeChanges(SceneModel::Clock::now());

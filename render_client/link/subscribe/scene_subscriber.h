@@ -1,7 +1,7 @@
 // It is the client's end of a session: what the server shows, kept up to date, and the way to
 // send it commands.
 //
-// One thread (the render thread): poll() takes what has arrived and never waits. Bytes that do not make sense
+// One thread (the render thread): poll() takes what has arrived. Bytes that do not make sense
 // are dropped, counted, and at first named in the log; what comes with them arrives. A server that leaves
 // changes nothing in the model; one that restarts replaces it, and a second one beside it does not.
 #pragma once
@@ -66,7 +66,8 @@ class SceneSubscriber : private SessionSink {
     explicit SceneSubscriber(const SubscriberOptions& options);
 
     // Takes and decodes what has arrived, at most `max_nodes` node samples (the rest stays for the next
-    // call), sends the commands that are due, and returns the nodes that changed since the last call.
+    // call), sends the commands that are due, and returns the nodes that changed since the last call. Waits
+    // for some milliseconds at most, for the rest of a batch of nodes that has begun to arrive.
     SceneModel::Changes poll(size_t max_nodes = kAllNodes);
     // Returns true when poll() has something to take, false when `timeout` passed before.
     bool waitForData(std::chrono::nanoseconds timeout) const;

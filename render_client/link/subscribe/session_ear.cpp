@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <thread>
 #include <type_traits>
 #include <utility>
 
@@ -58,6 +59,15 @@ void SessionEar::poll(size_t max_nodes) {
         noteEnd();
     }
     noteNothingToHear();
+}
+
+void SessionEar::takeRestOfBatch() {
+    constexpr int kLooks = 12;
+    constexpr std::chrono::microseconds kBetween{250};  // a node is written in some 100
+    for (int n = 0; n < kLooks && readers_ && model_.isWaiting(); ++n) {
+        std::this_thread::sleep_for(kBetween);
+        takeNodes(std::numeric_limits<size_t>::max());
+    }
 }
 
 // Hands on what `parse` makes of a sample, if our server wrote it.

@@ -106,6 +106,9 @@ class SessionEar {
 
     // Takes what has arrived, at most `max_nodes` node samples; the rest stays for the next call.
     void poll(size_t max_nodes);
+    // Takes the nodes that those which came belong with, and waits for them, but no longer than some
+    // milliseconds: without them nothing of their batch is shown.
+    void takeRestOfBatch();
     // Returns true when poll() has something to take, false when `timeout` passed before. It has joined.
     bool wait(std::chrono::nanoseconds timeout) const { return readers_->servers->wait(timeout); }
 

@@ -43,6 +43,30 @@ TEST(SceneModel, AppliesIdempotently) {
     EXPECT_EQ(model.digest(), digest);
 }
 
+TEST(SceneModel, HandsOutOfEachLeafTheNewestMeshWithItsOldestCut) {
+    SceneModel model = begun();
+    apply(model, 5, 2, {.epoch = kEpoch, .cut_stamp_ns = 100});
+    apply(model, 6, 2, {.epoch = kEpoch, .cut_stamp_ns = 200});
+    apply(model, 5, 4, {.epoch = kEpoch, .cut_stamp_ns = 300});
+    model.removeNode(6);
+    const auto changes = model.takeChanges(kNow);
+    ASSERT_EQ(changes.nodes.size(), 2u);
+    EXPECT_EQ(changes.nodes[0].mesh.revision, 4u);
+    EXPECT_EQ(changes.nodes[0].cut_stamp_ns, 100);
+    EXPECT_TRUE(changes.nodes[1].mesh.isEmpty());
+    apply(model, 6, 8, {.epoch = kEpoch});
+    EXPECT_EQ(model.takeChanges(kNow).nodes.size(), 1u) << "the next picture's are counted anew";
+}
+
+TEST(SceneModel, WaitsUntilABatchIsWhole) {
+    SceneModel model = begun();
+    EXPECT_FALSE(model.isWaiting());
+    apply(model, 5, 2, {.epoch = kEpoch, .batch = 1, .batch_nodes = 2});
+    EXPECT_TRUE(model.isWaiting());
+    apply(model, 6, 2, {.epoch = kEpoch, .batch = 1, .batch_nodes = 2});
+    EXPECT_FALSE(model.isWaiting());
+}
+
 TEST(SceneModel, AcceptsRevisionZero) {
     SceneModel model = begun();
     apply(model, 5, 0, {.epoch = kEpoch});
@@ -213,7 +237,9 @@ TEST(SceneModel, ARemovalDoesNotOvertakeWhatWaits) {
     model.removeNode(1);
     EXPECT_TRUE(model.takeChanges(kNow).nodes.empty());
     apply(model, 2, 2, {.epoch = kEpoch, .batch = 1, .batch_nodes = 2});
-    EXPECT_EQ(leavesOf(model.takeChanges(kNow)), (std::vector<uint32_t>{1, 1, 2}));
+    const SceneModel::Changes changes = model.takeChanges(kNow);
+    EXPECT_EQ(leavesOf(changes), (std::vector<uint32_t>{1, 2}));
+    EXPECT_TRUE(changes.nodes.at(0).mesh.isEmpty());
     EXPECT_EQ(model.digest().count(), 1u);
 }
 
