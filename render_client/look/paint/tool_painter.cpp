@@ -143,7 +143,9 @@ void ToolPainter::drawTool(const Frame& frame, const FrameView& view, const Tool
         program.set("spin_sweep", view.effects->turn->sweep);
         program.set("flutes", view.effects->turn->flutes);
     }
+    gl_.Enable(GL_CULL_FACE);
     tool.draw(view.shows_handpiece);
+    gl_.Disable(GL_CULL_FACE);
 }
 
 // Ghosts are seen through the bone too, but fainter there: the hand usually is inside when the tool is
