@@ -1,9 +1,9 @@
 // Measures the cost of a tick on the thesis' tooth while milling a corridor, by preset, scaling factor and
 // octree leaf size, for `haptic_bench presets`.
 //
-// Prints p50/p99/p99.9/max in µs and the ratio of the medians to the thesis' own setting (s = 3, octree depth
-// 3), all settings in turn in the same process, several rounds: quote a figure only if the rounds agree.
-#include <cstdio>
+// All settings in turn in the same process, several rounds, of which each figure is the median.
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "common/rt/clock.h"
@@ -13,6 +13,7 @@
 #include "haptic_server/laws/all_laws.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
 #include "tests/bench/bench_commands.h"
+#include "tests/bench/bench_output.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/typical_effects.h"
 #include "tests/support/whole_densities.h"
@@ -21,24 +22,24 @@ namespace bonemill::bench {
 namespace {
 
 struct Setting {
-    const char* name;
+    std::string name;
     Preset preset;
     int scaling_factor;
     bool has_thesis_octree;  // depth 3; else leaves of 16³ cells
 };
-constexpr Setting kSettings[] = {
-    {"thesis_2012: s=3, octree depth 3", Preset::kThesis2012, 3, true},
-    {"thesis_2012, s=1, octree depth 3", Preset::kThesis2012, 1, true},
-    {"fast, octree depth 3", Preset::kFast, 1, true},
-    {"balanced, octree depth 3", Preset::kBalanced, 1, true},
+// The thesis' octree has depth 3, so have all but one.
+const Setting kSettings[] = {
+    {"thesis_2012", Preset::kThesis2012, 3, true},
+    {"thesis_2012, s = 1", Preset::kThesis2012, 1, true},
+    {"fast", Preset::kFast, 1, true},
+    {"balanced", Preset::kBalanced, 1, true},
     {"balanced, leaves of 16 cells", Preset::kBalanced, 1, false},
-    {"exact, octree depth 3", Preset::kExact, 1, true},
-    {"proxy_3dof, octree depth 3", Preset::kProxy3Dof, 1, true},
-    {"vps, octree depth 3", Preset::kVps, 1, true},
-    {"penalty_sdf, octree depth 3", Preset::kPenaltySdf, 1, true},
-    {"constraint, octree depth 3", Preset::kConstraint, 1, true},
+    {"exact", Preset::kExact, 1, true},
+    {"proxy_3dof", Preset::kProxy3Dof, 1, true},
+    {"vps", Preset::kVps, 1, true},
+    {"penalty_sdf", Preset::kPenaltySdf, 1, true},
+    {"constraint", Preset::kConstraint, 1, true},
 };
-constexpr int kRounds = 3;
 constexpr int kTicks = 6000;
 // The first is above a cusp of the phantom, the second the middle of the tooth below it; the tool is upright.
 const Pose kStart{{2.7e-3, -2.45e-3, 20.8e-3}, Eigen::Quaterniond(M_SQRT1_2, M_SQRT1_2, 0, 0)};
@@ -70,34 +71,46 @@ void measure(const Setting& setting, const RawVolume& scan, const ToolModel& too
     });
 }
 
-void print(const char* what, const LatencyHistogram& h, const LatencyHistogram& reference) {
-    const auto us = [&h](double percent) { return microsecondsOfNs(double(h.percentileNs(percent))); };
-    std::printf("    %-22s p50 %7.1f  p99 %7.1f  p99.9 %7.1f  max %8.1f us   median ratio %.2f\n", what,
-                us(50), us(99), us(99.9), microsecondsOfNs(double(h.maxNs())),
-                double(h.percentileNs(50)) / double(reference.percentileNs(50)));
+void addCosts(Table& table, const std::string& name, const nlohmann::json& cost) {
+    std::vector<std::string> cells{name};
+    for (const char* part : {"force", "milling", "whole"})
+        for (const char* key : {"p50", "p99", "p999"}) cells.push_back(number(cost[part][key].get<double>()));
+    table.add(cells);
 }
 
-void comparePresets() {
+void comparePresets(int rounds, const std::string& json_path) {
     const RawVolume scan = scanTooth(toothGrid(), {});
     const ToolModel tool = buildTool({}).model;
-    for (int round = 1; round <= kRounds; ++round) {
-        std::printf("round %d, %d ticks each\n", round, kTicks);
-        std::vector<Cost> costs(std::size(kSettings));
-        for (size_t n = 0; n < costs.size(); ++n) {
-            measure(kSettings[n], scan, tool, costs[n]);
-            std::printf("  %s\n", kSettings[n].name);
-            print("force", costs[n].force, costs[0].force);
-            print("milling and shell", costs[n].milling, costs[0].milling);
-            print("whole tick", costs[n].whole, costs[0].whole);
+    std::vector<nlohmann::json> runs(size_t(rounds), nlohmann::json::object());
+    for (nlohmann::json& run : runs)
+        for (const Setting& setting : kSettings) {
+            Cost cost;
+            measure(setting, scan, tool, cost);
+            run[setting.name] = {{"force", microseconds(cost.force)},
+                                 {"milling", microseconds(cost.milling)},
+                                 {"whole", microseconds(cost.whole)}};
         }
-    }
+    const nlohmann::json medians = medianOf(runs);
+    Table table(
+        {"us", "force p50", "p99", "p99.9", "milling p50", "p99", "p99.9", "whole p50", "p99", "p99.9"});
+    for (const Setting& setting : kSettings) addCosts(table, setting.name, medians[setting.name]);
+    table.print();
+    writeJson(json_path, medians);
 }
 
 }  // namespace
 
 void addPresetsCommand(CLI::App& app) {
-    app.add_subcommand("presets", "whole ticks in the tooth's corridor, preset by preset")
-        ->callback(comparePresets);
+    struct Options {
+        std::string json;
+        int rounds = 3;
+    };
+    auto o = std::make_shared<Options>();
+    CLI::App* command =
+        app.add_subcommand("presets", "whole ticks in the tooth's corridor, preset by preset");
+    command->add_option("--rounds", o->rounds, "of all settings in turn")->check(CLI::Range(1, 99));
+    addJsonOption(*command, o->json);
+    command->callback([o] { comparePresets(o->rounds, o->json); });
 }
 
 }  // namespace bonemill::bench
