@@ -91,7 +91,7 @@ TEST_F(EffectMemory, NoneListedIsNotAByte) {
                   EffectHost host(makeEffects(none, *simulation_.bone, room), 100'000, 1);
                   host.restart(Restart::kOtherTool);
                   host.begin({});
-                  host.finish();
+                  host.finish(true);
               }),
               0u);
 }
