@@ -59,7 +59,7 @@ struct EffectRoom {
     double largest_burr_reach;   // m, of all tools: Burr::reach()
     size_t most_contacts;
     size_t most_cells;   // as MillingConfig
-    double longest_way;  // m, of a burr in a tick
+    double longest_way;  // m, of a burr between the ticks that mill
 };
 
 // An effect may need this beside its own config.

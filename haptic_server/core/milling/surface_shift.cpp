@@ -184,7 +184,6 @@ bool SurfaceShift::forEachRow(const VoxelHat& hat, Visit&& visit) const noexcept
 }
 
 void SurfaceShift::touch(const VoxelHat& hat) noexcept {
-    if (hat.count[0] == 0) return;
     forEachRow(hat, [&](size_t word, RowBits bits) {
         asked_[word] |= bits;
         return false;
@@ -249,6 +248,7 @@ void SurfaceShift::spread(const VoxelVolume& volume, const SinkingPoints& wishes
     kernels().sink_surface(densityView(volume), wishes);
     for (int n = 0; n < wishes.count; ++n) {
         const VoxelHat hat = hatAround({wishes.x[n], wishes.y[n], wishes.z[n]});
+        if (hat.count[0] == 0) continue;
         touch(hat);
         const size_t at = index({hat.first[0], hat.first[1], hat.first[2]});
         kernels().add_hat(hat, areas[n], wishes.drop[n], &drops_[at], &weights_[at]);

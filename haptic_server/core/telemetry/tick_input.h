@@ -21,7 +21,7 @@ struct DeviceReport {
     bool isEngaged() const noexcept { return state == uint32_t(SafetyState::kEngaged); }
 };
 
-inline constexpr int kMostThrift = 3, kMostForceLoad = 15;
+inline constexpr int kMostThrift = 3;
 
 // What the tick found decided when it asked.
 struct TickDecisions {
@@ -31,7 +31,6 @@ struct TickDecisions {
     bool is_write_refused = false;                             // by BoneHistory::beginWrite()
     bool is_milling_put_off = false, is_heat_put_off = false;  // by LaterWork
     uint8_t milling_thrift = 0;                                // LaterWork::millingThrift()
-    uint8_t force_load = 0;                                    // SampleCap::forceLoad()
     uint32_t most_samples = 0;                                 // SampleCap after the tick; 0: no cap
     uint64_t bone_order = 0;  // BoneHistory::takenUpOrder() after the tick's milling
 };

@@ -1,23 +1,26 @@
 // What a tick does when its force is out: it mills or puts bone back, and lets the effects finish.
+#include <algorithm>
+
 #include "haptic_server/core/tick/haptic_tick.h"
 
 namespace bonemill {
 
-// The clock decides whether there is time for it; a replay has it from then. What is put off is milled in the
-// next tick, along the way of both.
+// The clock decides whether there is time for it; a replay has it from then. What is put off is milled in one
+// of the next ticks, along the way of all.
 MillingResult HapticTick::mill(const DeviceInput& input, TickIo& io, uint32_t& faults) noexcept {
-    const bool is_wanted = was_pedal_down_ || was_add_wanted_;
     const double used = input.shareGone(io.now());
-    if (!input.decisions && is_wanted)
+    if (!input.decisions && may_mill_)
         decisions_.is_milling_put_off = !later_work_.fits(LaterWork::kMilling, used);
     if (decisions_.is_milling_put_off) {
+        if (was_pedal_down_ || was_add_wanted_) faults |= kFaultMillingCutShort;
         unmilled_periods_ += input.periods;
-        faults |= kFaultMillingCutShort;
         return {};
     }
     const MillingResult milled = millOrRestore(faults);
-    unmilled_periods_ = 0;
-    if (is_wanted) later_work_.took(LaterWork::kMilling, input.shareGone(io.now()) - used);
+    unmilled_periods_ = decisions_.is_write_refused ? unmilled_periods_ + input.periods : 0;
+    unmilled_periods_ = std::min(unmilled_periods_, LaterWork::kMostWaits);
+    if (!milled.changed.isEmpty() && !was_add_wanted_)
+        later_work_.took(LaterWork::kMilling, input.shareGone(io.now()) - used);
     return milled;
 }
 

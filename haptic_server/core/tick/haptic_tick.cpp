@@ -51,7 +51,7 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
       effects_(makeEffects(config.effects, bone_,
                            {config.dt, tools_.largestBurrRadius(), tools_.largestBurrReach(),
                             models_.mostCandidates(), config.most_milled_cells,
-                            config.gradient.max_speed * config.dt}),
+                            config.gradient.max_speed * config.dt * (1 + LaterWork::kMostWaits)}),
                models_.mostCandidates(), config.gradient.contact.stiffness_per_area),
       hand_limits_(config.hand, handSideOf(config).spring, config.dt),
       hand_coupling_(config_),
@@ -71,8 +71,7 @@ void HapticTick::chooseSettings(const SpoStep& step, uint32_t& faults) noexcept 
     PointShell& shell = bone_.shell;
     AccuracySettings chosen = accuracy_[decisions_.accuracy];
     const int asked_for = chosen.shell_factor;
-    chosen.shell_factor =
-        affordable_.factor(shell, asked_for, settings_.shell_factor, step, decisions_.force_load);
+    chosen.shell_factor = affordable_.factor(shell, asked_for, settings_.shell_factor, step);
     if (chosen.shell_factor > asked_for) faults |= kFaultCoarserShell;
     if (chosen == settings_) return shell.follow(shell.followed());  // not even the one being prepared
     const auto [is_ready, is_complete] =
@@ -134,7 +133,6 @@ void HapticTick::decide(const DeviceInput& input) noexcept {
     decisions_.tool = uint32_t(tools_.chosen());
     decisions_.accuracy = uint32_t(accuracy_.choice());
     decisions_.is_milling_paused = history_ && history_->isMillingPaused();
-    decisions_.force_load = uint8_t(sample_cap_.forceLoad());
     decisions_.milling_thrift = uint8_t(later_work_.millingThrift());
     decisions_.is_write_refused = decisions_.is_milling_put_off = decisions_.is_heat_put_off = false;
     decisions_.bone_order = history_ ? history_->takenUpOrder() : 0;
@@ -144,6 +142,7 @@ void HapticTick::chooseTool() noexcept {
     const size_t chosen = decisions_.tool;
     if (chosen == tool_) return;
     tool_ = chosen;
+    unmilled_periods_ = 0;
     models_.forEach([&](SpoModel& model) { model.setTool(tools_[tool_]); });
     effects_.restart(Restart::kOtherTool);
     noteSuddenChange(SuddenChange::kTool);
@@ -279,8 +278,11 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
                      !decisions_.is_milling_paused;
     start.is_pedal_down = start.may_mill && remove && !add;
     start.is_add_wanted = start.may_mill && add && !remove;
-    if (start.is_pedal_down != was_pedal_down_ || start.is_add_wanted != was_add_wanted_)
+    if (start.is_pedal_down != was_pedal_down_ || start.is_add_wanted != was_add_wanted_) {
         noteSuddenChange(SuddenChange::kPedal);
+        unmilled_periods_ = 0;  // what the pedal said then was another thing
+    }
+    may_mill_ = start.may_mill;
     was_pedal_down_ = start.is_pedal_down, was_add_wanted_ = start.is_add_wanted;
     start.tool = &tools_[tool_];
     start.shape =

@@ -98,8 +98,9 @@ class HapticTick {
     Pose X_VT_;
     HandPlace place_;
     uint32_t placements_ = 0;                               // of the hand, that were followed
+    bool may_mill_ = false;                                 // in this tick
     bool was_pedal_down_ = false, was_add_wanted_ = false;  // in the last tick
-    int unmilled_periods_ = 0;          // since the bone was last milled, while it should have been
+    int unmilled_periods_ = 0;          // since the bone was last milled, where that was put off or refused
     Pose X_VT_milled_;                  // then
     bool waits_for_release_ = false;    // the bone was put back: it is not milled by a pedal that was down
     bool has_changed_suddenly_ = true;  // what the simulated side stores, by no work, since the last account

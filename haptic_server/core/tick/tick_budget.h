@@ -35,20 +35,15 @@ class AffordableShell {
     // A tick takes dt seconds.
     explicit AffordableShell(double dt) noexcept : ticks_of_quiet_(int(kQuiet / dt)) {}
 
-    // The force takes so many fifteenths of a tick's period (TickDecisions::force_load), or more: too much.
-    static constexpr int kTooMuchForce = 12;
-
     // After a tick at the factor `in_force`, returns the one to compute with, or to prepare. From a coarser
     // level than asked for it goes on to the next finer one when that could have been afforded twice over
     // for a second.
-    int factor(const PointShell& shell, int asked_for, int in_force, const SpoStep& step,
-               int force_load) noexcept {
-        const bool is_too_much = step.has_contact_overflow || force_load >= kTooMuchForce;
-        const double share = std::max(step.budget_share, double(force_load) / kMostForceLoad);
-        if (is_too_much) finest_ = nextCoarser(shell, in_force);
+    int factor(const PointShell& shell, int asked_for, int in_force, const SpoStep& step) noexcept {
+        if (step.has_contact_overflow) finest_ = nextCoarser(shell, in_force);
         if (finest_ <= asked_for) finest_ = 1;
         const double times = double(in_force) / nextFiner(shell, in_force);
-        const bool is_quiet = !is_too_much && in_force == finest_ && share * times * times < 0.5;
+        const bool is_quiet =
+            !step.has_contact_overflow && in_force == finest_ && step.budget_share * times * times < 0.5;
         quiet_ = is_quiet ? quiet_ + 1 : 0;
         if (quiet_ > ticks_of_quiet_) {
             finest_ = nextFiner(shell, in_force);
@@ -121,16 +116,17 @@ class LaterWork {
     int millingThrift() const noexcept { return thrift_; }
 
   private:
-    void chooseThrift(double& expected) noexcept {
-        quiet_ = expected < kMostMilling / 4 ? quiet_ + 1 : 0;
-        if (expected > kMostMilling && thrift_ < kMostThrift) {
-            ++thrift_;
-            expected /= 2;
-        } else if (quiet_ > ticks_of_quiet_ && thrift_ > 0) {
-            --thrift_;
-            quiet_ = 0;
-        }
+    // A change shows when the leaves have had their turns.
+    void chooseThrift(double expected) noexcept {
+        const bool has_shown = ++ticks_since_change_ > kTicksToShow;
+        quiet_ = 2 * expected < kMostMilling ? quiet_ + 1 : 0;
+        const bool is_more = has_shown && expected > kMostMilling &&
+                             thrift_<kMostThrift, is_less = quiet_> ticks_of_quiet_ && thrift_ > 0;
+        if (!is_more && !is_less) return;
+        thrift_ += is_more ? 1 : -1;
+        ticks_since_change_ = quiet_ = 0;
     }
+    static constexpr int kTicksToShow = 50;
     static constexpr double kQuiet = 1;                  // s
     static constexpr double kRise = 0.25, kFall = 0.01;  // of the way, in a tick
     struct Work {
@@ -139,13 +135,13 @@ class LaterWork {
     };
     Work work_[2];
     int ticks_of_quiet_;
-    int thrift_ = 0, quiet_ = 0;
+    int thrift_ = 0, quiet_ = 0, ticks_since_change_ = kTicksToShow;
 };
 
 // Finds how many samples of the bone's surface a tick has time for, on this machine and beside what else runs
-// on it: by what a sample mostly costs, as many as fill kForce of the period. Three ticks within a tenth of a
-// second that fill most of their period, or had to put work off, halve the number; when the ticks have been
-// quick for a second it doubles again, until nothing is capped.
+// on it. Three ticks within a tenth of a second that fill most of their period, or had to put work off for a
+// long force, halve the number; when the ticks have been quick for a second it doubles again, until nothing
+// is capped.
 //
 // Without a deadline, in `simulate`, nothing is late and nothing is capped: the same work gives the same
 // bits. It is RT-safe, for the tick thread only.
@@ -153,61 +149,34 @@ class SampleCap {
   public:
     // Of the period: a tick is slow beyond the first, and is quick below the second.
     static constexpr double kSlow = 0.7, kQuick = 0.3;
-    static constexpr double kForce = 0.6;   // of the period, for the force
+    static constexpr double kLongForce = LaterWork::kFull - LaterWork::kMostMilling;
     static constexpr size_t kFewest = 128;  // which any tick has time for
 
     // A tick takes dt seconds.
     explicit SampleCap(double dt) noexcept : dt_(dt) {}
 
     size_t most() const noexcept { return most_; }
-    // The force mostly takes so many fifteenths of the period at most.
-    int forceLoad() const noexcept { return force_load_; }
 
-    // Returns whether the cap is another one now.
-    bool after(const TickLoad& load) noexcept {
-        const bool is_slow = load.whole > kSlow || load.is_work_put_off;
+    void after(const TickLoad& load) noexcept {
+        const bool is_slow = load.whole > kSlow || (load.is_work_put_off && load.force > kLongForce);
         slow_ = is_slow ? slow_ + 1 : std::max(0.0, slow_ - dt_ * kSlowTicks / kSlowWithin);
         quick_for_ = load.whole < kQuick ? quick_for_ + dt_ : 0;
-        const size_t before = most_, samples = load.samples, affordable = affordableAfter(load);
         // One that is slow for another reason has no more samples than it may have, and loses none for it.
         if (slow_ > kSlowTicks - 1) {
             slow_ = 0;
-            if (samples > kFewest) most_ = std::max(kFewest, std::min(samples, most_) / 2);
+            if (load.samples > kFewest) most_ = std::max(kFewest, std::min(load.samples, most_) / 2);
         } else if (quick_for_ > kQuiet && most_ != SIZE_MAX) {
             quick_for_ = 0;
             most_ = most_ < kMany ? 2 * most_ : SIZE_MAX;
         }
-        most_ = std::min(most_, affordable);
-        trackForce(load.force);
-        return most_ != before;
     }
 
   private:
-    // What was too much is expected to be less now.
-    void trackForce(double share) noexcept {
-        constexpr double kRise = 0.25, kFall = 0.01;  // of the way, in a tick
-        force_ = share > force_ ? force_ + kRise * (std::min(share, 1.0) - force_) : (1 - kFall) * force_;
-        force_load_ = int(force_ * kMostForceLoad);
-        if (force_load_ >= AffordableShell::kTooMuchForce) force_ /= 2;
-    }
-    // In steps, so that it does not change with every tick.
-    size_t affordableAfter(const TickLoad& load) noexcept {
-        if (load.samples > kFewest) {
-            const double cost = std::min(load.force, 1.0) / double(load.samples);
-            cost_ = cost > cost_ ? cost_ + kRise * (cost - cost_) : (1 - kFall) * cost_;
-        }
-        if (cost_ * double(kMany) < kForce) return SIZE_MAX;
-        return kFewest * std::max<size_t>(1, size_t(kForce / cost_) / kFewest);
-    }
-    static constexpr double kRise = 0.02, kFall = 0.001;                    // of the way, in a tick
     static constexpr double kSlowTicks = 3, kSlowWithin = 0.1, kQuiet = 1;  // s
     static constexpr size_t kMany = 8192;                                   // more are never asked for
 
     double dt_;
     size_t most_ = SIZE_MAX;
-    double cost_ = 0;   // of a sample: the share of a period that it mostly takes at most
-    double force_ = 0;  // of the period: what it mostly takes at most
-    int force_load_ = 0;
     double slow_ = 0;       // ticks, forgotten by and by
     double quick_for_ = 0;  // s
 };

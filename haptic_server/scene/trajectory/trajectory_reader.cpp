@@ -25,12 +25,10 @@ enum InputFlag : uint64_t {
     kNotMilled = 16,
     kNoHeat = 32
 };
-// The bits above are TickDecisions::milling_thrift and force_load.
-constexpr int kThriftShift = 6, kLoadShift = 8;
-constexpr uint64_t kThrift = uint64_t(kMostThrift) << kThriftShift, kLoad = uint64_t(kMostForceLoad)
-                                                                            << kLoadShift;
-constexpr uint64_t kAllFlags =
-    kRepeated | kStale | kPaused | kRefused | kNotMilled | kNoHeat | kThrift | kLoad;
+// Two more bits are TickDecisions::milling_thrift.
+constexpr int kThriftShift = 6;
+constexpr uint64_t kThrift = uint64_t(kMostThrift) << kThriftShift;
+constexpr uint64_t kAllFlags = kRepeated | kStale | kPaused | kRefused | kNotMilled | kNoHeat | kThrift;
 constexpr uint64_t kMaxPeriods = 10'000;
 constexpr size_t kDigitsPerByte = 2;
 
@@ -215,13 +213,13 @@ std::string recordedHeader() {
 
 std::array<uint64_t, kRecordedNumbers.size()> numbersOf(const TickInput& input, const DeviceReport& device) {
     const TickDecisions& decisions = input.decisions;
-    const uint64_t flags =
-        (input.is_repeated ? uint64_t(kRepeated) : 0) | (input.is_stale ? uint64_t(kStale) : 0) |
-        (decisions.is_milling_paused ? uint64_t(kPaused) : 0) |
-        (decisions.is_write_refused ? uint64_t(kRefused) : 0) |
-        (decisions.is_milling_put_off ? uint64_t(kNotMilled) : 0) |
-        (decisions.is_heat_put_off ? uint64_t(kNoHeat) : 0) |
-        uint64_t(decisions.milling_thrift) << kThriftShift | uint64_t(decisions.force_load) << kLoadShift;
+    const uint64_t flags = (input.is_repeated ? uint64_t(kRepeated) : 0) |
+                           (input.is_stale ? uint64_t(kStale) : 0) |
+                           (decisions.is_milling_paused ? uint64_t(kPaused) : 0) |
+                           (decisions.is_write_refused ? uint64_t(kRefused) : 0) |
+                           (decisions.is_milling_put_off ? uint64_t(kNotMilled) : 0) |
+                           (decisions.is_heat_put_off ? uint64_t(kNoHeat) : 0) |
+                           uint64_t(decisions.milling_thrift) << kThriftShift;
     return {flags,
             uint64_t(std::max(input.periods, 0)),
             input.placements,
@@ -248,7 +246,6 @@ bool takeNumbers(const std::array<uint64_t, kRecordedNumbers.size()>& numbers, T
     input.decisions.is_milling_put_off = flags & kNotMilled;
     input.decisions.is_heat_put_off = flags & kNoHeat;
     input.decisions.milling_thrift = uint8_t((flags & kThrift) >> kThriftShift);
-    input.decisions.force_load = uint8_t((flags & kLoad) >> kLoadShift);
     input.periods = int32_t(numbers[1]);
     input.placements = uint32_t(numbers[2]);
     input.faults = uint32_t(numbers[3]);

@@ -20,7 +20,7 @@ namespace bonemill {
 // Further columns of a trajectory that was recorded: all that a tick took in beside pose and buttons
 // (telemetry/tick_input.h). Whole numbers; "input_flags" has the bits 1 repeated, 2 stale, 4 milling is
 // paused, 8 the write was refused, 16 milling and 32 heat were put off; 64 and
-// 128 say how thriftily it mills, 256 to 2048 how much of the period the force takes, in fifteenths.
+// 128 say how thriftily it mills.
 inline constexpr std::array<std::string_view, 11> kRecordedNumbers = {
     "input_flags",       "periods",      "placements", "input_faults", "device_state", "stop_cause",
     "device_fault_code", "device_flags", "tool",       "accuracy",     "most_samples"};

@@ -71,8 +71,10 @@ class EnergyRemoval final : public HapticEffect {
     }
     void begin(EffectTick& tick) noexcept override {
         is_cutting_ = tick.may_mill && !tick.is_add_wanted && tick.spin_speed != 0;
-        if (std::exchange(has_milled_, false)) takeTurn(tick);
-        removal_power_ = removed_energy_ = 0;
+        removed_energy_ = 0;
+        if (!std::exchange(has_milled_, false)) return;  // the power is still that of the last time
+        removal_power_ = 0;
+        takeTurn(tick);
     }
     double scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,
                  const ToolField& tool, const Pose& X_VT) noexcept override {
@@ -209,7 +211,7 @@ class EnergyRemoval final : public HapticEffect {
             if (!is_its_turn) continue;
             shift_.add(bone, patch, of_contact * double(turns_), double(contact.depth));
         }
-        removal_power_ = energy / tick.dt;
+        removal_power_ = energy / tick.milled_dt;
         return energy;
     }
     // The number of groups changes only when each has had its turn.
@@ -217,7 +219,17 @@ class EnergyRemoval final : public HapticEffect {
         if (++turn_ < turns_) return;
         turn_ = 0;
         leaf_turns_.clear();
-        turns_ = tick.contacts.size() / std::max<size_t>(1, most_contacts_ >> tick.milling_thrift) + 1;
+        turns_ = tick.contacts.size() / most_contacts_ + 1;
+        if (tick.milling_thrift > 0)
+            turns_ = std::max(turns_, std::min(turns_ << tick.milling_thrift, leavesOf(tick)));
+    }
+    // More turns than leaves would leave ticks without work. The contacts of a leaf mostly follow each other.
+    static size_t leavesOf(const EffectTick& tick) noexcept {
+        size_t leaves = 0;
+        LeafId last = ~LeafId(0);
+        for (const SurfaceContact& contact : tick.contacts)
+            leaves += std::exchange(last, tick.candidates->patch[contact.candidate].leaf) != last;
+        return leaves;
     }
     // The contacts of a patch follow each other.
     void shareLeaves(const EffectTick& tick) noexcept {

@@ -12,13 +12,11 @@ constexpr int kSecond = 1000;  // ticks
 class Chooser {
   public:
     // Returns the factor after `ticks` more with this load.
-    int after(int ticks, double budget_share, bool has_overflow = false, int asked_for = 1,
-              int force_load = 0) {
+    int after(int ticks, double budget_share, bool has_overflow = false, int asked_for = 1) {
         SpoStep step;
         step.budget_share = budget_share;
         step.has_contact_overflow = has_overflow;
-        for (int n = 0; n < ticks; ++n)
-            in_force_ = affordable_.factor(shell_, asked_for, in_force_, step, force_load);
+        for (int n = 0; n < ticks; ++n) in_force_ = affordable_.factor(shell_, asked_for, in_force_, step);
         return in_force_;
     }
 
@@ -53,16 +51,6 @@ TEST(AffordableShell, ComesBackALevelASecondWhenTheFinerOneIsAffordableTwiceOver
     EXPECT_EQ(chooser.after(1, 0.2), 2);
     EXPECT_EQ(chooser.after(kSecond, 0.12), 2);
     EXPECT_EQ(chooser.after(1, 0.12), 1);
-}
-
-// On a slow machine fewer points are affordable than the budget says.
-TEST(AffordableShell, GoesByTheForcesTimeToo) {
-    Chooser chooser;
-    constexpr int kTooMuch = AffordableShell::kTooMuchForce;
-    EXPECT_EQ(chooser.after(100, 0.1, false, 1, kTooMuch - 1), 1);
-    EXPECT_EQ(chooser.after(1, 0.1, false, 1, kTooMuch), 2);
-    EXPECT_EQ(chooser.after(10 * kSecond, 0.1, false, 1, 4), 2);
-    EXPECT_EQ(chooser.after(kSecond + 1, 0.1, false, 1, 1), 1);
 }
 
 TEST(AffordableShell, StaysCoarseWhileTheFinerOneWouldTakeHalfOfTheTime) {

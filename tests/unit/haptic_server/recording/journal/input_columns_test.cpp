@@ -47,7 +47,6 @@ void expectSame(const JournalTick& a, const JournalTick& b) {
     EXPECT_EQ(x.decisions.is_milling_put_off, y.decisions.is_milling_put_off);
     EXPECT_EQ(x.decisions.is_heat_put_off, y.decisions.is_heat_put_off);
     EXPECT_EQ(x.decisions.milling_thrift, y.decisions.milling_thrift);
-    EXPECT_EQ(x.decisions.force_load, y.decisions.force_load);
     EXPECT_EQ(x.decisions.most_samples, y.decisions.most_samples);
     EXPECT_EQ(x.decisions.bone_order, y.decisions.bone_order);
 }
@@ -123,7 +122,7 @@ TEST(InputColumns, RefuseWhatTheyDidNotMake) {
     refused([](journal::Inputs& bad) { bad.mutable_tool()->set_lengths(0, 99); });
     refused([](journal::Inputs& bad) { bad.mutable_tool()->add_values(1); });
     refused([](journal::Inputs& bad) { bad.mutable_tool()->set_values(0, uint64_t(1) << 32); });
-    refused([](journal::Inputs& bad) { bad.mutable_flags()->set_values(0, 16); });
+    refused([](journal::Inputs& bad) { bad.mutable_flags()->set_values(0, 256); });
     refused([](journal::Inputs& bad) { bad.mutable_periods()->set_values(0, 0); });
     refused([](journal::Inputs& bad) { bad.mutable_stale_factor_bits()->set_values(0, ~uint64_t(0)); });
     refused([](journal::Inputs& bad) { bad.mutable_other_devices(0)->set_tick(100); });

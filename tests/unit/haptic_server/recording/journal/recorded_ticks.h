@@ -37,8 +37,15 @@ inline std::vector<TickRecord> recordedTicks(size_t count, unsigned seed = 1) {
         input.periods = n % 89 == 0 ? 3 : 1;
         input.is_repeated = n % 89 == 0;
         input.is_stale = n % 97 == 0;
-        input.decisions = {uint32_t(n / 200 % 2), uint32_t(n / 150 % 4), n % 400 > 350,
-                           n % 77 == 0,           n > 500 ? 128u : 0u,   n / 250};
+        input.decisions = {.tool = uint32_t(n / 200 % 2),
+                           .accuracy = uint32_t(n / 150 % 4),
+                           .is_milling_paused = n % 400 > 350,
+                           .is_write_refused = n % 77 == 0,
+                           .is_milling_put_off = n % 31 == 0,
+                           .is_heat_put_off = n % 13 == 0,
+                           .milling_thrift = uint8_t(n / 60 % (kMostThrift + 1)),
+                           .most_samples = n > 500 ? 128u : 0u,
+                           .bone_order = n / 250};
         record.p_WT[0] = record.input.p_WT[0];
         record.f_hand_W[2] = std::sin(t);
         if (n == 3) {
