@@ -17,18 +17,20 @@
 namespace bonemill {
 namespace {
 
-enum InputFlag : uint64_t {
-    kRepeated = 1,
-    kStale = 2,
-    kPaused = 4,
-    kRefused = 8,
-    kNotMilled = 16,
-    kNoHeat = 32
-};
-// Two more bits are TickDecisions::milling_thrift.
+// Calls visit(bit, whether it is set) for the bits of "input_flags".
+template <class Input, class Visit>
+void forEachFlag(Input& input, Visit&& visit) {
+    auto& decisions = input.decisions;
+    visit(uint64_t(1), input.is_repeated);
+    visit(uint64_t(2), input.is_stale);
+    visit(uint64_t(4), decisions.is_milling_paused);
+    visit(uint64_t(8), decisions.is_write_refused);
+    visit(uint64_t(16), decisions.is_milling_put_off);
+    visit(uint64_t(32), decisions.is_heat_put_off);
+}
+// The bits above are TickDecisions::milling_thrift.
 constexpr int kThriftShift = 6;
-constexpr uint64_t kThrift = uint64_t(kMostThrift) << kThriftShift;
-constexpr uint64_t kAllFlags = kRepeated | kStale | kPaused | kRefused | kNotMilled | kNoHeat | kThrift;
+constexpr uint64_t kAllFlags = uint64_t(kMostThrift) << kThriftShift | ((uint64_t(1) << kThriftShift) - 1);
 constexpr uint64_t kMaxPeriods = 10'000;
 constexpr size_t kDigitsPerByte = 2;
 
@@ -213,13 +215,8 @@ std::string recordedHeader() {
 
 std::array<uint64_t, kRecordedNumbers.size()> numbersOf(const TickInput& input, const DeviceReport& device) {
     const TickDecisions& decisions = input.decisions;
-    const uint64_t flags = (input.is_repeated ? uint64_t(kRepeated) : 0) |
-                           (input.is_stale ? uint64_t(kStale) : 0) |
-                           (decisions.is_milling_paused ? uint64_t(kPaused) : 0) |
-                           (decisions.is_write_refused ? uint64_t(kRefused) : 0) |
-                           (decisions.is_milling_put_off ? uint64_t(kNotMilled) : 0) |
-                           (decisions.is_heat_put_off ? uint64_t(kNoHeat) : 0) |
-                           uint64_t(decisions.milling_thrift) << kThriftShift;
+    uint64_t flags = uint64_t(decisions.milling_thrift) << kThriftShift;
+    forEachFlag(input, [&](uint64_t bit, bool is_set) { flags |= is_set ? bit : 0; });
     return {flags,
             uint64_t(std::max(input.periods, 0)),
             input.placements,
@@ -239,13 +236,8 @@ bool takeNumbers(const std::array<uint64_t, kRecordedNumbers.size()>& numbers, T
     const bool are_small = std::ranges::all_of(
         numbers, [](uint64_t number) { return number <= std::numeric_limits<uint32_t>::max(); });
     if (!are_small || (flags & ~kAllFlags) || numbers[1] < 1 || numbers[1] > kMaxPeriods) return false;
-    input.is_repeated = flags & kRepeated;
-    input.is_stale = flags & kStale;
-    input.decisions.is_milling_paused = flags & kPaused;
-    input.decisions.is_write_refused = flags & kRefused;
-    input.decisions.is_milling_put_off = flags & kNotMilled;
-    input.decisions.is_heat_put_off = flags & kNoHeat;
-    input.decisions.milling_thrift = uint8_t((flags & kThrift) >> kThriftShift);
+    forEachFlag(input, [&](uint64_t bit, bool& is_set) { is_set = flags & bit; });
+    input.decisions.milling_thrift = uint8_t(flags >> kThriftShift);
     input.periods = int32_t(numbers[1]);
     input.placements = uint32_t(numbers[2]);
     input.faults = uint32_t(numbers[3]);
