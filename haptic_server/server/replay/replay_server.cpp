@@ -25,7 +25,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr size_t kRingRecords = 8192, kRingCuts = 8192;
-constexpr auto kPublishPause = 1ms, kNoNodesPause = 4ms, kRecordPeriod = 4ms;
+constexpr auto kRecordPeriod = 4ms;
 constexpr int64_t kLookEveryNs = 20 * kNsPerMillisecond;
 
 // The recorded scene, with the bone as its files have it now. Its threads stand around the player as those of
@@ -114,13 +114,14 @@ class ReplayServer {
             loop(stop, kRecordPeriod, [this] { recorder_.drain(); });
         });
         threads_[2] = std::jthread([this](const std::stop_token& stop) { meshUntil(stop); });
-        threads_[3] = std::jthread(
-            [this](const std::stop_token& stop) { loop(stop, kPublishPause, [this] { publishRound(); }); });
+        threads_[3] = std::jthread([this](const std::stop_token& stop) {
+            loop(stop, ShowSession::kPause, [this] { publishRound(); });
+        });
     }
 
     void publishRound() {
         show_.round();
-        outbox_.awaitPut(kNoNodesPause);
+        show_.awaitNodes();
     }
 
     void meshUntil(const std::stop_token& stop) {

@@ -30,9 +30,8 @@ constexpr size_t kRingRecords = 8192;  // 8 s at 1 kHz: a stalled disk loses not
 constexpr size_t kRingCuts = 8192;
 constexpr int kTickPriority = 80;
 // What was milled goes out at once, and what is milled meanwhile once more after kCutPause: every picture of
-// it costs the mesher, the publisher and all viewers. Else the publisher looks around every 5 ms.
+// it costs the mesher, the publisher and all viewers.
 constexpr auto kCutPause = 4ms;
-constexpr auto kPublishPause = 1ms, kNoNodesPause = 4ms;
 constexpr auto kRecordPeriod = 4ms;
 constexpr int64_t kWarmUpNs = kNsPerSecond;
 // At its end the session shows what was milled last. A bone that is not yet meshed, or a slow network, holds
@@ -171,7 +170,7 @@ void SceneRun::start() {
         [this](const std::stop_token& stop) { loop(stop, kRecordPeriod, [this] { recorder_.drain(); }); });
     mesher_thread_ = std::jthread([this](const std::stop_token& stop) { meshUntil(stop); });
     publisher_thread_ = std::jthread(
-        [this](const std::stop_token& stop) { loop(stop, kPublishPause, [this] { publishRound(); }); });
+        [this](const std::stop_token& stop) { loop(stop, ShowSession::kPause, [this] { publishRound(); }); });
     spdlog::info("session {} of scene '{}' waits for a device", options_.session, loaded_.scene.name());
 }
 
@@ -238,7 +237,7 @@ void SceneRun::publishRound() {
     const int64_t start_ns = monotonicNowNs();
     show_.round();
     published_.rounds.record(monotonicNowNs() - start_ns);
-    outbox_.awaitPut(kNoNodesPause);
+    show_.awaitNodes();
 }
 
 void SceneRun::meshUntil(const std::stop_token& stop) {

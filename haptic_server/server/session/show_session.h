@@ -2,6 +2,7 @@
 // to the tick.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <future>
 #include <optional>
@@ -35,8 +36,11 @@ class ShowSession {
     // Publishes the scene, before the first round; the protected structures follow with some round().
     void begin();
 
-    // The publisher thread makes a round whenever nodes have come, and about 200 times per second.
+    // The publisher thread makes a round, sleeps in awaitNodes() and rests for kPause: a round whenever nodes
+    // have come, and about 200 times per second.
+    static constexpr std::chrono::milliseconds kPause{1};
     void round();
+    void awaitNodes() { outbox_.awaitPut(std::chrono::milliseconds(4)); }
 
     // Once the tick and the mesher have ended, whoever has joined the publisher thread publishes the nodes
     // that wait, until this instant (CLOCK_MONOTONIC) at most, and the status that counts them.
