@@ -98,15 +98,18 @@ void WebSocketClient::queueFrame(unsigned char opcode, std::string_view payload)
 }
 
 void WebSocketClient::move() {
+    bool is_broken = false;
     for (long sent = 1; sent > 0 && !outgoing_.empty();) {
         sent = line_.write(outgoing_.data(), outgoing_.size());
-        if (sent < 0) has_ended_ = true;
+        is_broken = sent < 0;
         if (sent > 0) outgoing_.erase(0, size_t(sent));
     }
+    // Who hangs up has often said why: what has come is there to be read, though nothing can be said any
+    // more.
     std::array<char, 65536> bytes;
     for (long came = 1; came > 0 && !has_ended_ && messages_.size() < kMaxUntaken;) {
         came = line_.read(bytes.data(), bytes.size());
-        if (came < 0) has_ended_ = true;
+        if (came < 0 || (came == 0 && is_broken)) has_ended_ = true;
         if (came > 0) incoming_.append(bytes.data(), size_t(came));
         while (takeFrame()) {
         }

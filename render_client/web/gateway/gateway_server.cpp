@@ -293,6 +293,10 @@ int GatewayServer::Port::write(lws* connection, GuestConnection& place) {
             return -1;
     }
     if (place.guest->shouldClose(now)) {
+        // From here on libwebsockets reads and drops what still comes, 5 s at most, until the guest has
+        // closed, too: a socket closed before would reset the line, and the guest might lose what it was
+        // told.
+        guests.erase(connection);
         lws_close_reason(connection, LWS_CLOSE_STATUS_POLICY_VIOLATION, nullptr, 0);
         return -1;
     }
