@@ -23,6 +23,7 @@
 
 #include "common/base/user_error.h"
 #include "common/text/printed_text.h"
+#include "haptic_server/scans/confined/free_memory.h"
 #include "haptic_server/scans/confined/import_limits.h"
 #include "haptic_server/scans/confined/reader_pipe.h"
 #include "haptic_server/scans/confined/shared_name.h"
@@ -216,20 +217,23 @@ void handleSignals() {
                               const std::function<void()>& send) {
     handleSignals();
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // a reader without its parent would only hold on to what it inherited
-    const rlimit no_core{0, 0}, cpu{kMaxCpuSeconds, kMaxCpuSeconds};
+    const rlimit no_core{0, 0},
+        cpu{kMaxCpuSeconds, kMaxCpuSeconds + 1};  // at the hard one it would be SIGKILL
     setrlimit(RLIMIT_CORE, &no_core);
     setrlimit(RLIMIT_CPU, &cpu);
     dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
     const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
     dup2(nowhere, STDERR_FILENO);  // the libraries' chatter would stand between the user and the one message
     dup2(nowhere, STDOUT_FILENO);
+    const FreeMemory free = freeMemory();
     try {
-        if (const uint64_t available = availableMemory()) capMemoryForGood(available);
+        if (free.bytes > 0) capMemoryForGood(free.bytes);
         confineReader();
         send();
     } catch (const std::bad_alloc&) {
         sendText(file, kError,
-                 path.string() + ": there is not enough memory to read it; crop or resample it");
+                 nameOfFileBeingRead(path) + ": there is not enough memory to read it: " + free.text() +
+                     "; crop or resample it");
     } catch (const UserError& error) {
         sendText(file, kError, error.what());
     } catch (const std::exception& error) {
@@ -252,6 +256,20 @@ int endOf(pid_t child) {
     return status;
 }
 
+// Nothing that a library does with a damaged file kills its process from outside: the kernel does when a
+// limit of memory is reached.
+std::string whyItEnded(int status) {
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
+        return "the process that reads it was killed from outside, as happens where a limit of memory is "
+               "reached: " +
+               freeMemory().text() + "; give it more, or crop or resample the scan";
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
+        return printed("its library did not end within %d s of processor time; the file is damaged",
+                       int(kMaxCpuSeconds));
+    return std::string("the library that reads such files gave up (") +
+           (WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "it ended early") + "); the file is damaged";
+}
+
 Received receiveFrom(const std::filesystem::path& path, const StartReader& start,
                      std::chrono::milliseconds most, uint8_t wanted) {
     const SharedName name;
@@ -269,7 +287,8 @@ Received receiveFrom(const std::filesystem::path& path, const StartReader& start
     try {
         is_complete = receive(incoming, wanted, received);
     } catch (const std::bad_alloc&) {
-        error = path.string() + ": there is not enough memory to hold it; crop or resample it";
+        error = path.string() + ": there is not enough memory to hold it: " + freeMemory().text() +
+                "; crop or resample it";
     } catch (const std::length_error&) {
         error = nameOfFileBeingRead(path) +
                 ": what its reader handed over does not fit together; the file is damaged";
@@ -284,10 +303,7 @@ Received receiveFrom(const std::filesystem::path& path, const StartReader& start
     }
     const int status = endOf(child);
     if (!error.empty()) throw UserError(error);
-    if (!is_complete)
-        throw UserError(nameOfFileBeingRead(path) + ": the library that reads such files gave up (" +
-                        (WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "it ended early") +
-                        "); the file is damaged");
+    if (!is_complete) throw UserError(nameOfFileBeingRead(path) + ": " + whyItEnded(status));
     return received;
 }
 

@@ -19,6 +19,7 @@
 #include "common/base/user_error.h"
 #include "common/process/work_ahead.h"
 #include "haptic_server/core/kernels/brick_layout.h"
+#include "haptic_server/scans/confined/free_memory.h"
 
 namespace bonemill {
 namespace {
@@ -156,17 +157,6 @@ void capMemoryForGood(uint64_t extra_bytes) noexcept {
     setrlimit(RLIMIT_AS, &*capped);
 }
 
-uint64_t availableMemory() {
-    std::ifstream meminfo("/proc/meminfo");
-    std::string key, unit;
-    uint64_t kib = 0;
-    while (meminfo >> key >> kib) {
-        std::getline(meminfo, unit);
-        if (key == "MemAvailable:") return kib * 1024;
-    }
-    return 0;
-}
-
 void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel, const std::string& file) {
     if (dims.size() != 3)
         throw UserError(file + ": has " + std::to_string(dims.size()) + " dimensions (" + sizeText(dims) +
@@ -182,24 +172,19 @@ void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel
     }
     // Samples move from the reader's process to this one; what was moved is given back.
     const uint64_t needed = voxels * bytes_per_voxel;
-    const uint64_t available = availableMemory();
-    if (available != 0 && needed > available)
+    if (const FreeMemory free = freeMemory(); !free.holds(needed))
         throw UserError(file + ": " + sizeText(dims) + " voxels need " + std::to_string(needed >> 20) +
-                        " MiB to import and only " + std::to_string(available >> 20) +
-                        " MiB of memory are free; crop or resample it");
+                        " MiB to import and " + free.text() + "; crop or resample it");
 }
 
 void checkAllCanBeBone(const std::vector<uint64_t>& dims, const std::string& file) {
     uint64_t bricks = 1;
     for (const uint64_t n : dims) bricks *= (n + 2 + kBrickCells - 1) / kBrickCells;
     const uint64_t needed = bricks * kBrickSize * sizeof(uint16_t);
-    const uint64_t available = availableMemory();
-    if (available != 0 && needed > available)
+    if (const FreeMemory free = freeMemory(); !free.holds(needed))
         throw UserError(file + ": all of its " + sizeText(dims) + " voxels may need " +
-                        std::to_string(needed >> 20) + " MiB as bone and only " +
-                        std::to_string(available >> 20) +
-                        " MiB of memory are free; name the part that is milled in volume.region, or crop or "
-                        "resample it");
+                        std::to_string(needed >> 20) + " MiB as bone and " + free.text() +
+                        "; name the part that is milled in volume.region, or crop or resample it");
 }
 
 void checkStoredBytes(uint64_t promised_bytes, uint64_t stored_bytes, const std::string& file) {

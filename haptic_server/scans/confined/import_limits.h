@@ -17,9 +17,6 @@ inline constexpr uint64_t kMaxVoxels = uint64_t(1) << 31;
 // that is damaged.
 inline constexpr uint64_t kMaxDeflateRatio = 1040;
 
-// Bytes that programs may still take (MemAvailable); 0 when it cannot be read, which means no limit.
-uint64_t availableMemory();
-
 // Throws UserError naming `file` unless `dims` are three axes of >= 2 voxels (one slice is no volume), at
 // most kMaxVoxels in all, and the import fits into the memory that is free now. `bytes_per_voxel` is what the
 // reader takes at the most.

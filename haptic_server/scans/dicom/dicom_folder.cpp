@@ -2,76 +2,18 @@
 
 #include <algorithm>
 #include <cctype>
-#include <span>
 
 #include "common/base/user_error.h"
-#include "common/process/work_ahead.h"
 #include "haptic_server/scans/confined/import_limits.h"
 #include "haptic_server/scans/dicom/dicom_headers.h"
 #include "haptic_server/scans/dicom/dicom_scan.h"
 #include "haptic_server/scans/dicom/dicom_segments.h"
 #include "haptic_server/scans/dicom/series_table.h"
+#include "haptic_server/scans/dicom/slice_values.h"
 #include "haptic_server/scans/frame/physical_frame.h"
-#include "haptic_server/scans/pixels/itk_image_file.h"
 
 namespace bonemill {
 namespace {
-
-using Slices = std::span<const DicomSlice>;
-
-// Slices that follow each other in one file.
-std::vector<Slices> filesOf(Slices slices) {
-    std::vector<Slices> files;
-    while (!slices.empty()) {
-        const auto other = std::ranges::find_if(
-            slices, [&](const DicomSlice& slice) { return slice.path != slices.front().path; });
-        const auto count = size_t(other - slices.begin());
-        files.push_back(slices.first(count));
-        slices = slices.subspan(count);
-    }
-    return files;
-}
-
-struct Pixels {
-    RawValues values;
-    DicomRescale applied;
-};
-
-Pixels pixelsOf(const Slices& of_file) {
-    Pixels pixels;
-    ItkImageFile image(ItkFormat::kDicom, of_file.front().path);
-    image.appendValues(pixels.values);
-    pixels.applied = image.appliedRescale();
-    return pixels;
-}
-
-void append(const DicomSlice& slice, Pixels& pixels, RawValues& values) {
-    const size_t size = size_t(slice.columns) * size_t(slice.rows), begin = size * size_t(slice.frame);
-    if (pixels.values.size() % size != 0 || pixels.values.size() < begin + size)
-        throw UserError(slice.path.string() +
-                        ": holds fewer pixels than its header says; the file is damaged");
-    const bool is_scaled = pixels.values.visit([&](auto samples) {
-        return appendRescaled(samples.subspan(begin, size), pixels.applied,
-                              slice.rescale.value_or(pixels.applied), values);
-    });
-    if (!is_scaled)
-        throw UserError(slice.path.string() +
-                        ": its frames are scaled too differently to be read; export it anew");
-    pixels.values.forget(begin, begin + size);
-}
-
-void readSlices(const std::vector<DicomSlice>& slices, RawValues& values) {
-    constexpr uint64_t kSampleBytes = 8, kHeldBytes = 2 + 4;  // the widest; while they become wider
-    const std::vector<Slices> files = filesOf(slices);
-    const uint64_t pixels = uint64_t(slices.front().columns) * uint64_t(slices.front().rows);
-    uint64_t bytes = 0;
-    for (const Slices& file : files)
-        bytes = std::max(bytes, mostMemoryToRead(file.front().path, kSampleBytes * pixels * file.size()));
-    const MemoryCap cap(memoryForAll(bytes, kHeldBytes * pixels * slices.size()));
-    workAhead(files, pixelsOf, [&](const Slices& of_file, Pixels of_pixels) {
-        for (const DicomSlice& slice : of_file) append(slice, of_pixels, values);
-    });
-}
 
 bool isSamePicture(const DicomSlice& a, const DicomSlice& b) {
     if (a.frame != 0 || b.frame != 0) return false;
@@ -105,7 +47,7 @@ RawVolume readChoice(const DicomChoice& choice, const std::string& name) {
     checkVolumeSize({uint64_t(first.columns), uint64_t(first.rows), depth}, kPixelBytes, name);
     RawVolume raw;
     raw.values.reserve(size_t(first.columns) * size_t(first.rows) * depth);
-    readSlices(stack.slices, raw.values);
+    const std::string said = readSlices(stack.slices, raw.values);
     FileFrame frame;
     frame.dims = {first.columns, first.rows, int(depth)};
     frame.spacing_mm = {first.pixel_spacing_mm.x(), first.pixel_spacing_mm.y(), stack.slice_spacing_mm};
@@ -124,6 +66,7 @@ RawVolume readChoice(const DicomChoice& choice, const std::string& name) {
     makeRightHanded(frame, name, raw.geometry, raw.values);
     raw.is_hounsfield = first.isCt() && raw.values.range().low <= -500;  // air is negative on no other scale
     raw.description = describe(choice);
+    if (!said.empty()) raw.description += "; " + said;
     return raw;
 }
 

@@ -1,7 +1,5 @@
 #include "haptic_server/scans/dicom/dicom_headers.h"
 
-#include <gdcmReader.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <optional>
@@ -10,6 +8,7 @@
 #include "common/process/work_ahead.h"
 #include "common/text/printed_text.h"
 #include "haptic_server/scans/confined/import_limits.h"
+#include "haptic_server/scans/dicom/dicom_file.h"
 #include "haptic_server/scans/dicom/dicom_groups.h"
 #include "haptic_server/scans/dicom/dicom_scan.h"
 #include "haptic_server/scans/dicom/dicom_slice.h"
@@ -25,7 +24,6 @@ struct DicomFrame {
     DicomTraits traits;                   // what its functional groups say of it
 };
 
-const gdcm::Tag kPixelDataElement(0x7fe0, 0x0010);
 const gdcm::Tag kValueTransformation(0x0028, 0x9145);
 const gdcm::Tag kFrameContent(0x0020, 0x9111);
 const gdcm::Tag kMrDiffusion(0x0018, 0x9117);
@@ -67,27 +65,25 @@ std::optional<DicomFrame> readFrame(const FunctionalGroups& groups, size_t frame
 // There is one of every frame, from the functional groups of an enhanced image (per frame, else shared), and
 // none when the file does not say for each frame where it lies. Throws UserError naming file and frame when
 // what it says is no place or no scale.
-std::vector<DicomFrame> readFrames(const std::filesystem::path& path) {
-    gdcm::Reader reader;
-    reader.SetFileName(path.c_str());
-    if (!reader.ReadUpToTag(kPixelDataElement)) return {};
-    const FunctionalGroups groups(reader.GetFile().GetDataSet());
+std::vector<DicomFrame> readFrames(const DicomFile& file) {
+    const FunctionalGroups groups(file.data());
     std::vector<DicomFrame> frames;
     for (size_t f = 0; f < groups.frameCount(); ++f) {
-        const auto frame = readFrame(groups, f, path.string() + " frame " + std::to_string(f + 1));
+        const auto frame = readFrame(groups, f, file.name() + " frame " + std::to_string(f + 1));
         if (!frame) return {};
         frames.push_back(*frame);
     }
     return frames;
 }
 
-constexpr size_t kMaxEdge = 16384;  // detectors of today have 4096; more is a damaged header
+constexpr int kMaxEdge = 16384;  // detectors of today have 4096; more is a damaged header
 
-DicomTraits traitsOf(const ItkImageFile& image) {
-    const auto text = [&](const char* tag) { return withoutPadding(image.dicomTag(tag)); };
+DicomTraits traitsOf(const DicomFile& image) {
+    const auto text = [&](const char* tag) { return image.dicomTag(tag); };
+    const auto b_value = numberOf<double>(bytesOf(image.data(), gdcm::Tag(0x0018, 0x9087)));
     return {.acquisition_number = text("0020|0012"),
             .temporal_position = text("0020|0100"),
-            .b_value = text("0018|9087"),
+            .b_value = b_value ? printed("%.10g", *b_value) : "",
             .kernel = text("0018|1210"),
             .image_type = text("0008|0008"),
             .acquisition_time = text("0008|0032"),
@@ -95,8 +91,8 @@ DicomTraits traitsOf(const ItkImageFile& image) {
 }
 
 // All images of one file have this in common.
-DicomSlice headerOf(const ItkImageFile& image, const std::filesystem::path& path) {
-    const ItkImageHeader& header = image.header();
+DicomSlice headerOf(const DicomFile& image, const std::filesystem::path& path) {
+    const DicomPixelLayout& layout = image.layout();
     DicomSlice slice;
     slice.path = path;
     slice.series_uid = image.dicomTag("0020|000e");
@@ -104,10 +100,11 @@ DicomSlice headerOf(const ItkImageFile& image, const std::filesystem::path& path
     slice.modality = image.dicomTag("0008|0060");
     slice.traits = traitsOf(image);
     slice.contrast = image.dicomTag("0018|0010");
-    if (header.dims.size() < 2 || header.dims[0] > kMaxEdge || header.dims[1] > kMaxEdge)
+    const auto isEdge = [](int pixels) { return pixels >= 1 && pixels <= kMaxEdge; };
+    if (!isEdge(layout.columns) || !isEdge(layout.rows))
         throw UserError(path.string() + ": claims an image of absurd size; the header is damaged");
-    slice.columns = int(header.dims[0]);
-    slice.rows = int(header.dims[1]);
+    slice.columns = layout.columns;
+    slice.rows = layout.rows;
     slice.rescale = rescaleFromTexts(image.dicomTag("0028|1053"), image.dicomTag("0028|1052"), path.string());
     return slice;
 }
@@ -142,12 +139,25 @@ std::vector<DicomSlice> slicesOf(const std::vector<DicomFrame>& frames, const Di
     return slices;
 }
 
+// Empty: its values are grey. MONOCHROME1 and 2 differ in how they are to be shown.
+std::string whyNotGrey(const DicomFile& image) {
+    if (image.layout().samples_per_pixel != 1) return "colour images (several values per pixel)";
+    const std::string photometric = image.dicomTag("0028|0004");
+    if (photometric.starts_with("PALETTE"))
+        return "colour images (values are numbers of a palette's colours)";
+    const std::string presentation = image.dicomTag("0008|9205");
+    if (presentation == "COLOR" || presentation == "MIXED")
+        return "colour images (some values are numbers of a palette's colours)";
+    if (photometric.empty() || photometric.starts_with("MONOCHROME")) return {};
+    return "colour images (of a photometric interpretation that is not grey)";
+}
+
 // Reads the slices of one file, or none and the reason: the file cannot belong to a volume.
 std::vector<DicomSlice> readHeader(const std::filesystem::path& path, LeftOut& left_out) {
-    const ItkImageFile image(ItkFormat::kDicom, path);
-    const size_t frames = image.header().dims.size() > 2 ? size_t(image.header().dims[2]) : 1;
-    if (image.header().components != 1 || image.dicomTag("0028|0004").rfind("PALETTE", 0) == 0) {
-        left_out.add("colour images (RGB or palette)", path);
+    const DicomFile image(path);
+    const size_t frames = image.layout().frames;
+    if (const std::string reason = whyNotGrey(image); !reason.empty()) {
+        left_out.add(reason, path);
         return {};
     }
     if (frames == 1 && (image.dicomTag("0020|0032").empty() || image.dicomTag("0020|0037").empty())) {
@@ -161,7 +171,7 @@ std::vector<DicomSlice> readHeader(const std::filesystem::path& path, LeftOut& l
             kTwoDigits, path.string());
         return {slice};
     }
-    const std::vector<DicomFrame> places = readFrames(path);
+    const std::vector<DicomFrame> places = readFrames(image);
     if (places.size() != frames) {
         left_out.add("multi-frame images that do not say where each frame lies", path);
         return {};

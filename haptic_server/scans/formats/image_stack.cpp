@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,7 +10,9 @@
 #include "haptic_server/scans/confined/import_limits.h"
 #include "haptic_server/scans/formats/volume_file.h"
 #include "haptic_server/scans/frame/physical_frame.h"
+#include "haptic_server/scans/nrrd/nrrd_header.h"
 #include "haptic_server/scans/pixels/itk_image_file.h"
+#include "haptic_server/scans/pixels/tiff_picture.h"
 
 namespace bonemill {
 namespace {
@@ -56,9 +59,7 @@ struct Stack {
     std::vector<fs::path> slices;
     size_t others = 0;  // files that are left out
 
-    ItkFormat format() const {
-        return extensionOf(slices.front()) == ".png" ? ItkFormat::kPng : ItkFormat::kTiff;
-    }
+    bool isPng() const { return extensionOf(slices.front()) == ".png"; }
 };
 
 Stack stackOf(const fs::path& folder) {
@@ -79,46 +80,89 @@ Stack stackOf(const fs::path& folder) {
     return stack;
 }
 
-std::string pictureText(const ItkImageHeader& header) {
-    return std::to_string(header.dims[0]) + " x " + std::to_string(header.dims[1]) + " pixels of " +
-           std::to_string(8 * header.bytes_per_voxel) + " bit";
+// One grey value per pixel.
+struct Picture {
+    uint64_t width = 0, height = 0;
+    unsigned bits = 0;
+    bool is_white_zero = false;
+    bool operator==(const Picture&) const = default;
+    uint64_t bytes() const { return width * height * bits / 8; }
+};
+
+std::string pictureText(const Picture& picture) {
+    return std::to_string(picture.width) + " x " + std::to_string(picture.height) + " pixels of " +
+           std::to_string(picture.bits) + " bit" + (picture.is_white_zero ? ", 0 shown white" : "");
 }
 
-// A picture of one grey value per pixel. One page of a file of several has a third axis of its own.
-void checkPicture(const ItkImageHeader& header, const std::string& file) {
-    if (header.components != 1)
-        throw UserError(file + ": is in colour or has transparent places; save the slices as grey images");
-    if (header.dims.size() < 2 ||
-        std::any_of(header.dims.begin() + 2, header.dims.end(), [](uint64_t n) { return n > 1; }))
-        throw UserError(file + ": holds several images; save each slice as a file of its own");
-    if (header.bytes_per_voxel > 2)
-        throw UserError(file + ": has " + std::to_string(8 * header.bytes_per_voxel) +
-                        " bit per pixel; save the slices with 8 or 16 bit");
-    if (std::max(header.dims[0], header.dims[1]) > kMaxPictureEdge)
+void checkSize(const Picture& picture, const std::string& file) {
+    if (picture.width < 1 || picture.height < 1 || std::max(picture.width, picture.height) > kMaxPictureEdge)
         throw UserError(file + ": claims an image of absurd size; the file is damaged");
 }
 
-RawValues pixelsOf(const fs::path& slice, const Stack& stack, const ItkImageHeader& first) {
-    ItkImageFile image(stack.format(), slice);
-    const ItkImageHeader& header = image.header();
-    checkPicture(header, slice.string());
-    if (pictureText(header) != pictureText(first))
-        throw UserError(slice.string() + ": has " + pictureText(header) + ", but " +
-                        stack.slices.front().filename().string() + " has " + pictureText(first) +
-                        "; all slices must be alike");
+// The library makes 8 bit of fewer ones, and colours of a palette's numbers.
+void checkPngKind(const fs::path& file) {
+    constexpr size_t kBits = 24, kColour = 25, kPalette = 3;  // in the first of its parts, IHDR
+    const std::string head = firstBytes(file, kColour + 1);
+    if (head.size() <= kColour) throw UserError(file.string() + ": is too short for a PNG file");
+    if (size_t(head[kColour]) == kPalette)
+        throw UserError(file.string() +
+                        ": its values are numbers of a palette's colours; save the slices as grey images");
+    if (head[kBits] != 8 && head[kBits] != 16)
+        throw UserError(file.string() + ": has " + std::to_string(int(head[kBits])) +
+                        " bit per pixel; save the slices with 8 or 16 bit");
+}
+
+Picture pictureOf(const ItkImageHeader& header, const std::string& file) {
+    if (header.components != 1)
+        throw UserError(file + ": is in colour or has transparent places; save the slices as grey images");
+    if (header.dims.size() < 2) throw UserError(file + ": its header cannot be read; the file is damaged");
+    return {header.dims[0], header.dims[1], unsigned(8 * header.bytes_per_voxel)};
+}
+
+// Says where the values of this picture are to go; null: nowhere, they are not read.
+using Place = std::function<RawValues*(const Picture&)>;
+
+Picture readPng(const fs::path& file, const Place& place) {
+    checkPngKind(file);
+    ItkImageFile image(ItkFormat::kPng, file);
+    const Picture picture = pictureOf(image.header(), file.string());
+    checkSize(picture, file.string());
+    if (RawValues* const values = place(picture)) image.appendValues(*values);
+    return picture;
+}
+
+Picture readTiff(const fs::path& file, const Place& place) {
+    TiffPicture tiff(file);
+    const Picture picture{tiff.width(), tiff.height(), tiff.bits(), tiff.isWhiteZero()};
+    checkSize(picture, file.string());
+    if (RawValues* const values = place(picture)) tiff.appendValues(*values);
+    return picture;
+}
+
+Picture readPicture(const fs::path& file, const Place& place) {
+    return extensionOf(file) == ".png" ? readPng(file, place) : readTiff(file, place);
+}
+
+RawValues pixelsOf(const fs::path& slice, const Stack& stack, const Picture& first) {
     RawValues pixels;
-    image.appendValues(pixels);
-    if (pixels.size() != size_t(first.dims[0] * first.dims[1]))
+    readPicture(slice, [&](const Picture& picture) {
+        if (picture != first)
+            throw UserError(slice.string() + ": has " + pictureText(picture) + ", but " +
+                            stack.slices.front().filename().string() + " has " + pictureText(first) +
+                            "; all slices must be alike");
+        return &pixels;
+    });
+    if (pixels.size() != size_t(first.width * first.height))
         throw UserError(slice.string() + ": holds fewer pixels than its header says; the file is damaged");
     return pixels;
 }
 
-RawValues readPictures(const Stack& stack, const ItkImageHeader& first) {
-    const uint64_t picture = first.dims[0] * first.dims[1] * first.bytes_per_voxel;
+RawValues readPictures(const Stack& stack, const Picture& first) {
+    const uint64_t picture = first.bytes();
     uint64_t bytes = 0;
     for (const fs::path& slice : stack.slices) bytes = std::max(bytes, mostMemoryToRead(slice, picture));
     RawValues values;
-    values.reserve(size_t(first.dims[0] * first.dims[1]) * stack.slices.size());
+    values.reserve(size_t(first.width * first.height) * stack.slices.size());
     const MemoryCap cap(memoryForAll(bytes, picture * stack.slices.size()));
     workAhead(
         stack.slices, [&](const fs::path& slice) { return pixelsOf(slice, stack, first); },
@@ -167,22 +211,22 @@ RawVolume importImageStack(const std::filesystem::path& folder,
         throw UserError(name + ": its images do not say how large a voxel is; write volume.spacing_mm");
     checkSpacing(*spacing_mm, name);
     const Stack stack = stackOf(folder);
-    const ItkImageHeader first = ItkImageFile(stack.format(), stack.slices.front()).header();
-    checkPicture(first, stack.slices.front().string());
-    checkVolumeSize({first.dims[0], first.dims[1], stack.slices.size()}, first.bytes_per_voxel, name);
+    const Picture first = readPicture(stack.slices.front(), [](const Picture&) { return nullptr; });
+    checkVolumeSize({first.width, first.height, stack.slices.size()}, first.bits / 8, name);
     RawVolume raw;
     raw.values = readPictures(stack, first);
     FileFrame frame;
-    frame.dims = {int(first.dims[0]), int(first.dims[1]), int(stack.slices.size())};
+    frame.dims = {int(first.width), int(first.height), int(stack.slices.size())};
     frame.spacing_mm = *spacing_mm;
     frame.directions.setIdentity();
     frame.origin_mm.setZero();
     makeRightHanded(frame, name, raw.geometry, raw.values);
     raw.lacks_patient_axes = true;
-    raw.description = std::to_string(stack.slices.size()) +
-                      (stack.format() == ItkFormat::kPng ? " PNG" : " TIFF") + " images, " +
+    raw.description = std::to_string(stack.slices.size()) + (stack.isPng() ? " PNG" : " TIFF") + " images, " +
                       stack.slices.front().filename().string() + " to " +
                       stack.slices.back().filename().string();
+    if (first.is_white_zero)
+        raw.description += "; values as they are stored: 0, which these files show as white, is the lowest";
     if (stack.others > 0) raw.description += "; " + std::to_string(stack.others) + " other files left out";
     return raw;
 }

@@ -21,8 +21,6 @@ std::optional<double> decimalNumber(const std::string& padded) {
     return number;
 }
 
-constexpr double kMaxRounded = 0.25;  // of a stored value, which is a whole number
-
 double scaleNumber(const std::string& text, double fallback, const char* what, const std::string& image) {
     if (text.empty()) return fallback;
     const auto numbers = decimalNumbers(text);
@@ -61,29 +59,5 @@ std::optional<DicomRescale> rescaleFromTexts(const std::string& slope, const std
         throw UserError(image + ": its Rescale Slope is 0, which makes all values the same; export it anew");
     return rescale;
 }
-
-template <class T>
-bool appendRescaled(std::span<const T> samples, const DicomRescale& applied, const DicomRescale& wanted,
-                    RawValues& values) {
-    if (wanted == applied) {
-        values.append(samples);
-        return true;
-    }
-    std::vector<float> scaled;
-    scaled.reserve(samples.size());
-    for (const T sample : samples) {
-        const double share = (double(sample) - applied.intercept) / applied.slope;
-        const double stored = std::nearbyint(share);
-        if (!(std::abs(share - stored) <= kMaxRounded)) return false;
-        scaled.push_back(float(wanted.slope * stored + wanted.intercept));
-    }
-    values.append(std::span<const float>(scaled));
-    return true;
-}
-
-template bool appendRescaled(std::span<const uint8_t>, const DicomRescale&, const DicomRescale&, RawValues&);
-template bool appendRescaled(std::span<const int16_t>, const DicomRescale&, const DicomRescale&, RawValues&);
-template bool appendRescaled(std::span<const uint16_t>, const DicomRescale&, const DicomRescale&, RawValues&);
-template bool appendRescaled(std::span<const float>, const DicomRescale&, const DicomRescale&, RawValues&);
 
 }  // namespace bonemill

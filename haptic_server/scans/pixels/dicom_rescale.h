@@ -5,11 +5,8 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
-
-#include "haptic_server/core/volume/raw_values.h"
 
 namespace bonemill {
 
@@ -23,12 +20,6 @@ struct DicomRescale {
 // when one of them is no number, or the slope is 0.
 std::optional<DicomRescale> rescaleFromTexts(const std::string& slope, const std::string& intercept,
                                              const std::string& image);
-
-// Appends samples that the library has scaled by `applied` as `wanted` would have scaled them. It is false
-// when their rounding does not let the stored values be found again. T is any type of RawValues::Samples.
-template <class T>
-bool appendRescaled(std::span<const T> samples, const DicomRescale& applied, const DicomRescale& wanted,
-                    RawValues& values);
 
 // Nothing when any of them is no finite number.
 std::optional<std::vector<double>> decimalNumbers(const std::string& text);

@@ -1,12 +1,9 @@
 #include "haptic_server/scans/pixels/itk_image_file.h"
 
-#include <itkGDCMImageIO.h>
-#include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
 #include <itkPNGImageIO.h>
-#include <itkTIFFImageIO.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -34,9 +31,10 @@ itk::ImageIOBase::Pointer makeReader(ItkFormat format) {
     static std::mutex only_one;
     const std::lock_guard lock(only_one);
     static const std::map<ItkFormat, itk::ImageIOBase::Pointer (*)()> kMakers{
-        {ItkFormat::kNrrd, makeIo<itk::NrrdImageIO>},      {ItkFormat::kNifti, makeIo<itk::NiftiImageIO>},
-        {ItkFormat::kMetaImage, makeIo<itk::MetaImageIO>}, {ItkFormat::kPng, makeIo<itk::PNGImageIO>},
-        {ItkFormat::kTiff, makeIo<itk::TIFFImageIO>},      {ItkFormat::kDicom, makeIo<itk::GDCMImageIO>}};
+        {ItkFormat::kNrrd, makeIo<itk::NrrdImageIO>},
+        {ItkFormat::kNifti, makeIo<itk::NiftiImageIO>},
+        {ItkFormat::kMetaImage, makeIo<itk::MetaImageIO>},
+        {ItkFormat::kPng, makeIo<itk::PNGImageIO>}};
     return kMakers.at(format)();
 }
 
@@ -154,18 +152,6 @@ ItkImageFile::ItkImageFile(ItkFormat format, const std::filesystem::path& path)
 }
 
 ItkImageFile::~ItkImageFile() = default;
-
-std::string ItkImageFile::dicomTag(const char* tag) const {
-    std::string value;
-    itk::ExposeMetaData<std::string>(reader_->io->GetMetaDataDictionary(), tag, value);
-    while (!value.empty() && (value.back() == ' ' || value.back() == '\0')) value.pop_back();
-    return value;
-}
-
-DicomRescale ItkImageFile::appliedRescale() const {
-    const auto* io = dynamic_cast<const itk::GDCMImageIO*>(reader_->io.GetPointer());
-    return io ? DicomRescale{io->GetRescaleSlope(), io->GetRescaleIntercept()} : DicomRescale{};
-}
 
 void ItkImageFile::appendValues(RawValues& values) {
     itk::ImageIOBase& io = *reader_->io;

@@ -13,11 +13,10 @@
 #include <vector>
 
 #include "haptic_server/core/volume/raw_values.h"
-#include "haptic_server/scans/pixels/dicom_rescale.h"
 
 namespace bonemill {
 
-enum class ItkFormat { kNrrd, kNifti, kMetaImage, kDicom, kPng, kTiff };
+enum class ItkFormat { kNrrd, kNifti, kMetaImage, kPng };
 
 struct ItkImageHeader {
     std::vector<uint64_t> dims;  // all axes of the file
@@ -46,13 +45,7 @@ class ItkImageFile {
 
     const ItkImageHeader& header() const { return header_; }
 
-    // This is the value of a DICOM tag as text without padding, such as "0020|0032"; it is empty when absent.
-    std::string dicomTag(const char* tag) const;
-
-    // This is what appendValues() scales the stored values of a DICOM file by, all frames alike.
-    DicomRescale appliedRescale() const;
-
-    // Appends all samples, rescaled as the file says (HU for CT), first axis fastest.
+    // Appends all samples, rescaled as the file says, first axis fastest.
     void appendValues(RawValues& values);
 
   private:

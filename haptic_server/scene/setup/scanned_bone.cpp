@@ -12,6 +12,7 @@
 #include "haptic_server/core/volume/material_properties.h"
 #include "haptic_server/core/volume/raw_volume.h"
 #include "haptic_server/core/volume/voxel_volume.h"
+#include "haptic_server/scans/confined/free_memory.h"
 #include "haptic_server/scans/confined/import_limits.h"
 #include "haptic_server/scans/densify/densify.h"
 #include "haptic_server/scans/densify/voxel_materials.h"
@@ -161,13 +162,13 @@ std::vector<uint64_t> dimsOf(const VolumeGeometry& geometry) {
 // A session keeps the bone as it was beside the bone as it is, and its surface.
 void requireMemory(const LoadedScene& loaded, const VoxelVolume& volume) {
     const uint64_t bone = volume.bricks().ownCount() * kBrickSize * sizeof(Density);
-    const uint64_t needed = bone + bone / 2, available = availableMemory();
-    if (available == 0 || needed <= available) return;
+    const uint64_t needed = bone + bone / 2;
+    const FreeMemory free = freeMemory();
+    if (free.holds(needed)) return;
     refuseField(loaded, "volume",
                 ": all of this scan is more than can be milled here: its bone takes " +
                     std::to_string(bone >> 20) + " MiB, a session needs " + std::to_string(needed >> 20) +
-                    " MiB more, and only " + std::to_string(available >> 20) +
-                    " MiB of memory are free; name the part that is milled in volume.region");
+                    " MiB more, and " + free.text() + "; name the part that is milled in volume.region");
 }
 
 ScannedBone wholeBone(const LoadedScene& loaded, Scan scan) {
