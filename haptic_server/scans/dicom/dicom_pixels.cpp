@@ -101,7 +101,8 @@ void DicomPixels::unpack(const gdcm::TransferSyntax& syntax) {
                         std::to_string(layout_.frames) + " frames need one each at least; export it anew");
     const StoredBits& bits = layout_.bits;
     const bool is_shifted = bits.high + 1 != bits.stored;
-    const auto used = uint16_t(is_shifted ? bits.allocated : bits.stored);
+    const bool is_packed = syntax == gdcm::TransferSyntax::RLELossless;  // whole words, whatever is in them
+    const auto used = uint16_t(is_shifted || is_packed ? bits.allocated : bits.stored);
     gdcm::Image image;
     image.SetTransferSyntax(syntax);
     image.SetNumberOfDimensions(layout_.frames > 1 ? 3 : 2);

@@ -61,8 +61,13 @@ std::string readSlices(const std::vector<DicomSlice>& slices, RawValues& values)
             surplus.add("with more Pixel Data than Rows x Columns x frames need", of_file.front().path);
     });
     joined.finish();
+    const size_t padded = joined.paddingCount();
+    if (slices.size() > 1 && padded == values.size())
+        throw UserError(slices.front().path.string() +
+                        ": the series has no value but its Pixel Padding Value, which means no data; export "
+                        "it anew");
     std::string said;
-    if (const size_t padded = joined.paddingCount())
+    if (padded > 0)
         said =
             std::to_string(padded) + " voxels are padding, no data (Pixel Padding Value), and count as air";
     if (!surplus.text().empty()) said += (said.empty() ? "" : "; ") + std::string("files ") + surplus.text();

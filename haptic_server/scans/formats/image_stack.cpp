@@ -10,8 +10,8 @@
 #include "haptic_server/scans/confined/import_limits.h"
 #include "haptic_server/scans/formats/volume_file.h"
 #include "haptic_server/scans/frame/physical_frame.h"
-#include "haptic_server/scans/nrrd/nrrd_header.h"
 #include "haptic_server/scans/pixels/itk_image_file.h"
+#include "haptic_server/scans/pixels/png_picture.h"
 #include "haptic_server/scans/pixels/tiff_picture.h"
 
 namespace bonemill {
@@ -94,53 +94,21 @@ std::string pictureText(const Picture& picture) {
            std::to_string(picture.bits) + " bit" + (picture.is_white_zero ? ", 0 shown white" : "");
 }
 
-void checkSize(const Picture& picture, const std::string& file) {
-    if (picture.width < 1 || picture.height < 1 || std::max(picture.width, picture.height) > kMaxPictureEdge)
-        throw UserError(file + ": claims an image of absurd size; the file is damaged");
-}
-
-// The library makes 8 bit of fewer ones, and colours of a palette's numbers.
-void checkPngKind(const fs::path& file) {
-    constexpr size_t kBits = 24, kColour = 25, kPalette = 3;  // in the first of its parts, IHDR
-    const std::string head = firstBytes(file, kColour + 1);
-    if (head.size() <= kColour) throw UserError(file.string() + ": is too short for a PNG file");
-    if (size_t(head[kColour]) == kPalette)
-        throw UserError(file.string() +
-                        ": its values are numbers of a palette's colours; save the slices as grey images");
-    if (head[kBits] != 8 && head[kBits] != 16)
-        throw UserError(file.string() + ": has " + std::to_string(int(head[kBits])) +
-                        " bit per pixel; save the slices with 8 or 16 bit");
-}
-
-Picture pictureOf(const ItkImageHeader& header, const std::string& file) {
-    if (header.components != 1)
-        throw UserError(file + ": is in colour or has transparent places; save the slices as grey images");
-    if (header.dims.size() < 2) throw UserError(file + ": its header cannot be read; the file is damaged");
-    return {header.dims[0], header.dims[1], unsigned(8 * header.bytes_per_voxel)};
-}
-
 // Says where the values of this picture are to go; null: nowhere, they are not read.
 using Place = std::function<RawValues*(const Picture&)>;
 
-Picture readPng(const fs::path& file, const Place& place) {
-    checkPngKind(file);
-    ItkImageFile image(ItkFormat::kPng, file);
-    const Picture picture = pictureOf(image.header(), file.string());
-    checkSize(picture, file.string());
-    if (RawValues* const values = place(picture)) image.appendValues(*values);
+template <class File>
+Picture readAs(const fs::path& path, const Place& place) {
+    File file(path);
+    const Picture picture{file.width(), file.height(), file.bits(), file.isWhiteZero()};
+    if (picture.width < 1 || picture.height < 1 || std::max(picture.width, picture.height) > kMaxPictureEdge)
+        throw UserError(path.string() + ": claims an image of absurd size; the file is damaged");
+    if (RawValues* const values = place(picture)) file.appendValues(*values);
     return picture;
 }
 
-Picture readTiff(const fs::path& file, const Place& place) {
-    TiffPicture tiff(file);
-    const Picture picture{tiff.width(), tiff.height(), tiff.bits(), tiff.isWhiteZero()};
-    checkSize(picture, file.string());
-    if (RawValues* const values = place(picture)) tiff.appendValues(*values);
-    return picture;
-}
-
-Picture readPicture(const fs::path& file, const Place& place) {
-    return extensionOf(file) == ".png" ? readPng(file, place) : readTiff(file, place);
+Picture readPicture(const fs::path& path, const Place& place) {
+    return extensionOf(path) == ".png" ? readAs<PngPicture>(path, place) : readAs<TiffPicture>(path, place);
 }
 
 RawValues pixelsOf(const fs::path& slice, const Stack& stack, const Picture& first) {

@@ -156,16 +156,18 @@ void takeFrame(const Header& header, NiftiHeader& out) {
         apart_mm);
 }
 
-// A slope of 0 means that nothing is scaled, but the library adds the intercept even so; a slope that it
-// finds too small it takes for 1.
+// A slope of 0, or one that is no number, means that nothing is scaled, but the library adds the intercept
+// even so; a slope that it finds too small it takes for 1.
 void checkScale(const Header& header, const std::string& file) {
     constexpr float kMinSlope = 1e-15f;
     const float slope = header.at<float>(kSlopeOffset), intercept = header.at<float>(kInterceptOffset);
-    if (!std::isfinite(slope) || !std::isfinite(intercept))
+    const bool is_unscaled = slope == 0 || std::isnan(slope);
+    if (std::isinf(slope) || std::isinf(intercept) || (!is_unscaled && std::isnan(intercept)))
         throw UserError(
             file +
             ": its NIfTI header scales values by no number (scl_slope, scl_inter); write the file anew");
-    if ((slope == 0 && intercept != 0) || (slope != 0 && std::abs(slope) < kMinSlope))
+    const bool adds = intercept != 0 && !std::isnan(intercept);
+    if ((is_unscaled && adds) || (!is_unscaled && std::abs(slope) < kMinSlope))
         throw UserError(file + ": its NIfTI header has a scl_inter without a scl_slope to go with it; set " +
                         "scl_slope to 1, or scl_inter to 0");
 }

@@ -160,6 +160,7 @@ struct FileFacts {
     double mm_per_unit = 1;
     bool has_patient_space = true;
     bool has_spacing = true;              // libraries take 1 mm where it is not said
+    bool has_other_data = false;          // beside its voxels, where the header says so
     uint64_t stored_bytes_per_voxel = 0;  // 0: as many as the library's
     std::optional<FileFrame> frame = {};  // nothing: the library's
     std::string remark = {};
@@ -190,6 +191,16 @@ std::string segmentRemark(const Segments& segments) {
            (segments.are_layered ? " in layers" : "");
 }
 
+// One byte may make their count even, or end a line. Of packed ones no more than the first few are counted.
+std::string surplusRemark(const StoredData& data, uint64_t found, uint64_t needed) {
+    if (data.packing == StoredData::Packing::kOther || found <= needed + 1) return {};
+    const bool is_plain = data.packing == StoredData::Packing::kPlain;
+    return "; " + data.file.filename().string() + " holds " +
+           (is_plain ? std::to_string(found - needed) + " bytes more" : "more bytes") +
+           " than the header's sizes need (" + std::to_string(needed) +
+           "), which were not read: are they right?";
+}
+
 FileFrame frameFor(const FileFacts& facts, const ItkImageHeader& header) {
     FileFrame frame = facts.frame.value_or(frameOf(header, facts.mm_per_unit));
     if (facts.spacing_mm) frame.spacing_mm = *facts.spacing_mm;
@@ -215,7 +226,8 @@ RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const
     const uint64_t voxels = dims[0] * dims[1] * dims[2];
     const uint64_t stored = facts.stored_bytes_per_voxel;
     const uint64_t needed = layers * voxels * (stored > 0 ? stored : header.bytes_per_voxel);
-    checkStoredBytes(needed, countStoredBytes(facts.data, needed), file);
+    const uint64_t found = countStoredBytes(facts.data, needed);
+    checkStoredBytes(needed, found, file);
     RawVolume raw;
     raw.values.reserve(size_t(layers * voxels));
     image.appendValues(raw.values);
@@ -224,7 +236,8 @@ RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const
     const bool flipped = makeRightHanded(frameFor(facts, header), file, raw.geometry, raw.values);
     raw.lacks_patient_axes = !facts.has_patient_space;
     raw.description = facts.format + (flipped ? ", left-handed: third axis reversed" : "") +
-                      (facts.remark.empty() ? "" : ", " + facts.remark) + segmentRemark(raw.segments);
+                      (facts.remark.empty() ? "" : ", " + facts.remark) + segmentRemark(raw.segments) +
+                      (facts.has_other_data ? "" : surplusRemark(facts.data, found, needed));
     return raw;
 }
 
@@ -242,6 +255,7 @@ RawVolume importNrrd(const std::filesystem::path& path, const std::optional<Eige
                     .mm_per_unit = header.mm_per_unit,
                     .has_patient_space = header.has_patient_space,
                     .has_spacing = header.has_spacing,
+                    .has_other_data = header.fields.has_skip,
                     .segments = header.segments,
                     .spacing_mm = spacing_mm};
     if (!header.data_file.empty()) facts.data = StoredData{path.parent_path() / header.data_file};

@@ -3,7 +3,6 @@
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
-#include <itkPNGImageIO.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -33,8 +32,7 @@ itk::ImageIOBase::Pointer makeReader(ItkFormat format) {
     static const std::map<ItkFormat, itk::ImageIOBase::Pointer (*)()> kMakers{
         {ItkFormat::kNrrd, makeIo<itk::NrrdImageIO>},
         {ItkFormat::kNifti, makeIo<itk::NiftiImageIO>},
-        {ItkFormat::kMetaImage, makeIo<itk::MetaImageIO>},
-        {ItkFormat::kPng, makeIo<itk::PNGImageIO>}};
+        {ItkFormat::kMetaImage, makeIo<itk::MetaImageIO>}};
     return kMakers.at(format)();
 }
 

@@ -17,21 +17,36 @@
 namespace bonemill {
 namespace {
 
-thread_local std::string last_error;  // of the library, of this thread
+// Of the library, of this thread.
+thread_local std::string last_error;
+thread_local bool are_counts_wrong = false;
 
-void keepError(const char*, const char* format, va_list arguments) {
+std::string textOf(const char* format, va_list arguments) {
     char text[256];
     std::vsnprintf(text, sizeof text, format, arguments);
-    last_error = text;
+    return text;
+}
+
+void keepError(const char*, const char* format, va_list arguments) {
+    last_error = textOf(format, arguments);
+}
+
+// The library reads on behind a strip that is said to have fewer bytes than it needs, whatever lies
+// there.
+void keepWarning(const char*, const char* format, va_list arguments) {
+    const std::string text = textOf(format, arguments);
+    if (text.find("ByteCounts") != std::string::npos && text.find("ignoring") != std::string::npos)
+        are_counts_wrong = true;
 }
 
 void takeErrors() {
     static std::once_flag once;
     std::call_once(once, [] {
         TIFFSetErrorHandler(keepError);
-        TIFFSetWarningHandler(nullptr);
+        TIFFSetWarningHandler(keepWarning);
     });
     last_error.clear();
+    are_counts_wrong = false;
 }
 
 std::string because() {
@@ -70,6 +85,9 @@ TiffPicture::TiffPicture(const std::filesystem::path& path) : name_(path.string(
     takeErrors();
     file_.reset(TIFFOpen(path.c_str(), "rm"));  // not mapped: a file that shrinks would end this process
     if (!file_) throw UserError(name_ + ": its header cannot be read" + because());
+    if (are_counts_wrong)
+        throw UserError(name_ +
+                        ": says that its pixels have other bytes than they need; the file is damaged");
     if (holdsAnother(file_.get()))
         throw UserError(name_ + ": holds several images; save each slice as a file of its own");
     if (!TIFFSetDirectory(file_.get(), 0)) throw UserError(name_ + ": its header cannot be read" + because());
@@ -141,6 +159,11 @@ void TiffPicture::readTiles(T* pixels) {
     const tmsize_t size = TIFFTileSize(file_.get());
     if (columns == 0 || rows == 0 || size != tmsize_t(uint64_t(columns) * rows * sizeof(T)))
         throw UserError(name_ + ": its tiles are of no possible size; the file is damaged");
+    // The library reads on behind a tile that is said to have fewer bytes than it needs, whatever lies there.
+    const bool is_plain = field<uint16_t>(file_.get(), TIFFTAG_COMPRESSION) == COMPRESSION_NONE;
+    for (uint32_t n = 0; is_plain && n < TIFFNumberOfTiles(file_.get()); ++n)
+        if (TIFFGetStrileByteCount(file_.get(), n) < uint64_t(size))
+            throw UserError(name_ + ": its tiles are said to have fewer bytes than they need; it is damaged");
     std::vector<T> tile(size_t(size) / sizeof(T));
     for (uint32_t y = 0; y < height_; y += std::min(rows, height_ - y))
         for (uint32_t x = 0; x < width_; x += std::min(columns, width_ - x)) {

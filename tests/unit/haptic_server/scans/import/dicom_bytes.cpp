@@ -33,10 +33,24 @@ std::string sopClass(const DicomImage& image) {
 }
 
 std::string pixelBytes(const DicomImage& image) {
+    if (!image.pixel_bytes.empty()) return image.pixel_bytes;
     std::string bytes;
     for (const int16_t v : image.pixels)
         bytes += image.bits == 8 ? std::string(1, char(v)) : number(uint16_t(v), 2);
     return bytes;
+}
+
+int wordBits(const DicomImage& image) {
+    return image.allocated > 0 ? image.allocated : image.bits;
+}
+
+// The first item is an offset table, which may be empty.
+std::string pixelElement(const DicomImage& image) {
+    if (image.fragments.empty())
+        return element(0x7fe00010, wordBits(image) == 8 ? "OB" : "OW", pixelBytes(image));
+    std::string bytes = number(0x00107fe0, 4) + "OB" + number(0, 2) + number(0xffffffff, 4) + item("");
+    for (const std::string& fragment : image.fragments) bytes += item(fragment);
+    return bytes + number(0xe0ddfffe, 4) + number(0, 4);
 }
 
 // Of "slope|intercept"; nothing of an empty text.
@@ -71,7 +85,7 @@ std::string functionalGroups(const DicomImage& image) {
 std::string dicomBytes(const DicomImage& image) {
     const bool is_enhanced = !image.frame_positions.empty();
     std::string bytes =
-        metaHeader(sopClass(image), image.sop_uid, "1.2.840.10008.1.2.1") +
+        metaHeader(sopClass(image), image.sop_uid, image.transfer_syntax) +
         optionalElement(0x00080008, "CS", image.image_type) + element(0x00080016, "UI", sopClass(image)) +
         element(0x00080018, "UI", image.sop_uid) + optionalElement(0x00080032, "TM", image.acquisition_time) +
         optionalElement(0x00080033, "TM", image.content_time) + element(0x00080060, "CS", image.modality) +
@@ -85,14 +99,20 @@ std::string dicomBytes(const DicomImage& image) {
     bytes += optionalElement(0x00200100, "IS", image.temporal_position);
     bytes += shortElement(0x00280002, image.samples_per_pixel) + element(0x00280004, "CS", image.photometric);
     if (image.samples_per_pixel > 1) bytes += shortElement(0x00280006, 0);
-    if (is_enhanced) bytes += element(0x00280008, "IS", std::to_string(image.frame_positions.size()));
+    if (is_enhanced)
+        bytes += element(
+            0x00280008, "IS",
+            image.frame_count.empty() ? std::to_string(image.frame_positions.size()) : image.frame_count);
     bytes += shortElement(0x00280010, image.rows) + shortElement(0x00280011, image.columns);
     if (!is_enhanced && !image.pixel_spacing.empty()) bytes += element(0x00280030, "DS", image.pixel_spacing);
-    bytes += shortElement(0x00280100, image.bits) + shortElement(0x00280101, image.bits) +
-             shortElement(0x00280102, image.bits - 1) + shortElement(0x00280103, image.bits == 16 ? 1 : 0);
-    if (image.samples_per_pixel == 1 && !is_enhanced)
+    const bool is_signed = image.is_signed.value_or(image.bits != 8);
+    bytes += shortElement(0x00280100, wordBits(image)) + shortElement(0x00280101, image.bits) +
+             shortElement(0x00280102, image.high > 0 ? image.high : image.bits - 1) +
+             shortElement(0x00280103, is_signed ? 1 : 0) + image.elements;
+    if (image.samples_per_pixel == 1 && !is_enhanced && image.has_rescale && image.last_elements.empty())
         bytes += element(0x00281052, "DS", decimal(image.intercept)) +
                  element(0x00281053, "DS", decimal(image.slope));
+    bytes += image.last_elements;
     if (image.photometric == "PALETTE COLOR")
         for (const uint32_t table : {0x1101u, 0x1102u, 0x1103u})
             bytes += element(0x00280000 | table, "US", number(256, 2) + number(0, 2) + number(8, 2));
@@ -100,7 +120,7 @@ std::string dicomBytes(const DicomImage& image) {
         for (const uint32_t table : {0x1201u, 0x1202u, 0x1203u})
             bytes += element(0x00280000 | table, "OW", std::string(256, char(table)));
     if (is_enhanced) bytes += functionalGroups(image);
-    if (image.has_pixels) bytes += element(0x7fe00010, image.bits == 8 ? "OB" : "OW", pixelBytes(image));
+    if (image.has_pixels) bytes += pixelElement(image);
     return bytes;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,11 +25,20 @@ struct DicomImage {
     int rows = 4;
     int columns = 5;
     int samples_per_pixel = 1;
-    int bits = 16;
+    int bits = 16;                  // of a value
+    int allocated = 0, high = 0;    // of its word, and its highest bit there; 0: as the value is alone
+    std::optional<bool> is_signed;  // nothing: all but those of 8 bit
+    std::string elements;           // others of group 0028 up to (0028,0fff), as bytes
+    std::string last_elements;      // others from (0028,1050) on, instead of a rescale
+    bool has_rescale = true;
     double slope = 1;
     double intercept = 0;
     std::vector<int16_t> pixels;  // stored values; 8-bit files keep their low bytes
+    std::string pixel_bytes;      // not empty: these instead
+    std::string transfer_syntax = "1.2.840.10008.1.2.1";
+    std::vector<std::string> fragments;  // not empty: compressed pixels, instead
     bool has_pixels = true;
+    std::string frame_count;                   // empty: as many as have positions
     std::vector<std::string> frame_positions;  // not empty: an enhanced multi-frame file
     std::vector<int> frame_phases;             // temporal position of each frame; empty: none says it
     std::string shared_rescale;                // of all frames, as below

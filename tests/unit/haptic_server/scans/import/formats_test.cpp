@@ -173,10 +173,16 @@ TEST(Nifti, aScaleThatIsNoNumberIsRefused) {
     const test::TemporaryFolder folder;
     writeNiftiFile(folder / "a.nii", SampleVolume(), {});
     std::string bytes = readBytes(folder / "a.nii");
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    std::memcpy(bytes.data() + 112, &nan, 4);
+    const float infinity = std::numeric_limits<float>::infinity(),
+                nan = std::numeric_limits<float>::quiet_NaN();
+    std::memcpy(bytes.data() + 112, &infinity, 4);
     writeBytes(folder / "a.nii", bytes);
     expectUserError([&] { importVolume(folder / "a.nii"); }, {"a.nii", "scl_slope"});
+    writeNiftiFile(folder / "b.nii", SampleVolume(), {});
+    bytes = readBytes(folder / "b.nii");
+    std::memcpy(bytes.data() + 116, &nan, 4);
+    writeBytes(folder / "b.nii", bytes);
+    expectUserError([&] { importVolume(folder / "b.nii"); }, {"b.nii", "scl_inter"});
 }
 
 // The file's sform goes, and a qform of the same place comes: no turn, and the first two axes reversed by a

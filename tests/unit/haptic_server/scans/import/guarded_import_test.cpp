@@ -191,6 +191,25 @@ TEST(GuardedImport, deathOfTheReaderNamesTheFileItWasAt) {
     expectUserError([] { importGuarded("file", []() -> RawVolume { _exit(0); }); }, {"file", "ended early"});
 }
 
+// As the kernel does where a control group may take no more.
+TEST(GuardedImport, aReaderThatIsKilledForItsMemoryIsNotCalledDamaged) {
+    const auto beKilled = []() -> RawVolume {
+        noteFileBeingRead("folder/slice7");
+        syscall(SYS_tgkill, getpid(), gettid(), SIGKILL);
+        return {};
+    };
+    try {
+        importGuarded("folder", beKilled);
+        ADD_FAILURE() << "no UserError";
+    } catch (const UserError& error) {
+        const std::string message = error.what();
+        for (const char* word :
+             {"folder/slice7", "killed from outside", "limit of memory", "MiB of memory are free"})
+            EXPECT_NE(message.find(word), std::string::npos) << word << " in: " << message;
+        EXPECT_EQ(message.find("damaged"), std::string::npos) << message;
+    }
+}
+
 // The other thread has noted its file later.
 TEST(GuardedImport, deathOfAThreadNamesTheFileThatTheThreadWasAt) {
     for (const bool is_out_of_stack : {false, true}) {
