@@ -100,7 +100,7 @@ LawFigures slide(Preset preset, const Touch& touch, double voxel) {
         const double down = kPressed * std::min(1.0, (n + kSettleTicks) / 200.0);
         path.push_back({middle + s * kAlong + (touch.height - down) * kNormal, touch.rotation});
     }
-    const RunRecords records = runPathTimed(config, bone, path);
+    const RunRecords records = runPathTimed(config, bone, path).records;
     const double k = config.gradient.coupling.translation_stiffness, most = config.tool.saturation_force;
     return figuresOf(records, kNormal, most * std::tanh(k * kPressed / most));
 }

@@ -70,6 +70,10 @@ void addReportOptions(CLI::App& app, AccuracyReportOptions& report) {
     app.add_option("--out", report.out,
                    "folder for report.md, accuracy.csv, accuracy.json, patch.csv, pareto.png")
         ->required();
+    app.add_option(
+        "--setting", report.settings,
+        "measure this one beside the scene's own, by its name in the report (exact, fast, ...); may be "
+        "given more than once; default: all");
     app.add_option("--budget-us", report.budget_us,
                    "propose the most accurate setting whose ticks (p99.9) fit this many microseconds")
         ->check(within(1e-3, 1e6));

@@ -1,5 +1,7 @@
 #include "haptic_server/lab/accuracy_report/accuracy_report.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <chrono>
 #include <fstream>
@@ -30,7 +32,7 @@ void makeFolder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) throw UserError("--out " + folder.string() + ": cannot be made (" + error.message() + ")");
-    writeTextFile(folder / "report.md", "accuracy-report has not finished\n");
+    writeTextFile(folder / "report.md", "accuracy-report has not measured anything yet\n");
 }
 
 std::string machineName() {
@@ -53,9 +55,55 @@ std::vector<int> shellFactorsOf(const std::vector<AccuracySettings>& settings) {
     return {factors.begin(), factors.end()};
 }
 
-SweepProgress progressOf(size_t count, std::ostream& out) {
-    return [count, &out, start = SteadyClock::now()](const SettingFigures& f, size_t done) {
-        const double left = secondsSince(start) / double(done) * double(count - done);
+double secondsLeft(SteadyClock::time_point start, size_t done, size_t count) {
+    return secondsSince(start) / double(done) * double(count - done);
+}
+
+TruthProgress truthProgress(size_t count, std::ostream& out) {
+    return [count, &out, start = SteadyClock::now()](size_t done) {
+        char text[64];
+        std::snprintf(text, sizeof text, "truth: %zu of %zu strokes; about %.0f s left, then the settings",
+                      done, count, secondsLeft(start, done, count));
+        out << text << std::endl;
+    };
+}
+
+// Keeps what there is at any time.
+class SoFar {
+  public:
+    SoFar(const std::filesystem::path& folder, size_t count) : folder_(folder), count_(count) {}
+    void add(const SettingFigures& figures) {
+        data_.settings.push_back(figures);
+        data_.front = paretoFront(paretoPoints(data_.settings));
+        writeTextFile(folder_ / "accuracy.csv", accuracyCsv(data_));
+        writeTextFile(folder_ / "report.md", unfinishedText(data_.settings.size(), count_));
+    }
+
+  private:
+    std::filesystem::path folder_;
+    size_t count_;
+    ReportData data_;
+};
+
+// How much of the time since it was made this thread did not have the processor, 0 .. 1.
+class TakenShare {
+  public:
+    double now() const { return std::max(0.0, 1 - (processorSeconds() - used_) / secondsSince(start_)); }
+
+  private:
+    static double processorSeconds() {
+        timespec used{};
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+        return double(used.tv_sec) + 1e-9 * double(used.tv_nsec);
+    }
+    SteadyClock::time_point start_ = SteadyClock::now();
+    double used_ = processorSeconds();
+};
+
+SweepProgress progressOf(size_t count, std::ostream& out, SoFar& so_far) {
+    return [count, &out, &so_far, start = SteadyClock::now()](const SettingFigures& f, size_t done) {
+        so_far.add(f);
+        const double left = secondsLeft(start, done, count);
         char text[256];
         std::snprintf(text, sizeof text,
                       "[%2zu/%zu] %s: force error %.3g %%, p99.9 %.3g us; about %.0f s left", done, count,
@@ -64,10 +112,13 @@ SweepProgress progressOf(size_t count, std::ostream& out) {
     };
 }
 
-// Measures everything; the files come later.
-ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::ostream& progress) {
+// Measures everything; the files that need all of it come later.
+ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, const AccuracyReportOptions& options,
+                      std::ostream& progress) {
     const auto settings =
-        sweepSettings(simulation.accuracy, simulation.tools.front().built.model.hasShapes());
+        settingsNamed(options.settings,
+                      sweepSettings(simulation.accuracy, simulation.tools.front().built.model.hasShapes()),
+                      simulation.accuracy);
     const ToolConfig tool_config = toolConfigOf(loaded, *toolsOf(loaded.scene).front());
     const BuiltTool tool = buildTool(tool_config, refinementsOf(settings));
     FixedTickConfig tick = simulation.fixedTick();
@@ -94,7 +145,8 @@ ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::os
 
     progress << "truth along " << strokes.size() << " strokes" << std::endl;
     const int threads = std::clamp(int(std::thread::hardware_concurrency()), 1, kMaxThreads);
-    const auto truth = computeTruth(strokes, tick, bone, probe, threads);
+    const auto truth =
+        computeTruth(strokes, tick, bone, probe, threads, truthProgress(strokes.size(), progress));
 
     AnalyticProbe plane({.tick = tick,
                          .spacing = bone.volume.spacing().minCoeff(),
@@ -105,7 +157,11 @@ ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::os
     const SweepInput input{loaded.scene, bone.volume, bone.lattice.leafCells(), tick.tool, strokes, truth,
                            milling,      plane};
     ReportData data;
-    data.settings = sweep(input, settings, progressOf(settings.size(), progress));
+    SoFar so_far(options.out, settings.size());
+    const TakenShare taken;
+    data.settings = sweep(input, settings, progressOf(settings.size(), progress, so_far));
+    data.taken_share = taken.now();
+    progress << "how large a contact must be" << std::endl;
     data.front = paretoFront(paretoPoints(data.settings));
     data.truth = summaryOf(strokes, truth);
     data.patches = plane.patchErrors();
@@ -130,7 +186,7 @@ std::string accuracyReport(const AccuracyReportOptions& options, std::ostream& p
     progress << "reading the scene's volume" << std::endl;
     Simulation simulation = makeSimulation(loaded);
     for (const std::string& warning : simulation.warnings) progress << "warning: " << warning << '\n';
-    ReportData data = measureAll(loaded, simulation, progress);
+    ReportData data = measureAll(loaded, simulation, options, progress);
     data.budget_us = options.budget_us;
     writeTextFile(out / "accuracy.csv", accuracyCsv(data));
     writeTextFile(out / "patch.csv", patchCsv(data));

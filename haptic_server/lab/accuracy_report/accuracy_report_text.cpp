@@ -9,6 +9,7 @@ namespace bonemill {
 namespace {
 
 constexpr double kStalledBelow = 0.5;  // of the wanted volume
+constexpr double kQuietBelow = 0.05;   // of the processor's time
 
 template <class... Values>
 std::string format(const char* pattern, Values... values) {
@@ -61,6 +62,26 @@ std::string stalledText(const ReportData& data) {
            " of the wanted volume. Their times leave out much of the work of milling.";
 }
 
+// Times of a machine that does other work are bounds.
+std::string loadText(const ReportData& data) {
+    if (data.taken_share < kQuietBelow) return {};
+    const SettingFigures& now = data.settings[indexInForce(data)];
+    return format("**Other programs had %.0f %% of the processor meanwhile: times are bounds.** ",
+                  100 * data.taken_share) +
+           now.name +
+           format(
+               " has a p99.9 from %.3g µs (the shortest pass of each tick) to %.3g µs (the longest); "
+               "errors are not concerned. Measure again on a quiet machine.",
+               now.times.p99_9, now.longest_times.p99_9);
+}
+
+// The error at the best and at the worst of the places.
+std::string placesCell(const SettingFigures& f) {
+    if (f.force_vector_by_place.empty()) return " – |";
+    const auto [least, most] = std::ranges::minmax_element(f.force_vector_by_place);
+    return format(" %.3g .. %.3g |", 100 * *least, 100 * *most);
+}
+
 std::string cell(double value) {
     return format(" %.3g |", value);
 }
@@ -73,17 +94,21 @@ std::string settingRow(const ReportData& data, size_t n) {
                       (data.front[n]   ? " | ✓ |"
                        : isOtherLaw(f) ? " | † |"
                                        : " | |");
-    row += cell(100 * f.errors.force_vector) + cell(100 * f.errors.force) + cell(100 * f.errors.torque) +
-           cell(f.errors.direction / kDegree) + cell(kPerMicrometre * f.errors.position) +
-           cell(kPerMilli * f.errors.rotation) + cell(kPerMicrometre * f.max_penetration) +
-           cell(kPerMilli * f.noise) + cell(100 * f.plane.anisotropy) + cell(kPerMicro * f.closed_energy);
+    row += cell(100 * f.errors.force_vector) + placesCell(f) + cell(100 * f.errors.worst) +
+           cell(100 * f.errors.force) + cell(100 * f.errors.torque) + cell(f.errors.direction / kDegree) +
+           cell(kPerMicrometre * f.errors.position) + cell(kPerMilli * f.errors.rotation) +
+           cell(kPerMicrometre * f.max_penetration) + cell(kPerMilli * f.noise) +
+           cell(100 * f.plane.anisotropy) + cell(kPerMicro * f.closed_energy);
     row += f.removal ? cell(100 * f.removal->error()) + cell(100 * f.removal->progress()) : " – | – |";
 
-    return row + cell(f.times.p50) + cell(f.times.p99) + cell(f.times.p99_9) + cell(f.times.max) + '\n';
+    return row + cell(f.times.p50) + cell(f.times.p99) + cell(f.times.p99_9) + cell(f.longest_times.p99_9) +
+           cell(f.times.max) + '\n';
 }
 
 std::string settingsTable(const ReportData& data) {
     constexpr const char* kColumns[] = {"force error %",
+                                        "by place %",
+                                        "worst tick %",
                                         "its magnitude %",
                                         "torque error %",
                                         "direction error °",
@@ -98,14 +123,16 @@ std::string settingsTable(const ReportData& data) {
                                         "p50 µs",
                                         "p99 µs",
                                         "p99.9 µs",
+                                        "p99.9 of longest pass µs",
                                         "max µs"};
     std::string table = "| | setting | front |", rule = "|--:|---|:-:|";
     for (const char* column : kColumns) table += std::string(" ") + column + " |", rule += "--:|";
     table += '\n' + rule + '\n';
     for (size_t n = 0; n < data.settings.size(); ++n) table += settingRow(data, n);
     const TruthSummary& truth = data.truth;
-    table += "| | *truth* | | 0 | 0 | 0 | 0 | 0 | 0 |" + cell(kPerMicrometre * truth.max_penetration) +
-             cell(kPerMilli * truth.noise) + " |" + cell(kPerMicro * truth.closed_energy) + " | | | | | |\n";
+    table += "| | *truth* | | 0 | 0 | 0 | 0 | 0 | 0 | 0 | 0 |" +
+             cell(kPerMicrometre * truth.max_penetration) + cell(kPerMilli * truth.noise) + " |" +
+             cell(kPerMicro * truth.closed_energy) + " | | | | | | |\n";
     return table;
 }
 
@@ -141,7 +168,9 @@ std::string figuresText(const ReportData& data) {
         "**Errors** are root mean squares over all ticks in which the true force is at least " +
         format("%g N", Errors::kFeltForce) +
         ". The *force error*, by which the settings are ranked, is the length of the difference of the force "
-        "vectors; it and the errors of magnitudes are relative to the root mean square of the true ones. "
+        "vectors; it and the errors of magnitudes are relative to the root mean square of the true ones. *By "
+        "place*: the same at the best and at the worst of the places, relative to the force there. *Worst "
+        "tick*: its largest value, relative to that of all. "
         "**Deepest**: contact point in the tool. **Noise**: root mean square of the force's second "
         "differences from tick to tick. **Closed-path energy**: the least that any closed stroke took from "
         "the hand; below zero a stroke gave energy out.\n\n";
@@ -160,7 +189,8 @@ std::string timesText(const ReportData& data) {
     return "**Times** are of whole ticks, probing and milling together, on this machine (" + data.machine +
            "), one thread, not in real time. The same work runs three times and the shortest time of each "
            "tick counts, so that what other programs take does not; a live session has that on top "
-           "(docs/lab/realtime.md)." +
+           "(docs/lab/realtime.md). With the longest times instead one sees how much that was." +
+           format(" Other programs had %.0f %% of the processor.", 100 * data.taken_share) +
            format(" The scene's tick has %.4g µs.\n\n", kPerMicrosecond * data.tick_period);
 }
 
@@ -207,9 +237,15 @@ std::vector<std::string> reportConclusions(const ReportData& data) {
                                    '.'};
     if (isOtherLaw(now)) lines.back() += " (Its error is the difference to another law's truth, see †.)";
     lines.push_back(nextBetterText(data));
+    if (const std::string load = loadText(data); !load.empty()) lines.push_back(load);
     if (data.budget_us) lines.push_back(budgetText(data));
     if (const std::string stalled = stalledText(data); !stalled.empty()) lines.push_back(stalled);
     return lines;
+}
+
+std::string unfinishedText(size_t measured, size_t of) {
+    return "accuracy-report has not finished: " + std::to_string(measured) + " of " + std::to_string(of) +
+           " settings are measured, and in accuracy.csv\n";
 }
 
 std::string reportText(const ReportData& data) {

@@ -18,16 +18,22 @@ double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 }  // namespace
 
-RunRecords runPathTimed(const FixedTickConfig& config, BoneModel& bone, std::span<const Pose> path_WT) {
-    const std::vector<DeviceInput> path = inputsOf(path_WT, config.dt);
-    RunRecords records = runPath(config, bone, path);
-    for (int pass = 1; pass < kPasses; ++pass) keepShorterTimes(records, runPath(config, bone, path));
-    return records;
+TimedRun::TimedRun(RunRecords first) : records(std::move(first)) {
+    for (const TickRecord& record : records) longest_ns.push_back(record.compute_ns);
 }
 
-void keepShorterTimes(RunRecords& records, const RunRecords& again) noexcept {
-    for (size_t n = 0; n < std::min(records.size(), again.size()); ++n)
+void TimedRun::add(const RunRecords& again) {
+    for (size_t n = 0; n < std::min(records.size(), again.size()); ++n) {
         records[n].compute_ns = std::min(records[n].compute_ns, again[n].compute_ns);
+        longest_ns[n] = std::max<int64_t>(longest_ns[n], again[n].compute_ns);
+    }
+}
+
+TimedRun runPathTimed(const FixedTickConfig& config, BoneModel& bone, std::span<const Pose> path_WT) {
+    const std::vector<DeviceInput> path = inputsOf(path_WT, config.dt);
+    TimedRun run(runPath(config, bone, path));
+    for (int pass = 1; pass < kPasses; ++pass) run.add(runPath(config, bone, path));
+    return run;
 }
 
 std::vector<TickAnswer> answersOf(const RunRecords& records) {
@@ -46,7 +52,9 @@ void ErrorSum::add(const std::vector<TickAnswer>& answers, const std::vector<Tic
         const double force = t.hand_W.force.norm();
         if (force < Errors::kFeltForce) continue;
         ++ticks_;
-        force_vector_ += (a.hand_W.force - t.hand_W.force).squaredNorm();
+        const double difference = (a.hand_W.force - t.hand_W.force).squaredNorm();
+        force_vector_ += difference;
+        worst_ = std::max(worst_, difference);
         force_ += square(a.hand_W.force.norm() - force);
         true_force_ += square(force);
         torque_ += square(a.hand_W.torque.norm() - t.hand_W.torque.norm());
@@ -61,6 +69,7 @@ Errors ErrorSum::errors() const {
     if (ticks_ == 0) return {};
     const double n = double(ticks_);
     return {.force_vector = std::sqrt(force_vector_ / true_force_),
+            .worst = std::sqrt(worst_ * n / true_force_),
             .force = std::sqrt(force_ / true_force_),
             .torque = true_torque_ > 0 ? std::sqrt(torque_ / true_torque_) : 0,
             .direction = std::sqrt(direction_ / n),

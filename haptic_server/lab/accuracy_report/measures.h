@@ -15,13 +15,19 @@ namespace bonemill {
 using PosePath = std::vector<Pose>;  // device poses X_WT, one per tick
 using RunRecords = std::vector<TickRecord>;
 
-// Does the same work kPasses times: the first run's records get the shortest time of each tick, so that what
-// other programs took of the processor does not count. Nothing is milled.
-RunRecords runPathTimed(const FixedTickConfig& config, BoneModel& bone, std::span<const Pose> path_WT);
+// The same work was run several times: compute_ns of the records is the shortest time of each tick, so that
+// what other programs took of the processor does not count; how much that may be, the longest times say.
+struct TimedRun {
+    RunRecords records;
+    std::vector<int64_t> longest_ns;  // of each tick
+
+    explicit TimedRun(RunRecords first);
+    void add(const RunRecords& again);  // of the same work
+};
 inline constexpr int kPasses = 3;
 
-// compute_ns of each tick becomes the smaller one of both runs of the same work.
-void keepShorterTimes(RunRecords& records, const RunRecords& again) noexcept;
+// Runs the path kPasses times. Nothing is milled.
+TimedRun runPathTimed(const FixedTickConfig& config, BoneModel& bone, std::span<const Pose> path_WT);
 
 // What the probes of the report have in common.
 constexpr double kHeaviestShare = 0.6;    // of the coupling's saturation: no probe presses harder
@@ -42,6 +48,7 @@ struct Errors {
     static constexpr double kFeltForce = 0.2;  // N
 
     double force_vector = 0;  // of 1: |difference of the forces|; what the settings are ranked by
+    double worst = 0;         // of 1: the same in the worst tick
     double force = 0;         // of 1
     double torque = 0;        // of 1; 0 where the truth has no torque
     double direction = 0;     // rad between the forces
@@ -58,8 +65,8 @@ class ErrorSum {
     Errors errors() const;
 
   private:
-    double force_vector_ = 0, force_ = 0, true_force_ = 0, torque_ = 0, true_torque_ = 0, direction_ = 0,
-           position_ = 0, rotation_ = 0;
+    double force_vector_ = 0, worst_ = 0, force_ = 0, true_force_ = 0, torque_ = 0, true_torque_ = 0,
+           direction_ = 0, position_ = 0, rotation_ = 0;
     size_t ticks_ = 0;
 };
 

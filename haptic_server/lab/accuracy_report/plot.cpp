@@ -85,19 +85,29 @@ std::string labels(const ReportData& data, const Axes& axes) {
     return text.str();
 }
 
-// Writes one line per chosen setting: p99.9 and error.
-template <class Choose>
-std::string block(const char* name, const ReportData& data, Choose&& choose) {
-    std::vector<std::pair<double, double>> points;
-    for (size_t n = 0; n < data.settings.size(); ++n)
-        if (choose(n)) points.emplace_back(data.settings[n].times.p99_9, errorPercent(data.settings[n]));
-    std::sort(points.begin(), points.end());
-    std::ostringstream text;
-    text << '$' << name << " << END_OF_DATA\n";
-    for (const auto& [time, error] : points) text << time << ' ' << error << '\n';
-    text << "END_OF_DATA\n";
-    return text.str();
-}
+// The chosen settings become a block of data, p99.9 and error each, and what draws it; gnuplot wants no empty
+// one.
+class PlottedSeries {
+  public:
+    template <class Choose>
+    void add(const char* name, const char* style, const ReportData& data, Choose&& choose) {
+        std::vector<std::pair<double, double>> points;
+        for (size_t n = 0; n < data.settings.size(); ++n)
+            if (choose(n)) points.emplace_back(data.settings[n].times.p99_9, errorPercent(data.settings[n]));
+        if (points.empty()) return;
+        std::sort(points.begin(), points.end());
+        blocks_ << '$' << name << " << END_OF_DATA\n";
+        for (const auto& [time, error] : points) blocks_ << time << ' ' << error << '\n';
+        blocks_ << "END_OF_DATA\n";
+        plot_ += std::string(plot_.empty() ? "plot $" : ", \\\n $") + name + " using 1:2 with " + style;
+    }
+    std::string blocks() const { return blocks_.str(); }
+    std::string plot() const { return plot_ + '\n'; }
+
+  private:
+    std::ostringstream blocks_;
+    std::string plot_;
+};
 
 // Says beside the plot what the numbers stand for.
 std::string legend(const ReportData& data) {
@@ -168,17 +178,17 @@ void layOutLabels(std::vector<PlotLabel>& labels) {
 std::string paretoScript(const ReportData& data, const std::filesystem::path& png) {
     const Axes axes(data);
     const auto& all = data.settings;
-    return block("candidates", data, [&](size_t n) { return !isOtherLaw(all[n]); }) +
-           block("other_laws", data, [&](size_t n) { return isOtherLaw(all[n]); }) +
-           block("in_force", data, [&](size_t n) { return all[n].is_in_force; }) +
-           block("front", data, [&](size_t n) { return bool(data.front[n]); }) +
-           settingsOfPicture(data, axes, png) + legend(data) + labels(data, axes) +
-           "plot $front using 1:2 with steps lw 2 lc rgb \"#50a060\" title \"Pareto front\", \\\n"
-           " $candidates using 1:2 with points pt 7 ps 1.3 lc rgb \"#2050a0\" title \"gradient law\", \\\n"
-           " $other_laws using 1:2 with points pt 9 ps 1.5 lc rgb \"#d06050\" title \"other laws: their "
-           "difference\", \\\n"
-           " $in_force using 1:2 with points pt 6 ps 3 lw 2 lc rgb \"#202020\" title \"in force in the "
-           "scene\"\n";
+    PlottedSeries series;
+    series.add("front", "steps lw 2 lc rgb \"#50a060\" title \"Pareto front\"", data,
+               [&](size_t n) { return bool(data.front[n]); });
+    series.add("candidates", "points pt 7 ps 1.3 lc rgb \"#2050a0\" title \"gradient law\"", data,
+               [&](size_t n) { return !isOtherLaw(all[n]); });
+    series.add("other_laws", "points pt 9 ps 1.5 lc rgb \"#d06050\" title \"other laws: their difference\"",
+               data, [&](size_t n) { return isOtherLaw(all[n]); });
+    series.add("in_force", "points pt 6 ps 3 lw 2 lc rgb \"#202020\" title \"in force in the scene\"", data,
+               [&](size_t n) { return all[n].is_in_force; });
+    return series.blocks() + settingsOfPicture(data, axes, png) + legend(data) + labels(data, axes) +
+           series.plot();
 }
 
 }  // namespace bonemill

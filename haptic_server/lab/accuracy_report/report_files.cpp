@@ -11,6 +11,7 @@
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
+#include "common/files/whole_file.h"
 #include "common/text/csv_text.h"
 #include "haptic_server/core/telemetry/fault_names.h"
 
@@ -59,6 +60,11 @@ Columns figuresOf(const SettingFigures& f, bool is_on_front) {
     row["on_pareto_front"] = is_on_front;
     row["force_magnitude_error_percent"] = 100 * f.errors.force;
     row["force_error_percent"] = 100 * f.errors.force_vector;
+    row["force_error_worst_percent"] = 100 * f.errors.worst;
+    const auto [least, most] = std::ranges::minmax_element(f.force_vector_by_place);
+    const bool has_places = !f.force_vector_by_place.empty();
+    row["force_error_best_place_percent"] = has_places ? Columns(100 * *least) : Columns();
+    row["force_error_worst_place_percent"] = has_places ? Columns(100 * *most) : Columns();
     row["torque_error_percent"] = 100 * f.errors.torque;
     row["direction_error_deg"] = f.errors.direction / kDegree;
     row["position_error_um"] = kPerMicrometre * f.errors.position;
@@ -77,6 +83,7 @@ Columns figuresOf(const SettingFigures& f, bool is_on_front) {
     addTimes(row, "tick_", f.times);
     addTimes(row, "probing_", f.probing_times);
     addTimes(row, "milling_", f.milling_times);
+    addTimes(row, "longest_", f.longest_times);
     row["ticks"] = f.ticks;
     row["faults"] = faultNames(f.faults);
     return row;
@@ -222,7 +229,8 @@ std::string accuracyJson(const ReportData& data) {
                       {"machine", data.machine},
                       {"voxel_mm", kPerMillimetre * data.spacing},
                       {"contact_width_voxels", data.contact_width / data.spacing},
-                      {"tick_period_us", kPerMicrosecond * data.tick_period}};
+                      {"tick_period_us", kPerMicrosecond * data.tick_period},
+                      {"processor_taken_percent", 100 * data.taken_share}};
     report["in_force"] = data.settings[in_force].name;
     if (data.budget_us) {
         report["budget_us"] = *data.budget_us;
@@ -235,10 +243,12 @@ std::string accuracyJson(const ReportData& data) {
 }
 
 void writeTextFile(const std::filesystem::path& file, const std::string& text) {
-    std::ofstream stream(file);
+    WholeFile whole(file);
+    std::ofstream stream(whole.part());
     stream << text;
     stream.close();
     if (!stream) throw UserError(file.string() + " cannot be written (" + std::strerror(errno) + ")");
+    whole.finish();
 }
 
 }  // namespace bonemill

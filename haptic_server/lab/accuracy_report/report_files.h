@@ -60,6 +60,7 @@ struct ReportData {
     std::vector<bool> front;  // of settings
     std::vector<PatchErrors> patches;
     std::optional<double> budget_us;
+    double taken_share = 0;  // 0 .. 1: of the time of measuring, that other programs had the processor
 };
 
 bool isOtherLaw(const SettingFigures& figures) noexcept;
@@ -74,11 +75,13 @@ std::string reportText(const ReportData& data);
 std::vector<std::string> reportConclusions(const ReportData& data);
 
 std::string accuracyCsv(const ReportData& data);
+// Before all is measured: what report.md says until then.
+std::string unfinishedText(size_t measured, size_t of);
 std::string patchCsv(const ReportData& data);
 // It is written as readAccuracyFigures() wants it.
 std::string accuracyJson(const ReportData& data);
 
-// Throws UserError.
+// What was there stays until the new is whole. Throws UserError.
 void writeTextFile(const std::filesystem::path& file, const std::string& text);
 
 // The picture of force error against tick time: a whole gnuplot script that writes `png`, a path from where

@@ -1,9 +1,12 @@
 #include "haptic_server/lab/accuracy_report/sweep.h"
 
+#include <strings.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "common/base/user_error.h"
 #include "haptic_server/scene/setup/scene_accuracy.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 
@@ -83,42 +86,54 @@ struct SharedBone {
         : bone(VoxelVolume(input.volume), input.leaf_cells, shell), history(bone) {}
 };
 
-void addTimes(const RunRecords& records, std::vector<int64_t>& durations) {
-    for (const TickRecord& record : records) durations.push_back(record.compute_ns);
-}
+struct Durations {
+    std::vector<int64_t> shortest, longest;  // ns, of the passes
+
+    void add(const TimedRun& run) {
+        for (const TickRecord& record : run.records) shortest.push_back(record.compute_ns);
+        longest.insert(longest.end(), run.longest_ns.begin(), run.longest_ns.end());
+    }
+    void add(const Durations& more) {
+        shortest.insert(shortest.end(), more.shortest.begin(), more.shortest.end());
+        longest.insert(longest.end(), more.longest.begin(), more.longest.end());
+    }
+};
 
 void probe(const SweepInput& input, const FixedTickConfig& tick, BoneModel& bone, SettingFigures& figures,
-           std::vector<int64_t>& durations) {
+           Durations& durations) {
     ErrorSum errors;
     NoiseSum noise;
     figures.closed_energy = INFINITY;
     for (size_t n = 0; n < input.strokes.size(); ++n) {
-        const RunRecords records = runPathTimed(tick, bone, input.strokes[n].device);
-        const std::vector<TickAnswer> answers = answersOf(records);
+        const TimedRun run = runPathTimed(tick, bone, input.strokes[n].device);
+        const std::vector<TickAnswer> answers = answersOf(run.records);
         errors.add(answers, input.truth[n].answers);
+        ErrorSum here;
+        here.add(answers, input.truth[n].answers);
+        if (here.errors().ticks > 0) figures.force_vector_by_place.push_back(here.errors().force_vector);
         noise.add(answers);
         const PathEnergy energy = energyOf(answers, input.strokes[n].device);
         figures.closed_energy = std::min(figures.closed_energy, energy.at_end);
         figures.lowest_energy = std::min(figures.lowest_energy, energy.lowest);
-        for (const TickRecord& record : records) {
+        for (const TickRecord& record : run.records) {
             figures.max_penetration = std::max(figures.max_penetration, record.max_penetration);
             figures.faults |= record.faults;
         }
-        addTimes(records, durations);
+        durations.add(run);
     }
     figures.errors = errors.errors();
     figures.noise = noise.noise();
 }
 
 void mill(const SweepInput& input, const FixedTickConfig& tick, SharedBone& shared, SettingFigures& figures,
-          std::vector<int64_t>& durations) {
+          Durations& durations) {
     MillingRun run = millAndRestore(tick, shared.bone, shared.history, input.milling);
+    TimedRun timed(std::move(run.records));
     for (int pass = 1; pass < kPasses; ++pass)
-        keepShorterTimes(run.records,
-                         millAndRestore(tick, shared.bone, shared.history, input.milling).records);
+        timed.add(millAndRestore(tick, shared.bone, shared.history, input.milling).records);
     figures.removal = {run.removed, run.swept, run.wanted};
-    for (const TickRecord& record : run.records) figures.faults |= record.faults;
-    addTimes(run.records, durations);
+    for (const TickRecord& record : timed.records) figures.faults |= record.faults;
+    durations.add(timed);
 }
 
 SettingFigures measure(const SweepInput& input, const AccuracySettings& settings, SharedBone& shared) {
@@ -130,15 +145,16 @@ SettingFigures measure(const SweepInput& input, const AccuracySettings& settings
     figures.settings = settings;
 
     figures.is_in_force = settings == accuracyOf(input.scene);
-    std::vector<int64_t> probing, milling;
+    Durations probing, milling;
     probe(input, tick, shared.bone, figures, probing);
     if (!input.milling.empty()) mill(input, tick, shared, figures, milling);
     figures.plane = input.plane.measure(settings);
-    figures.probing_times = timesOf(probing);
-    figures.milling_times = timesOf(milling);
-    probing.insert(probing.end(), milling.begin(), milling.end());
-    figures.ticks = probing.size();
-    figures.times = timesOf(std::move(probing));
+    figures.probing_times = timesOf(probing.shortest);
+    figures.milling_times = timesOf(milling.shortest);
+    probing.add(milling);
+    figures.ticks = probing.shortest.size();
+    figures.times = timesOf(std::move(probing.shortest));
+    figures.longest_times = timesOf(std::move(probing.longest));
     return figures;
 }
 
@@ -152,6 +168,26 @@ std::vector<AccuracySettings> sweepSettings(const AccuracySettings& of_scene, bo
     choices.vary(presetSettings(Preset::kThesis2012), &AccuracySettings::shell_factor, {1, 2});
     choices.add(of_scene);
     return choices.list;
+}
+
+std::vector<AccuracySettings> settingsNamed(const std::vector<std::string>& names,
+                                            const std::vector<AccuracySettings>& all,
+                                            const AccuracySettings& of_scene) {
+    if (names.empty()) return all;
+    std::string known;
+    for (const AccuracySettings& settings : all) known += "\n  " + settingsName(settings);
+    Choices chosen;
+    for (const std::string& name : names) {
+        const auto isNamed = [&](const AccuracySettings& settings) {
+            return strcasecmp(settingsName(settings).c_str(), name.c_str()) == 0;
+        };
+        const auto found = std::ranges::find_if(all, isNamed);
+        if (found == all.end())
+            throw UserError("--setting " + name + ": there is no such setting; there are" + known);
+        chosen.add(*found);
+    }
+    chosen.add(of_scene);
+    return chosen.list;
 }
 
 scene::Scene sceneWith(const scene::Scene& scene, const AccuracySettings& settings) {

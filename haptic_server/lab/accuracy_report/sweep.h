@@ -17,14 +17,15 @@ namespace bonemill {
 
 struct SettingFigures {
     AccuracySettings settings;
-    std::string name;            // settingsName()
-    bool is_in_force = false;    // the scene's own
-    Errors errors;               // along the probing path; for other laws differences, not errors
-    double max_penetration = 0;  // m
-    double noise = 0;            // N
-    double closed_energy = 0;    // J: least that any closed stroke took from the hand
-    double lowest_energy = 0;    // J: anywhere on the strokes
-    PlaneErrors plane;           // burr on a plane, closed form
+    std::string name;          // settingsName()
+    bool is_in_force = false;  // the scene's own
+    Errors errors;             // along the probing path; for other laws differences, not errors
+    std::vector<double> force_vector_by_place;  // the same of each stroke; only of those with truth
+    double max_penetration = 0;                 // m
+    double noise = 0;                           // N
+    double closed_energy = 0;                   // J: least that any closed stroke took from the hand
+    double lowest_energy = 0;                   // J: anywhere on the strokes
+    PlaneErrors plane;                          // burr on a plane, closed form
     struct Removal {
         double removed = 0, swept = 0, wanted = 0;  // m³, as in MillingRun
         double error() const { return swept > 0 ? removed / swept - 1 : 0; }
@@ -35,6 +36,7 @@ struct SettingFigures {
     std::optional<Removal> removal;  // none where the scene does not mill
     TickTimes times;                 // of all ticks
     TickTimes probing_times, milling_times;
+    TickTimes longest_times;  // of all ticks, the longest of the passes
     size_t ticks = 0;
     uint32_t faults = 0;  // TickFault bits
 };
@@ -59,6 +61,12 @@ std::vector<SettingFigures> sweep(const SweepInput& input, const std::vector<Acc
 // These are the presets, one knob at a time around balanced and thesis_2012, the cheapest there is, and the
 // scene's own. Without `has_shapes` there are only grids. No two are equal.
 std::vector<AccuracySettings> sweepSettings(const AccuracySettings& of_scene, bool has_shapes);
+
+// These are those of `all` with one of the names (capitals do not matter), and `of_scene`; all, if there is
+// no name. Throws UserError where nothing has a name.
+std::vector<AccuracySettings> settingsNamed(const std::vector<std::string>& names,
+                                            const std::vector<AccuracySettings>& all,
+                                            const AccuracySettings& of_scene);
 
 // This is the scene with every knob of its accuracy message at these settings; normals and switchable stay.
 scene::Scene sceneWith(const scene::Scene& scene, const AccuracySettings& settings);

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
+#include <mutex>
 #include <thread>
 
 #include "haptic_server/lab/accuracy_report/analytic_probe.h"
@@ -146,16 +147,22 @@ AccuracySettings truthSettings() noexcept {
 }
 
 std::vector<Truth> computeTruth(const std::vector<ProbingStroke>& strokes, const FixedTickConfig& tick,
-                                const BoneModel& bone, const TouchProbe& probe, int threads) {
+                                const BoneModel& bone, const TouchProbe& probe, int threads,
+                                const TruthProgress& progress) {
     std::vector<Truth> truth(strokes.size());
     std::vector<std::exception_ptr> failures(strokes.size());
     std::atomic<size_t> next{0};
+    std::mutex telling;
+    size_t done = 0;
     {
         std::vector<std::jthread> workers;
         for (int n = 0; n < threads; ++n)
             workers.emplace_back([&] {
                 for (size_t i = next++; i < strokes.size(); i = next++) try {
                         truth[i] = computeOne(strokes[i], tick, bone, probe);
+                        const std::lock_guard only(telling);
+                        ++done;
+                        if (progress) progress(done);
                     } catch (...) {
                         failures[i] = std::current_exception();
                     }

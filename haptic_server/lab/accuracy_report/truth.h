@@ -2,6 +2,8 @@
 // as finely as can be waited for; for that, a part of the bone with denser voxels and the same surface.
 #pragma once
 
+#include <functional>
+
 #include "haptic_server/core/volume/voxel_volume.h"
 #include "haptic_server/lab/accuracy_report/measures.h"
 #include "haptic_server/lab/accuracy_report/probing_path.h"
@@ -24,9 +26,12 @@ int wantedRefinement(double spacing, const FixedTickConfig& tick) noexcept;
 // refined 4 times, double precision, the most iterations.
 AccuracySettings truthSettings() noexcept;
 
-// There is one for each stroke. `tick` gives the rest of the configuration. It uses `threads` at a time.
+// There is one for each stroke. `tick` gives the rest of the configuration. It uses `threads` at a time, each
+// of which says when one is there.
+using TruthProgress = std::function<void(size_t done)>;
 std::vector<Truth> computeTruth(const std::vector<ProbingStroke>& strokes, const FixedTickConfig& tick,
-                                const BoneModel& bone, const TouchProbe& probe, int threads);
+                                const BoneModel& bone, const TouchProbe& probe, int threads,
+                                const TruthProgress& progress = {});
 
 // Holds the voxels of `box` (indices -1 .. dims, both ends included) and `times` - 1 further ones between any
 // two neighbours per axis, with the trilinear density: the trilinear iso-surface stays the same but for

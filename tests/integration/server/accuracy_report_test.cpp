@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -83,14 +84,29 @@ TEST_F(AccuracyReport, WritesAllFilesAndProposesWithinTheBudget) {
     EXPECT_NE(finished.err.find(" s left"), std::string::npos);
 }
 
+// One that takes longer than another is measured alone, and what ends too early leaves what it has.
+TEST_F(AccuracyReport, MeasuresWhatIsAskedForAndKeepsWhatItHas) {
+    std::vector<std::string> call = arguments("some");
+    call.insert(call.end(), {"--setting", "FAST", "--setting", "exact"});
+    test::Process process(call);
+    ASSERT_TRUE(test::waitFor([&] { return process.errSoFar().find("[ 1/3] ") != std::string::npos; }));
+    process.signal(SIGKILL);
+    EXPECT_EQ(process.wait().exit_code, 128 + SIGKILL);
+    EXPECT_NE(process.errSoFar().find("strokes; about "), std::string::npos) << process.errSoFar();
+    EXPECT_GE(linesOf(readFile(folder_ / "some/accuracy.csv")), 2);
+    EXPECT_NE(readFile(folder_ / "some/report.md").find(" of 3 settings are measured"), std::string::npos);
+    EXPECT_FALSE(isThere("some/accuracy.json"));
+}
+
 TEST_F(AccuracyReport, WithoutGnuplotTheFiguresAreWrittenAllTheSame) {
     std::vector<std::string> call = arguments("out");
+    call.insert(call.end(), {"--setting", "fast"});
     call[0] = test::binDir() + "/bonemill_lab";
     call.insert(call.begin(), {"/usr/bin/env", "PATH=" + folder_.path().string()});
     const Finished finished = run(call);
     EXPECT_EQ(finished.exit_code, 2);
     EXPECT_NE(finished.err.find("error: gnuplot cannot be run"), std::string::npos) << finished.err;
-    EXPECT_GT(linesOf(readFile(folder_ / "out/accuracy.csv")), 18);
+    EXPECT_EQ(linesOf(readFile(folder_ / "out/accuracy.csv")), 3) << "fast, and the scene's own";
     EXPECT_NE(readFile(folder_ / "out/report.md").find("# Accuracy and time: tiny"), std::string::npos);
     EXPECT_FALSE(isThere("out/pareto.png"));
 }
@@ -110,6 +126,9 @@ TEST_F(AccuracyReport, BadInputIsOneClearLine) {
     expectRefused(call, "accuracy.iterations");
     call[3] = folder_ / "nowhere.textproto";
     expectRefused(call, "nowhere.textproto");
+    call = arguments("unnamed");
+    call.insert(call.end(), {"--setting", "exacter"});
+    expectRefused(call, "--setting exacter: there is no such setting; there are\n  thesis_2012\n  fast\n");
     for (const char* budget : {"0", "-5", "soon"}) {
         call = arguments("out");
         call.insert(call.end(), {"--budget-us", budget});

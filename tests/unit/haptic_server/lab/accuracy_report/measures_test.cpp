@@ -49,6 +49,14 @@ TEST(Errors, MagnitudeDirectionAndPoseAreToldApart) {
     EXPECT_NEAR(errors.force_vector, std::sqrt(squared) / 2, 1e-12);
 }
 
+TEST(Errors, TheWorstTickIsKnownBesideTheMean) {
+    const std::vector<TickAnswer> truth(4, answer({0, 0, 2}));
+    std::vector<TickAnswer> answers = truth;
+    answers[2].hand_W.force.x() = 1;
+    EXPECT_NEAR(errorsOf(answers, truth).force_vector, 0.25, 1e-12);
+    EXPECT_NEAR(errorsOf(answers, truth).worst, 0.5, 1e-12);
+}
+
 TEST(Errors, AreRootMeanSquaresOverSeveralPathsRelativeToTheTruth) {
     ErrorSum sum;
     sum.add({answer({0, 0, 1.3})}, {answer({0, 0, 1})});
@@ -129,14 +137,16 @@ TEST(PathEnergy, ForceThatLagsTakesAndForceThatLeadsGives) {
     EXPECT_NEAR(energyOf(motor, device).lowest, -work, 1e-3 * work);
 }
 
-TEST(TimedRun, TheShorterOfTwoRunsCounts) {
+TEST(TimedRun, KeepsTheShortestAndTheLongestTimes) {
     RunRecords first(3), second(3);
     first[0].compute_ns = 10, first[1].compute_ns = 500, first[2].compute_ns = 12;
     second[0].compute_ns = 11, second[1].compute_ns = 9, second[2].compute_ns = 900;
-    keepShorterTimes(first, second);
-    EXPECT_EQ(first[0].compute_ns, 10);
-    EXPECT_EQ(first[1].compute_ns, 9);
-    EXPECT_EQ(first[2].compute_ns, 12);
+    TimedRun run(first);
+    run.add(second);
+    EXPECT_EQ(run.records[0].compute_ns, 10);
+    EXPECT_EQ(run.records[1].compute_ns, 9);
+    EXPECT_EQ(run.records[2].compute_ns, 12);
+    EXPECT_EQ(run.longest_ns, (std::vector<int64_t>{11, 500, 900}));
 }
 
 }  // namespace

@@ -105,6 +105,31 @@ TEST(Conclusions, WarnOfTimesWithoutMilling) {
     EXPECT_TRUE(contains(lines[2], "with: fast (10 %) of the wanted volume"));
 }
 
+TEST(Conclusions, SayThatTimesOfALoadedMachineAreBounds) {
+    ReportData data = smallReport();
+    data.taken_share = 0.3;
+    data.settings[2].longest_times.p99_9 = 175;
+    const auto lines = reportConclusions(data);
+    ASSERT_EQ(lines.size(), 3u);
+    EXPECT_TRUE(contains(lines[2], "had 30 % of the processor"));
+    EXPECT_TRUE(
+        contains(lines[2], "balanced has a p99.9 from 50 µs (the shortest pass of each tick) to 175 µs"));
+    data.taken_share = 0.01;
+    EXPECT_EQ(reportConclusions(data).size(), 2u);
+}
+
+TEST(AccuracyCsv, HasTheWorstTickAndTheSpreadOverPlaces) {
+    ReportData data = smallReport();
+    data.settings[0].errors.worst = 0.9;
+    data.settings[0].force_vector_by_place = {0.2, 0.1, 0.4};
+    const auto rows = cellsOf(accuracyCsv(data));
+    EXPECT_EQ(cellAt(rows, 1, "force_error_worst_percent"), "90");
+    EXPECT_EQ(cellAt(rows, 1, "force_error_best_place_percent"), "10");
+    EXPECT_EQ(cellAt(rows, 1, "force_error_worst_place_percent"), "40");
+    EXPECT_EQ(cellAt(rows, 2, "force_error_worst_place_percent"), "");
+    EXPECT_TRUE(contains(reportText(data), " 10 .. 40 | 90 |"));
+}
+
 TEST(ReportText, HasTheTableAndSaysWhatOtherLawsErrorsAreNot) {
     const std::string text = reportText(smallReport());
     EXPECT_TRUE(contains(text, "**balanced** (in force) | ✓ |"));
@@ -128,7 +153,7 @@ TEST(WriteTextFile, SaysWhereItCannotWrite) {
         writeTextFile("/dev/null/x.csv", "a");
         FAIL();
     } catch (const UserError& error) {
-        EXPECT_TRUE(contains(error.what(), "/dev/null/x.csv cannot be written"));
+        EXPECT_TRUE(contains(error.what(), "/dev/null/x.csv: cannot be written"));
     }
 }
 

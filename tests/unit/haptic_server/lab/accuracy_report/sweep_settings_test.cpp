@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "common/base/user_error.h"
 #include "haptic_server/lab/accuracy_report/sweep.h"
 #include "haptic_server/scene/setup/scene_accuracy.h"
 
@@ -27,6 +28,14 @@ TEST(SweepSettings, HoldThePresetsTheScenesOwnAndNoTwoEqual) {
         EXPECT_GE(all.size(), 18u);
         EXPECT_LE(all.size(), 29u);
     }
+}
+
+TEST(SweepSettings, AreChosenByName) {
+    const auto all = sweepSettings(kOdd, true);
+    EXPECT_EQ(settingsNamed({}, all, kOdd), all);
+    const auto chosen = settingsNamed({"Exact", "fast", "exact"}, all, kOdd);
+    EXPECT_EQ(chosen, (std::vector{presetSettings(Preset::kExact), presetSettings(Preset::kFast), kOdd}));
+    EXPECT_THROW(settingsNamed({"fast", "faster"}, all, kOdd), UserError);
 }
 
 TEST(SweepSettings, AMeshToolHasOnlyGrids) {
