@@ -12,7 +12,7 @@ namespace bonemill {
 struct StaleRampConfig {
     int64_t stale_after_ns =
         20'000'000;  // 20 periods of a 1 kHz peer: more than any hiccup of a healthy machine
-    int64_t ramp_down_ns = 50'000'000;  // fast enough to be safe, slow enough not to kick
+    int64_t ramp_down_ns = 30'000'000;  // fast enough to be safe, slow enough not to kick
     int64_t ramp_up_ns = 300'000'000;   // slow enough for the hand to notice before it pushes
 };
 

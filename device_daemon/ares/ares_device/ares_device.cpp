@@ -12,7 +12,7 @@ namespace {
 
 // As the force that comes in when the device engages, and the one that goes when the server falls silent.
 constexpr double kWallsFadeIn = 0.3;    // s
-constexpr double kWallsFadeOut = 0.05;  // s
+constexpr double kWallsFadeOut = 0.03;  // s
 
 DeviceCapabilities capabilitiesOf(const AresDeviceConfig& config) {
     DeviceCapabilities capabilities{};
@@ -66,7 +66,10 @@ bool AresDevice::read(double elapsed, DeviceReading& reading) noexcept {
     since_heard_ += elapsed;
     has_pose_ = false;
     JointReading joints;
-    if (!joints_.readJoints(elapsed, joints)) return false;
+    if (!joints_.readJoints(elapsed, joints)) {
+        reading.fault = joints.fault;
+        return false;
+    }
     reading.buttons = joints.buttons;
     reading.status = joints.status;
     reading.fault = joints.fault;

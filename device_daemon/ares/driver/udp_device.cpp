@@ -63,6 +63,7 @@ StopCause stopCauseOf(uint32_t faults) noexcept {
 
 bool UdpJointDevice::readJoints(double, JointReading& reading) noexcept {
     const wire::JointState* state = device_.read();
+    if (device_.isNonsense()) reading.fault = StopCause::kImplausiblePose;
     if (!state) return false;
     reading.q = Eigen::Map<const Vector6d>(state->q);
     reading.q_dot = Eigen::Map<const Eigen::Matrix<float, 6, 1>>(state->qd).cast<double>();
@@ -97,7 +98,9 @@ auto UdpDevice<Packets>::read() noexcept -> const State* {
     const int64_t now_ns = monotonicNowNs();
     link_.poll(now_ns);
     told_fault_ = std::exchange(newest_fault_, session().state().first_fault);
-    return session().hasState() && !session().isLost(now_ns) ? &session().state() : nullptr;
+    is_nonsense_ = std::exchange(told_nonsense_, session().nonsenseCount()) != session().nonsenseCount();
+    const bool is_there = session().hasState() && !session().isLost(now_ns);
+    return is_there && !is_nonsense_ ? &session().state() : nullptr;
 }
 
 template <class Packets>

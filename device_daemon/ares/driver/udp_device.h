@@ -39,8 +39,10 @@ class UdpDevice {
 
     bool waitForSample(int64_t deadline_ns) noexcept { return link_.waitForState(deadline_ns); }
 
-    // Returns the newest state; null when the controller is silent.
+    // Returns the newest state; null when the controller is silent, or has just said what are no numbers.
     const State* read() noexcept;
+    // The second was so.
+    bool isNonsense() const noexcept { return is_nonsense_; }
     // Of that state.
     uint32_t status() const noexcept;
     // The first cause in the period in which it is heard, since who hears it latches it; from then on the
@@ -63,6 +65,8 @@ class UdpDevice {
     uint16_t controlword(const Wish& wish) noexcept;
 
     wire::HostLink<Packets> link_;
+    uint32_t told_nonsense_ = 0;  // of the session's count
+    bool is_nonsense_ = false;
     uint32_t newest_fault_ = 0;  // the controller's first fault
     uint32_t told_fault_ = 0;    // the same, in the period before
     int resets_left_ = 0;        // commands that still carry the order to reset

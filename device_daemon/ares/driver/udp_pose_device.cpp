@@ -103,6 +103,7 @@ DeviceCapabilities UdpPoseDevice::capabilities() const noexcept {
 bool UdpPoseDevice::read(double, DeviceReading& reading) noexcept {
     reading = {};
     const wire::PoseState* state = device_.read();
+    if (device_.isNonsense()) reading.fault = StopCause::kImplausiblePose;
     if (!state) return false;
     reading.buttons = buttonsOf(state->inputs);
     reading.status = device_.status();

@@ -3,7 +3,7 @@
 //
 // read() returns false for a pose that is none and after a pose that jumped (PoseGuard); status, buttons,
 // fault and motors' load of the reading are filled all the same, and its pose is not. Of a silent bridge
-// nothing is.
+// nothing is, and of one that says what are no numbers the fault alone.
 //
 // Making one throws UserError. Everything else is RT-safe but for the socket's system calls; one thread uses
 // it.

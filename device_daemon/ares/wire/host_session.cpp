@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <random>
 #include <type_traits>
 
@@ -50,6 +51,12 @@ const char* implausibleFigure(const Describe& d) noexcept {
     return figureOfAnotherKind<Packets>(d);
 }
 
+bool saysTheSame(Describe a, Describe b) noexcept {
+    a.header = b.header = {};
+    a.crc = b.crc = 0;
+    return std::memcmp(&a, &b, sizeof(Describe)) == 0;
+}
+
 }  // namespace
 
 template <class Packets>
@@ -74,9 +81,14 @@ bool HostSession<Packets>::take(std::span<const std::byte> bytes, const Endpoint
 
 template <class Packets>
 bool HostSession<Packets>::takeState(std::span<const std::byte> bytes, int64_t now_ns) noexcept {
-    const auto state = open<State>(bytes);
+    const auto state = openWhole<State>(bytes);
     if (!is_described_ || !state || state->header.session != session_) {
         flow_.reject(is_described_);
+        return false;
+    }
+    if (!isSound(*state)) {
+        nonsense_count_ += flow_.skip(state->header.sequence);
+        flow_.reject(true);
         return false;
     }
     if (!flow_.accept(state->header.sequence, state->reflected_sequence, sequence_, now_ns)) return false;
@@ -93,8 +105,10 @@ void HostSession<Packets>::takeDescription(std::span<const std::byte> bytes, int
         flow_.reject(is_described_);
         return;
     }
-    if (is_described_) {  // it answers a question that was asked twice
-        flow_.skip(description->header.sequence);
+    if (is_described_) {
+        const bool is_new = flow_.skip(description->header.sequence);
+        // The same again answers a question that was asked twice; another one is another device's.
+        if (is_new && !saysTheSame(*description, description_)) beginToAsk();
         return;
     }
     refused_figure_ = implausibleFigure<Packets>(*description);

@@ -1,9 +1,9 @@
 // This is the host's side of the wire, without a socket and without a clock: it asks a controller for its
 // description, believes what that controller then says, and makes the commands that answer it.
 //
-// A session has a random number and lasts until the controller is silent for longer than the watchdog; then
-// the host asks again under another number, for ever. Times are CLOCK_MONOTONIC ns. It is RT-safe after
-// construction, for one thread.
+// A session has a random number and lasts until the controller is silent for longer than the watchdog, or
+// describes itself as another than before; then the host asks again under another number, for ever. Times are
+// CLOCK_MONOTONIC ns. It is RT-safe after construction, for one thread.
 #pragma once
 
 #include <cstddef>
@@ -60,6 +60,9 @@ class HostSession {
     // The same of descriptions, whose count tells when there is another one.
     const Describe& description() const noexcept { return description_; }
     uint32_t descriptionCount() const noexcept { return description_count_; }
+    // So many states of its own were whole, but their numbers were none: who sends such is not to be
+    // believed.
+    uint32_t nonsenseCount() const noexcept { return nonsense_count_; }
     // True if a state has come in this session.
     bool hasState() const noexcept { return has_state_; }
 
@@ -83,6 +86,7 @@ class HostSession {
     bool has_state_ = false;
     const char* refused_figure_ = nullptr;  // a literal
     uint32_t description_count_ = 0;
+    uint32_t nonsense_count_ = 0;
     Describe description_{};
     State state_{};
     PacketFlow flow_;

@@ -38,10 +38,6 @@ bool areMissing(const T (&values)[N]) noexcept {
     return std::all_of(values, values + N, [](T x) { return std::isnan(x); });
 }
 
-bool isSound(const JointState& s) noexcept {
-    return areFinite(s.q) && areFinite(s.qd) && areFinite(s.force);
-}
-
 bool isSound(const JointCommand& command) noexcept {
     return areFinite(command.force);
 }
@@ -58,18 +54,22 @@ bool isSound(const Describe& d) noexcept {
     return text_ends && areFinite(figures);
 }
 
+bool isSound(const PoseCommand& command) noexcept {
+    return areFinite(command.wrench);
+}
+
+}  // namespace
+
+bool isSound(const JointState& s) noexcept {
+    return areFinite(s.q) && areFinite(s.qd) && areFinite(s.force);
+}
+
 bool isSound(const PoseState& s) noexcept {
     const bool has_no_motion = areMissing(s.v_DT) && areMissing(s.w_DT);
     const bool has_motion = areFinite(s.v_DT) && areFinite(s.w_DT);
     return areFinite(s.p_DT) && areFinite(s.q_DT) && (has_motion || has_no_motion) && std::isfinite(s.load) &&
            (areFinite(s.applied) || areMissing(s.applied));
 }
-
-bool isSound(const PoseCommand& command) noexcept {
-    return areFinite(command.wrench);
-}
-
-}  // namespace
 
 template <class Packet>
 void seal(Packet& packet, uint32_t session, uint32_t sequence) noexcept {
@@ -83,13 +83,19 @@ void seal(Packet& packet, uint32_t session, uint32_t sequence) noexcept {
 }
 
 template <class Packet>
-std::optional<Packet> open(std::span<const std::byte> bytes) noexcept {
+std::optional<Packet> openWhole(std::span<const std::byte> bytes) noexcept {
     if (bytes.size() != sizeof(Packet) || claimedType(bytes) != kTypeOf<Packet>) return std::nullopt;
     Packet packet;
     std::memcpy(&packet, bytes.data(), sizeof(Packet));
     if (packet.header.length != sizeof(Packet)) return std::nullopt;
-    if (packet.crc != crcOf(bytes.first(offsetof(Packet, crc))) || !isSound(packet)) return std::nullopt;
+    if (packet.crc != crcOf(bytes.first(offsetof(Packet, crc)))) return std::nullopt;
     return packet;
+}
+
+template <class Packet>
+std::optional<Packet> open(std::span<const std::byte> bytes) noexcept {
+    const auto packet = openWhole<Packet>(bytes);
+    return packet && isSound(*packet) ? packet : std::nullopt;
 }
 
 std::optional<PacketType> claimedType(std::span<const std::byte> bytes) noexcept {
@@ -106,6 +112,8 @@ template void seal(DescribeRequest&, uint32_t, uint32_t) noexcept;
 template void seal(Describe&, uint32_t, uint32_t) noexcept;
 template void seal(PoseState&, uint32_t, uint32_t) noexcept;
 template void seal(PoseCommand&, uint32_t, uint32_t) noexcept;
+template std::optional<JointState> openWhole(std::span<const std::byte>) noexcept;
+template std::optional<PoseState> openWhole(std::span<const std::byte>) noexcept;
 template std::optional<JointState> open(std::span<const std::byte>) noexcept;
 template std::optional<JointCommand> open(std::span<const std::byte>) noexcept;
 template std::optional<DescribeRequest> open(std::span<const std::byte>) noexcept;

@@ -219,6 +219,12 @@ void seal(Packet& packet, uint32_t session, uint32_t sequence) noexcept;
 template <class Packet>
 std::optional<Packet> open(std::span<const std::byte> bytes) noexcept;
 
+// The same whatever its numbers and text are; isSound() says of those what open() asks of them.
+template <class Packet>
+std::optional<Packet> openWhole(std::span<const std::byte> bytes) noexcept;
+bool isSound(const JointState& state) noexcept;
+bool isSound(const PoseState& state) noexcept;
+
 // Returns the type that the header claims; nothing if there is no header of ours.
 std::optional<PacketType> claimedType(std::span<const std::byte> bytes) noexcept;
 

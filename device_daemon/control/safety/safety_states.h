@@ -34,7 +34,7 @@ class MotionMonitor {
     static constexpr double kEnergyTime = 1;    // s
     static constexpr double kMismatchTime =
         0.02;  // s: both forces are smoothed over it, which hides any amplifier's lag
-    static constexpr double kMismatchLasts = 0.05;  // s: a mismatch that lasts longer is one
+    static constexpr double kMismatchLasts = 0.03;  // s: a mismatch that lasts longer is one
     static constexpr double kMismatchShare = 0.25;  // of the ordered force
     static constexpr double kMismatchFloor = 0.05;  // of the device's largest force
     static constexpr int kFastSamples = 3;          // in a row: one alone may be noise
@@ -78,7 +78,7 @@ struct SafetyConfig {
     double engage_force = 1;      // N: the commanded wrench is small up to here
     double engage_torque = 0.02;  // N·m
     double engage_time = 0.3;     // s
-    double ramp_time = 0.05;      // s
+    double ramp_time = 0.03;      // s
     double silence = 0.02;        // s without a reading: the device is lost
 };
 

@@ -23,7 +23,7 @@ using test::Process;
 
 constexpr double kLongestWait_s =
     0.005;  // five periods: ticks that are farther apart do not follow one another
-constexpr double kFastestRamp_s = 0.05;  // StaleRampConfig::ramp_down_ns
+constexpr double kFastestRamp_s = 0.03;  // StaleRampConfig::ramp_down_ns
 
 // What the trace says of the wrench on the hand.
 struct TracedForce {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "device_daemon/ares/driver/udp_device.h"
 #include "tests/unit/device_daemon/ares/driver/wire_controller.h"
 
@@ -64,6 +66,19 @@ TEST_F(UdpJointDeviceTest, ReadsWhatTheControllerSays) {
     EXPECT_EQ(reading.load, 0.5);
     EXPECT_EQ(device.description()->max_actuator_force, 40);
     EXPECT_EQ(device.descriptionCount(), 1u);
+}
+
+TEST_F(UdpJointDeviceTest, ANumberThatIsNoneIsAFaultOnce) {
+    ASSERT_TRUE(runUntil([&] { return is_heard && (reading.status & kStatusPowered); }));
+    controller.state.force[3] = std::numeric_limits<float>::infinity();
+    controller.period();
+    controller.state.force[3] = 0;
+    controller.period();
+    device.waitForSample(0);
+    EXPECT_FALSE(device.readJoints(1e-3, reading));
+    EXPECT_EQ(reading.fault, StopCause::kImplausiblePose);
+    ASSERT_TRUE(runUntil([&] { return is_heard; }));
+    EXPECT_EQ(reading.fault, StopCause::kNone);
 }
 
 TEST_F(UdpJointDeviceTest, SwitchesOnWhenWantedAndOffAgain) {

@@ -97,6 +97,20 @@ TEST_F(UdpPoseDeviceTest, APoseThatIsNoneHidesNeitherStatusNorFault) {
     EXPECT_EQ(reading.buttons, uint32_t(kButtonAdd));
 }
 
+TEST_F(UdpPoseDeviceTest, ANumberThatIsNoneIsAFaultOnce) {
+    ASSERT_TRUE(runUntil([&] { return is_heard && (reading.status & kStatusPowered); }));
+    const double good = controller.state.p_DT[1];
+    controller.state.p_DT[1] = std::nan("");
+    controller.period();
+    controller.state.p_DT[1] = good;
+    controller.period();  // the good one right behind it does not hide it
+    device.waitForSample(0);
+    EXPECT_FALSE(device.read(1e-3, reading));
+    EXPECT_EQ(reading.fault, StopCause::kImplausiblePose);
+    ASSERT_TRUE(runUntil([&] { return is_heard; }));
+    EXPECT_EQ(reading.fault, StopCause::kNone);
+}
+
 TEST_F(UdpPoseDeviceTest, APoseThatJumpsIsAFaultUntilAReset) {
     ASSERT_TRUE(runUntil([&] { return is_heard && (reading.status & kStatusPowered); }));
     controller.state.p_DT[0] = 5;  // within a period, or many of a busy machine

@@ -217,10 +217,10 @@ TEST(DeviceLoop, ReleaseTakesTheForceAwayByTheRamp) {
     rig.loop.release();
     EXPECT_FALSE(rig.loop.isReleased());
     double before = rig.force();
-    for (int i = 0; i < 51; ++i) {
+    for (int i = 0; i < 31; ++i) {
         rig.step();
         EXPECT_LE(rig.force(), before);
-        EXPECT_GE(rig.force(), before - 0.4);  // 10 N in 50 ms, at its steepest 1.5 times that
+        EXPECT_GE(rig.force(), before - 0.52);  // 10 N in 30 ms, at its steepest 1.5 times that
         before = rig.force();
     }
     EXPECT_EQ(rig.force(), 0);
