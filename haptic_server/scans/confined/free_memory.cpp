@@ -1,5 +1,8 @@
 #include "haptic_server/scans/confined/free_memory.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <fstream>
 #include <optional>
@@ -132,6 +135,19 @@ FreeMemory leftInGroups(const fs::path& proc, int version) {
     return left;
 }
 
+uint64_t own_address_limit = 0;
+
+FreeMemory leftOfAddresses(const fs::path& proc) {
+    const auto pages = numberIn(proc / "self/statm");
+    rlimit limit{};
+    if (!pages || getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_max == RLIM_INFINITY ||
+        limit.rlim_max == own_address_limit)
+        return {};
+    const uint64_t used = *pages * uint64_t(sysconf(_SC_PAGESIZE)), most = limit.rlim_max;
+    return {std::max<uint64_t>(1, most - std::min(used, most)),
+            "a limit of " + std::to_string(most >> 20) + " MiB on addresses, ulimit -v"};
+}
+
 FreeMemory leftOnMachine(const fs::path& proc) {
     std::ifstream meminfo(proc / "meminfo");
     std::string key, unit;
@@ -151,7 +167,12 @@ std::string FreeMemory::text() const {
 }
 
 FreeMemory freeMemory(const fs::path& proc) {
-    return least(leftOnMachine(proc), least(leftInGroups(proc, 1), leftInGroups(proc, 2)));
+    const FreeMemory in_groups = least(leftInGroups(proc, 1), leftInGroups(proc, 2));
+    return least(least(leftOnMachine(proc), leftOfAddresses(proc)), in_groups);
+}
+
+void noteOwnAddressLimit(uint64_t bytes) noexcept {
+    own_address_limit = bytes;
 }
 
 }  // namespace bonemill

@@ -20,6 +20,10 @@ struct FreeMemory {
 // Of control groups of version 1 and 2, and of all groups around this process's own, the one with the least
 // counts. What the kernel would give up first (cached files) counts as free. `proc` is another folder in
 // tests.
+// A hard limit of the address space (ulimit -v) counts like a group's.
 FreeMemory freeMemory(const std::filesystem::path& proc = "/proc");
+
+// This limit of the address space is this process's own (capMemoryForGood) and no news. For one thread.
+void noteOwnAddressLimit(uint64_t bytes) noexcept;
 
 }  // namespace bonemill

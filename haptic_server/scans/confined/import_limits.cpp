@@ -154,6 +154,7 @@ void capMemoryForGood(uint64_t extra_bytes) noexcept {
     auto capped = cappedLimit(extra_bytes, now);
     if (!capped) return;
     capped->rlim_max = capped->rlim_cur;
+    if (capped->rlim_max < now.rlim_max) noteOwnAddressLimit(capped->rlim_max);
     setrlimit(RLIMIT_AS, &*capped);
 }
 
@@ -175,6 +176,15 @@ void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel
     if (const FreeMemory free = freeMemory(); !free.holds(needed))
         throw UserError(file + ": " + sizeText(dims) + " voxels need " + std::to_string(needed >> 20) +
                         " MiB to import and " + free.text() + "; crop or resample it");
+}
+
+void refuseMemory(uint64_t bytes, const std::string& file) {
+    const FreeMemory free = freeMemory();
+    if (!free.holds(bytes))
+        throw UserError(file + ": there is not enough memory to read it: it may take " +
+                        std::to_string(bytes >> 20) + " MiB, and " + free.text() + "; crop or resample it");
+    throw UserError(file + ": asks for more than " + std::to_string(bytes >> 20) +
+                    " MiB of memory, which no file of its size needs; it is damaged");
 }
 
 void checkAllCanBeBone(const std::vector<uint64_t>& dims, const std::string& file) {

@@ -26,6 +26,10 @@ void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel
 // now, wherever bone may be.
 void checkAllCanBeBone(const std::vector<uint64_t>& dims, const std::string& file);
 
+// Of a reader that had no memory left under a cap of so many bytes (MemoryCap). Throws UserError: the memory
+// is short, or the file is damaged where there was more than that.
+[[noreturn]] void refuseMemory(uint64_t bytes, const std::string& file);
+
 // Throws UserError when fewer bytes are stored than the header promises.
 void checkStoredBytes(uint64_t promised_bytes, uint64_t stored_bytes, const std::string& file);
 

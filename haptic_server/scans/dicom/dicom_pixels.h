@@ -23,6 +23,7 @@ class DicomPixels {
   public:
     explicit DicomPixels(const std::filesystem::path& path);
 
+    size_t frameCount() const { return layout_.frames; }
     size_t frameSize() const { return size_t(layout_.columns) * size_t(layout_.rows); }  // values
     // Of frame n, which is one of the file's. Its memory goes back to the system, so that each is asked for
     // once.

@@ -37,8 +37,12 @@ struct OfFile {
 OfFile framesOf(const Slices& slices) {
     DicomPixels pixels(slices.front().path);
     OfFile file{{}, pixels.surplus()};
-    for (const DicomSlice& slice : slices)
+    for (const DicomSlice& slice : slices) {
+        if (size_t(slice.frame) >= pixels.frameCount() ||
+            pixels.frameSize() != size_t(slice.columns) * size_t(slice.rows))
+            throw UserError(slice.path.string() + ": has changed while it was read; try again");
         file.frames.push_back(pixels.takeFrame(size_t(slice.frame), slice.rescale.value_or(DicomRescale())));
+    }
     return file;
 }
 
@@ -58,7 +62,8 @@ std::string readSlices(const std::vector<DicomSlice>& slices, RawValues& values)
     workAhead(files, framesOf, [&](const Slices& of_file, OfFile file) {
         for (FrameValues& frame : file.frames) joined.append(std::exchange(frame, {}));
         if (file.surplus > 0)
-            surplus.add("with more Pixel Data than Rows x Columns x frames need", of_file.front().path);
+            surplus.add("files with more Pixel Data than Rows x Columns x frames need, the rest not read",
+                        of_file.front().path);
     });
     joined.finish();
     const size_t padded = joined.paddingCount();
@@ -70,7 +75,7 @@ std::string readSlices(const std::vector<DicomSlice>& slices, RawValues& values)
     if (padded > 0)
         said =
             std::to_string(padded) + " voxels are padding, no data (Pixel Padding Value), and count as air";
-    if (!surplus.text().empty()) said += (said.empty() ? "" : "; ") + std::string("files ") + surplus.text();
+    if (!surplus.text().empty()) said += (said.empty() ? "" : "; ") + surplus.text();
     return said;
 }
 

@@ -131,31 +131,28 @@ FrameValues valuesOf(std::span<const char> bytes, const StoredBits& bits,
     return {scaled(found, bits, rescale), std::move(found.padding), has_data};
 }
 
-// Nothing is known of the lowest value before the first data.
+// Nothing is known of a lowest value before the first data: what came before is filled up with the first one.
 void JoinedFrames::append(const FrameValues& frame) {
     for (const FrameValues::Run& run : frame.padding)
         padding_.push_back({size_ + run.begin, size_ + run.end});
+    if (frame.has_data) {
+        fill(size_, frame.values.range().low);
+        frame.values.visit([&](auto samples) { values_.append(samples); });
+    }
     size_ += frame.values.size();
-    if (!frame.has_data) {
-        if (values_.size() > 0) appendLowest(size_);
-        return;
-    }
-    if (values_.size() < size_ - frame.values.size()) {
-        const std::vector<float> before(size_ - frame.values.size(), float(frame.values.range().low));
-        values_.append(std::span<const float>(before));
-    }
-    frame.values.visit([&](auto samples) { values_.append(samples); });
+    if (!frame.has_data && values_.size() > 0) fill(size_, values_.range().low);
 }
 
 void JoinedFrames::finish() {
-    if (values_.size() < size_) values_.append(std::vector<uint8_t>(size_));  // no data at all
+    fill(size_, 0);  // where there is no data at all
     for (const FrameValues::Run& run : padding_)
         for (size_t n = run.begin; n < run.end; ++n) values_.setToLowest(n);
 }
 
-void JoinedFrames::appendLowest(size_t size) {
-    const std::vector<float> lowest(size - values_.size(), float(values_.range().low));
-    values_.append(std::span<const float>(lowest));
+void JoinedFrames::fill(size_t size, double value) {
+    if (values_.size() == size) return;
+    const std::vector<float> more(size - values_.size(), float(value));
+    values_.append(std::span<const float>(more));
 }
 
 size_t JoinedFrames::paddingCount() const noexcept {

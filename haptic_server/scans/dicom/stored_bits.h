@@ -52,8 +52,7 @@ struct FrameValues {
     bool has_data = true;
 };
 
-// `bytes` are words of the machine's order, one behind the other. T is that of RawValues::Samples which holds
-// the scaled values.
+// `bytes` are words of the machine's order, one behind the other.
 FrameValues valuesOf(std::span<const char> bytes, const StoredBits& bits,
                      const std::optional<PixelPadding>& padding, const DicomRescale& rescale);
 
@@ -67,7 +66,7 @@ class JoinedFrames {
     size_t paddingCount() const noexcept;
 
   private:
-    void appendLowest(size_t count);
+    void fill(size_t size, double value);  // up to this size
 
     RawValues& values_;
     size_t size_ = 0;

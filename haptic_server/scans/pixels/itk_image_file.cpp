@@ -143,6 +143,8 @@ ItkImageFile::ItkImageFile(ItkFormat format, const std::filesystem::path& path)
         header_ = headerOf(*reader_->io);
     } catch (const itk::ExceptionObject& error) {
         throw UserError(file_ + ": its header cannot be read: " + plainMessage(error));
+    } catch (const std::bad_alloc&) {
+        refuseMemory(mostMemoryToRead(file_, 0), file_);
     } catch (const std::exception& error) {  // of the libraries below ITK
         throw UserError(file_ + ": its header cannot be read: " + error.what());
     }
@@ -154,7 +156,8 @@ ItkImageFile::~ItkImageFile() = default;
 void ItkImageFile::appendValues(RawValues& values) {
     itk::ImageIOBase& io = *reader_->io;
     const uint64_t bytes = uint64_t(io.GetImageSizeInBytes());
-    const MemoryCap cap(mostMemoryToRead(file_, bytes) + bytes / header_.bytes_per_voxel * sizeof(float));
+    const uint64_t most = mostMemoryToRead(file_, bytes) + bytes / header_.bytes_per_voxel * sizeof(float);
+    const MemoryCap cap(most);
     try {
         itk::ImageIORegion region(io.GetNumberOfDimensions());
         for (unsigned a = 0; a < io.GetNumberOfDimensions(); ++a) region.SetSize(a, io.GetDimensions(a));
@@ -165,6 +168,8 @@ void ItkImageFile::appendValues(RawValues& values) {
         throw UserError(file_ + ": its voxels cannot be read: " + plainMessage(error));
     } catch (const UserError&) {
         throw;
+    } catch (const std::bad_alloc&) {
+        refuseMemory(most, file_);
     } catch (const std::exception& error) {
         throw UserError(file_ + ": its voxels cannot be read: " + error.what());
     }
