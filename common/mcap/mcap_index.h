@@ -131,6 +131,7 @@ class Index {
     uint64_t recordBytes() const { return schemas_.size() + channels_.size(); }
     uint64_t records() const { return uint64_t(schema_count_) + channel_count_; }
     uint64_t size() const { return size_; }
+    uint32_t crc() const { return crc_; }  // of all of that
     uint64_t chunks() const { return chunk_count_; }
     uint64_t messages() const;
     // All that comes after the data: how it ends, the index, and the footer.

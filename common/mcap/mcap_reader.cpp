@@ -2,65 +2,34 @@
 
 #include <zstd.h>
 
-#include <algorithm>
 #include <istream>
-#include <optional>
+#include <utility>
 
+#include "common/mcap/foreign_reader.h"
 #include "common/mcap/mcap_index.h"
-#include "common/mcap/mcap_writer.h"
+#include "common/mcap/mcap_records.h"
+#include "common/mcap/mcap_stream.h"
 
 namespace bonemill::mcap {
 namespace {
 
 constexpr uint64_t kMaxHeader = 4096;
-constexpr uint64_t kMaxPlain = kMaxChunk + kMaxMessage;
-constexpr uint64_t kMaxPacked = kMaxPlain + kMaxPlain / 128;  // more than zstd ever makes of it
-constexpr uint64_t kMaxTorn = uint64_t(1) << 20;              // of one chunk
+constexpr uint64_t kMaxTorn = uint64_t(1) << 20;  // of one chunk
 
-// The rest of the file, of which no more is read than is there.
-class Input {
-  public:
-    explicit Input(std::istream& stream) : stream_(stream) {
-        stream_.seekg(0, std::ios::end);
-        left_ = stream_ ? uint64_t(stream_.tellg()) : 0;
-        stream_.seekg(0);
-    }
-    uint64_t left() const { return left_; }
-    // False: it is not all there.
-    bool take(uint64_t count, std::string& bytes) {
-        bytes.clear();
-        if (count > left_) return false;
-        bytes.resize(size_t(count));
-        if (!stream_.read(bytes.data(), std::streamsize(count))) return false;
-        left_ -= count;
-        return true;
-    }
-
-  private:
-    std::istream& stream_;
-    uint64_t left_ = 0;
-};
-
-// A chunk that is unpacked; its messages point into it.
+// A chunk that is unpacked; what was found in it points into it.
 struct OpenChunk {
     std::string plain;
-    std::vector<Message> messages;
-    std::vector<std::string_view> schemas, channels;  // records
-    std::vector<Channel> new_channels;
-    ChunkPlaces places;
-    uint64_t first_ns = 0, last_ns = 0;
-    uint64_t record_bytes = 0;  // of schemas and channels
+    FoundRecords found;
 };
 
 class FileReader {
   public:
     FileReader(std::istream& stream, const Visit& visit)
-        : input_(stream), size_(input_.left()), visit_(visit) {}
+        : records_(stream), size_(records_.left()), visit_(visit) {}
 
     Reading read() {
         readHeader();
-        while (out_.problem.empty() && !is_at_end_) readRecord();
-        if (out_.problem.empty()) readEnding();
+        if (out_.problem.empty()) isOurs() ? readOurs() : readForeign(records_, has_record_, visit_, out_);
         out_.is_whole = out_.problem.empty();
         out_.lost_bytes = out_.is_whole ? 0 : size_ - out_.index.size();
         out_.is_torn_chunk = out_.is_whole || (is_cut_off_ && out_.lost_bytes <= kMaxTorn);
@@ -72,52 +41,66 @@ class FileReader {
         out_.problem = what + " at byte " + std::to_string(out_.index.size());
     }
 
-    bool takeAll(uint64_t count, std::string& bytes) {
-        is_cut_off_ = count > input_.left();
-        return input_.take(count, bytes);
+    // Whoever writes our file anew may leave its header as it was, and gives it another shape. Takes the
+    // first record.
+    bool isOurs() {
+        if (!out_.library.starts_with(kOurs)) return false;
+        is_cut_off_ = records_.left() == 0;
+        if (is_cut_off_ || !records_.takeHead()) return true;
+        has_record_ = true;
+        if (records_.length() > kMaxPacked || !records_.takeContent()) return true;
+        if (records_.op() != kChunk) return records_.op() == kDataEnd;
+        Taker taker(records_.content());
+        taker.bytes(3 * sizeof(uint64_t));
+        const auto crc = taker.number<uint32_t>();
+        return crc != 0 && taker.text() == kZstd;
     }
-    // False: no whole record is there.
-    bool takeRecord(uint64_t most) {
-        std::string head;
-        if (!takeAll(kRecordHead, head)) return false;
-        Taker taker(head);
-        op_ = taker.number<uint8_t>();
-        const auto length = taker.number<uint64_t>();
-        if (length > most || !takeAll(length, content_)) return false;
-        record_size_ = kRecordHead + length;
-        head_ = std::move(head);
-        return true;
+
+    void readOurs() {
+        while (out_.problem.empty() && !is_at_end_) readRecord();
+        if (out_.problem.empty()) readEnding();
     }
-    void keepRecord() { out_.index.addBytes(head_), out_.index.addBytes(content_); }
 
     void readHeader() {
         std::string magic;
-        if (!input_.take(kMagic.size(), magic) || magic != kMagic) return fail("this is no MCAP file");
-        if (!takeRecord(kMaxHeader) || op_ != kHeader) return fail("the header is torn or changed");
-        Taker taker(content_);
+        if (!records_.takeBytes(kMagic.size(), magic) || magic != kMagic) return fail("this is no MCAP file");
+        if (!records_.takeRecord(kMaxHeader) || records_.op() != kHeader)
+            return fail("the header is torn or changed");
+        Taker taker(records_.content());
         out_.profile = taker.text(), out_.library = taker.text();
         if (!taker.isDone()) return fail("the header is torn or changed");
         out_.index.addBytes(kMagic);
-        keepRecord();
+        records_.addTo(out_.index);
+    }
+
+    // False: no whole record is there. The first one may have been taken.
+    bool takeRecord() {
+        const bool is_there = std::exchange(has_record_, false)
+                                  ? records_.content().size() == records_.length()
+                                  : records_.takeRecord(kMaxPacked);
+        is_cut_off_ = !is_there && records_.isCutOff();
+        return is_there;
     }
 
     void readRecord() {
-        is_cut_off_ = input_.left() == 0;
+        is_cut_off_ = !has_record_ && records_.left() == 0;
         if (is_cut_off_) return fail("the end is missing: whoever wrote it was stopped");
-        if (!takeRecord(kMaxPacked)) return fail("the file is torn");
-        if (op_ == kDataEnd) {
+        if (!takeRecord()) return fail("the file is torn");
+        if (records_.op() == kDataEnd) {
             is_at_end_ = true;
             return;
         }
         OpenChunk chunk;
-        if (op_ != kChunk || !open(chunk))
-            return fail(hasRoomFor(chunk) ? "a chunk is damaged" : "there are too many schemas and channels");
+        if (records_.op() != kChunk || !open(chunk))
+            return fail(KnownRecords::hasRoomFor(chunk.found, out_.index)
+                            ? "a chunk is damaged"
+                            : "there are too many schemas and channels");
         keep(chunk);
-        for (const Message& message : chunk.messages) visit_(channels_.at(message.channel), message);
+        for (const Message& message : chunk.found.messages) visit_(known_.channelOf(message), message);
     }
 
     bool open(OpenChunk& chunk) {
-        Taker taker(content_);
+        Taker taker(records_.content());
         const auto first_ns = taker.number<uint64_t>(), last_ns = taker.number<uint64_t>();
         const auto plain_size = taker.number<uint64_t>();
         const auto crc = taker.number<uint32_t>();
@@ -130,80 +113,23 @@ class FileReader {
             ZSTD_decompress(chunk.plain.data(), chunk.plain.size(), packed.data(), packed.size());
         if (unpacked != plain_size || crcOf(chunk.plain) != crc) return false;
         packed_size_ = packed.size();
-        return parse(chunk) && chunk.first_ns == first_ns && chunk.last_ns == last_ns;
-    }
-
-    // Its CRC is right; yet whoever made it may have made it so.
-    bool parse(OpenChunk& chunk) {
-        Taker taker(chunk.plain);
-        while (!taker.rest().empty()) {
-            const std::string_view start = taker.rest();
-            const auto op = taker.number<uint8_t>();
-            const std::string_view content = taker.bytes(taker.number<uint64_t>());
-            if (!taker.isGood()) return false;
-            const std::string_view record = start.substr(0, kRecordHead + content.size());
-            const auto offset = uint64_t(start.data() - chunk.plain.data());
-            if (op == kSchema)
-                chunk.schemas.push_back(record);
-            else if (op == kChannel ? !takeChannel(content, record, chunk)
-                                    : op != kMessage || !takeMessage(content, offset, chunk))
-                return false;
-            if (op != kMessage) chunk.record_bytes += record.size();
-            if (!hasRoomFor(chunk)) return false;
-        }
-        return true;
-    }
-
-    // They are kept, and looked through for each message.
-    bool hasRoomFor(const OpenChunk& chunk) const {
-        return out_.index.recordBytes() + chunk.record_bytes <= kMaxRecordBytes &&
-               out_.index.records() + chunk.schemas.size() + chunk.channels.size() <= kMaxRecords;
-    }
-
-    bool takeChannel(std::string_view content, std::string_view record, OpenChunk& chunk) {
-        Taker taker(content);
-        Channel channel;
-        channel.id = taker.number<uint16_t>(), channel.schema = taker.number<uint16_t>();
-        channel.topic = taker.text(), channel.encoding = taker.text();
-        taker.text();  // metadata
-        if (!taker.isDone() || find(channel.id, chunk)) return false;
-        chunk.channels.push_back(record);
-        chunk.new_channels.push_back(std::move(channel));
-        return true;
-    }
-
-    bool find(uint16_t id, const OpenChunk& chunk) const {
-        return channels_.contains(id) ||
-               std::ranges::any_of(chunk.new_channels,
-                                   [id](const Channel& channel) { return channel.id == id; });
-    }
-
-    bool takeMessage(std::string_view content, uint64_t offset, OpenChunk& chunk) {
-        Taker taker(content);
-        Message message;
-        message.channel = taker.number<uint16_t>(), message.sequence = taker.number<uint32_t>();
-        message.time_ns = taker.number<uint64_t>();
-        taker.number<uint64_t>();  // when it was published
-        message.data = taker.rest();
-        if (!taker.isGood() || !find(message.channel, chunk)) return false;
-        const bool is_first = chunk.messages.empty();
-        chunk.first_ns = is_first ? message.time_ns : std::min(chunk.first_ns, message.time_ns);
-        chunk.last_ns = std::max(chunk.last_ns, message.time_ns);
-        chunk.places[message.channel].push_back({message.time_ns, offset});
-        chunk.messages.push_back(message);
-        return true;
+        // Its CRC is right; yet whoever made it may have made it so.
+        return known_.find(chunk.plain, out_.index, chunk.found) && chunk.found.first_ns == first_ns &&
+               chunk.found.last_ns == last_ns;
     }
 
     // What follows the chunk in the file is known from it.
     void keep(OpenChunk& chunk) {
-        keepRecord();
-        for (const std::string_view record : chunk.schemas) out_.index.addSchema(record);
-        for (const std::string_view record : chunk.channels) out_.index.addChannel(record);
-        for (Channel& channel : chunk.new_channels) channels_[channel.id] = std::move(channel);
-        const std::string indexes = out_.index.addChunk(
-            {record_size_, packed_size_, chunk.plain.size(), chunk.first_ns, chunk.last_ns}, chunk.places);
-        std::string found;
-        if (takeAll(indexes.size(), found) && found == indexes) return out_.index.addBytes(indexes);
+        records_.addTo(out_.index);
+        FoundRecords& found = chunk.found;
+        known_.keep(found, out_.index);
+        const std::string indexes = out_.index.addChunk({kRecordHead + records_.length(), packed_size_,
+                                                         chunk.plain.size(), found.first_ns, found.last_ns},
+                                                        found.places);
+        std::string in_file;
+        const bool is_there = records_.takeBytes(indexes.size(), in_file);
+        is_cut_off_ = !is_there && records_.isCutOff();
+        if (is_there && in_file == indexes) return out_.index.addBytes(indexes);
         fail("the index of a chunk is torn or changed");
         out_.missing = indexes;
     }
@@ -211,22 +137,21 @@ class FileReader {
     // It is known from what is before it, too.
     void readEnding() {
         const std::string ending = out_.index.ending();
-        std::string found = head_ + content_, rest;
-        const bool is_longer = found.size() + input_.left() > ending.size();
-        if (!is_longer && input_.take(input_.left(), rest)) found += rest;
+        std::string found = records_.head() + records_.content(), rest;
+        const bool is_longer = found.size() + records_.left() > ending.size();
+        if (!is_longer && records_.takeBytes(records_.left(), rest)) found += rest;
         if (found == ending && !is_longer) return;
         is_cut_off_ = !is_longer && ending.starts_with(found);
         fail("the end is torn or changed, or something before it that no chunk covers,");
     }
 
-    Input input_;
+    RecordStream records_;
     uint64_t size_;
     const Visit& visit_;
     Reading out_;
-    std::map<uint16_t, Channel> channels_;
-    uint8_t op_ = 0;
-    std::string head_, content_;  // of the record under way
-    uint64_t record_size_ = 0, packed_size_ = 0;
+    KnownRecords known_{KnownRecords::Repeats::kNone};
+    bool has_record_ = false;  // the first one was taken
+    uint64_t packed_size_ = 0;
     bool is_at_end_ = false;
     bool is_cut_off_ = false;  // what was taken last goes on behind the file's end
 };

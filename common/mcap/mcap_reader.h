@@ -1,13 +1,14 @@
 // Reads what mcap::Writer makes, whoever had the file in between: every length is checked before it is
 // believed, every chunk against its CRC before anything in it is told, and memory is bounded. Where a file is
-// torn or changed, all that is whole before that place is read, and what was lost is said. Files of other
-// writers are read as far as they have the same shape: chunks packed by zstd with CRC and indexes. It is for
-// normal threads.
+// torn or changed, all that is whole before that place is read, and what was lost is said. Files that another
+// program has written, or written anew, are read as the specification allows them (foreign_reader.h). It is
+// for normal threads.
 #pragma once
 
 #include <functional>
 #include <iosfwd>
 #include <string>
+#include <string_view>
 
 #include "common/mcap/mcap_index.h"
 
@@ -16,6 +17,10 @@ namespace bonemill::mcap {
 // Schemas and channels are kept to the end of the file, whoever made it: no more of them are taken.
 constexpr uint64_t kMaxRecordBytes = uint64_t(1) << 20, kMaxRecords = 1024;
 
+// What our programs call themselves in a file begins so. Of such a file every byte is known beforehand but
+// what is in its chunks, and is compared.
+constexpr std::string_view kOurs = "bonemill ";
+
 struct Reading {
     bool is_whole = false;    // from the first byte to the last, with its end
     std::string problem;      // for people; empty if whole
@@ -23,6 +28,8 @@ struct Reading {
     // Nothing is lost but what the writer had begun to write when it was stopped.
     bool is_torn_chunk = false;
     std::string profile, library;
+    // Another program has written it: what it does not promise by a CRC cannot be proven to be as it was.
+    bool is_foreign = false;
     // Of what is whole: its size() is that of the file up to there.
     Index index;
     // These records belong at the end of that, and are not there whole.

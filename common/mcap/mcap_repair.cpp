@@ -5,6 +5,7 @@
 #include "common/base/user_error.h"
 #include "common/files/require_file.h"
 #include "common/files/whole_file.h"
+#include "common/text/foreign_text.h"
 
 namespace bonemill::mcap {
 namespace {
@@ -33,6 +34,9 @@ Repair repair(const std::filesystem::path& path) {
     Repair reading{read(input, [](const Channel&, const Message&) {}), {}};
     if (reading.is_whole) return reading;
     if (reading.index.size() == 0) throw UserError(path.string() + ": " + reading.problem);
+    if (reading.is_foreign)
+        throw UserError(path.string() + ": another program has written it (" +
+                        printableLine(reading.library) + "), which must mend it: " + reading.problem);
     input.close();
     if (!reading.is_torn_chunk) reading.kept = keepBeside(path);
     Index index = reading.index;

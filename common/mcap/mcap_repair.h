@@ -17,7 +17,8 @@ inline constexpr char kDamagedEnding[] = ".damaged.mcap";
 // Cuts the file behind the last that is whole and writes index and footer there, so that every tool can read
 // it. A whole file is left as it is. Where more than a torn chunk is lost, the file as it was stays beside
 // it, as NAME.damaged.mcap. If it is stopped itself, the file is torn as before and can be repaired again.
-// Returns what was found before. Throws UserError if it is no MCAP file, or cannot be read or written.
+// Returns what was found before. Throws UserError if it is no MCAP file, was torn by another program than
+// ours, or cannot be read or written.
 Repair repair(const std::filesystem::path& path);
 
 }  // namespace bonemill::mcap

@@ -22,7 +22,7 @@ struct McapFile {
 inline McapFile mcapFile(int chunks, bool is_finished, uint32_t seed = 2026) {
     std::mt19937 random(seed);
     McapFile file;
-    mcap::Writer writer("bonemill", "test 1");
+    mcap::Writer writer("bonemill", "bonemill test");
     writer.addSchema({1, "bonemill.Thing", "protobuf", "not looked at"});
     writer.addChannel({7, 1, "things", "protobuf"});
     writer.addChannel({8, 1, "others", "protobuf"});

@@ -37,7 +37,7 @@ inline std::vector<JournalMessage> journalMessages(const std::filesystem::path& 
 
 inline void writeJournal(const std::filesystem::path& path, const std::vector<JournalMessage>& messages,
                          bool is_finished) {
-    mcap::Writer writer(kJournalProfile, "test");
+    mcap::Writer writer(kJournalProfile, "bonemill test");
     for (const JournalTopicName& topic : kJournalTopics) addTopic(topic, writer);
     for (const JournalMessage& message : messages)
         writer.addMessage(uint16_t(message.topic), message.time_ns, message.data);

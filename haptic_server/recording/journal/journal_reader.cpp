@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
 #include <utility>
 
 #include "common/base/user_error.h"
@@ -111,12 +112,12 @@ class Keeper {
     uint64_t kept_ = 0;
 };
 
-// Nothing of another make may pass for a journal.
-bool isOurs(const mcap::Channel& channel) {
-    return std::ranges::any_of(kJournalTopics, [&](const JournalTopicName& topic) {
-        return channel.id == uint16_t(topic.topic) && channel.topic == topic.name &&
-               channel.encoding == "protobuf";
-    });
+// Nothing of another make may pass for a journal. Other programs that write one anew give other numbers to
+// its channels.
+std::optional<JournalTopic> topicOf(const mcap::Channel& channel) {
+    const auto topic = std::ranges::find(kJournalTopics, channel.topic, &JournalTopicName::name);
+    if (topic == std::end(kJournalTopics) || channel.encoding != "protobuf") return std::nullopt;
+    return topic->topic;
 }
 
 }  // namespace
@@ -125,11 +126,18 @@ mcap::Reading readJournal(const std::filesystem::path& path, const JournalVisit&
     requireFile(path);
     std::ifstream input(path, std::ios::binary);
     if (!input) throw UserError(path.string() + ": cannot be opened");
+    bool is_journal = false;
     mcap::Reading reading =
         mcap::read(input, [&](const mcap::Channel& channel, const mcap::Message& message) {
-            if (isOurs(channel)) visit(JournalTopic(channel.id), message);
+            const std::optional<JournalTopic> topic = topicOf(channel);
+            if (!topic) return;
+            is_journal |= topic == JournalTopic::kManifest;
+            visit(*topic, message);
         });
-    if (reading.profile != kJournalProfile)
+    // Other programs leave the profile out.
+    is_journal =
+        reading.profile == kJournalProfile || (is_journal && reading.is_foreign && reading.profile.empty());
+    if (!is_journal)
         throw UserError(path.string() + ": is no journal of a session" +
                         (reading.index.size() == 0 ? " (" + reading.problem + ")" : ""));
     return reading;

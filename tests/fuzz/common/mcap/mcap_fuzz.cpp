@@ -44,7 +44,7 @@ TEST(McapFuzz, TellsNothingThatWasNotWrittenFromATornFile) {
 TEST(McapFuzz, ChecksWhatARightCrcCovers) {
     std::mt19937 random(2028);
     for (int round = 0; round < kRounds / 10; ++round) {
-        mcap::Writer writer("bonemill", "hostile");
+        mcap::Writer writer("bonemill", "bonemill hostile");
         writer.addChannel({uint16_t(random() % 3), 0, "a", ""});
         if (random() % 2) writer.addChannel({uint16_t(random() % 3), 0, "b", ""});
         writer.addMessage(uint16_t(random() % 3), random(), "data");

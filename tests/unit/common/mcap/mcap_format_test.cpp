@@ -24,7 +24,7 @@ TEST(McapFormat, TellsEveryMessageAsItWasWritten) {
     EXPECT_TRUE(content.reading.is_whole) << content.reading.problem;
     EXPECT_EQ(content.messages, file.messages);
     EXPECT_EQ(content.reading.profile, "bonemill");
-    EXPECT_EQ(content.reading.library, "test 1");
+    EXPECT_EQ(content.reading.library, "bonemill test");
     EXPECT_EQ(content.reading.index.chunks(), 4u);
     EXPECT_EQ(content.reading.index.messages(), 20u);
     EXPECT_EQ(content.reading.lost_bytes, 0u);
@@ -74,7 +74,7 @@ TEST(McapFormat, TheCrcIsTheUsualOne) {
 }
 
 TEST(McapFormat, AMessageLargerThanAChunkHasOneOfItsOwn) {
-    mcap::Writer writer("bonemill", "test");
+    mcap::Writer writer("bonemill", "bonemill test");
     writer.addChannel({1, 0, "large", "bytes"});
     const std::string large(mcap::kMaxChunk + 1, 'x');
     writer.addMessage(1, 1, "small");
@@ -89,7 +89,7 @@ TEST(McapFormat, AMessageLargerThanAChunkHasOneOfItsOwn) {
 
 // Of so many schemas and channels, of a schema of so many bytes.
 std::string fileOf(uint64_t channels, size_t schema_bytes) {
-    mcap::Writer writer("bonemill", "test");
+    mcap::Writer writer("bonemill", "bonemill test");
     writer.addSchema({1, "a", "protobuf", std::string(schema_bytes, 'x')});
     for (uint64_t id = 1; id <= channels; ++id) writer.addChannel({uint16_t(id), 1, "t", "protobuf"});
     writer.addMessage(1, 1, "m");

@@ -39,7 +39,7 @@ TEST(TornMcap, IsWholeWhenItWasRepaired) {
     const test::TemporaryFolder folder;
     const std::string path = folder / "torn.mcap";
     const McapFile file = mcapFile(3, true);
-    const size_t header = 8 + 9 + 4 + 8 + 4 + 6;
+    const size_t header = 8 + 9 + 4 + 8 + 4 + 13;
     for (size_t size = header; size <= file.bytes.size(); size += 7) {
         const std::string torn = file.bytes.substr(0, size);
         std::ofstream(path, std::ios::binary) << torn;

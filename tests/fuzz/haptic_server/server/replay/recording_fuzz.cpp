@@ -79,7 +79,7 @@ TEST_F(RecordingFuzz, MessagesThatSomebodyChanged) {
     const Simulation simulation = makeSimulation(scene);
     std::mt19937 random(20);
     for (int round = 0; round < kRounds; ++round) {
-        mcap::Writer writer(kJournalProfile, "fuzz");
+        mcap::Writer writer(kJournalProfile, "bonemill fuzz");
         for (const JournalTopicName& topic : kJournalTopics) addTopic(topic, writer);
         for (const Kept& message : messages) {
             const bool is_changed =

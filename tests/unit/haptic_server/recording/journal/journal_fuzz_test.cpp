@@ -40,7 +40,7 @@ TEST(JournalFuzz, AnyMessagesAreReadOrRefused) {
     std::mt19937 random(17);
     int read = 0, refused = 0;
     for (int round = 0; round < 2000; ++round) {
-        mcap::Writer writer(kJournalProfile, "hostile");
+        mcap::Writer writer(kJournalProfile, "bonemill hostile");
         for (const JournalTopicName& topic : kJournalTopics)
             writer.addChannel({uint16_t(topic.topic), 0, std::string(topic.name), "protobuf"});
         const auto bytes = [&](JournalTopic topic, uint64_t tick) {
