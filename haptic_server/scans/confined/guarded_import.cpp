@@ -23,6 +23,7 @@
 
 #include "common/base/user_error.h"
 #include "common/text/printed_text.h"
+#include "haptic_server/scans/confined/confine_reader.h"
 #include "haptic_server/scans/confined/free_memory.h"
 #include "haptic_server/scans/confined/import_limits.h"
 #include "haptic_server/scans/confined/reader_pipe.h"
@@ -213,10 +214,18 @@ void handleSignals() {
     sigprocmask(SIG_UNBLOCK, &all, nullptr);
 }
 
+// A reader without the process that it reads for would only hold on to what it has. That one may have gone
+// before this is asked for.
+void endWithReaderOf(int pipe) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    pollfd other_end{pipe, 0, 0};
+    if (poll(&other_end, 1, 0) > 0 && (other_end.revents & POLLERR) != 0) _exit(1);
+}
+
 [[noreturn]] void sendAsChild(int file, const std::filesystem::path& path,
                               const std::function<void()>& send) {
     handleSignals();
-    prctl(PR_SET_PDEATHSIG, SIGKILL);  // a reader without its parent would only hold on to what it inherited
+    endWithReaderOf(file);
     const rlimit no_core{0, 0},
         cpu{kMaxCpuSeconds, kMaxCpuSeconds + 1};  // at the hard one it would be SIGKILL
     setrlimit(RLIMIT_CORE, &no_core);
@@ -228,7 +237,7 @@ void handleSignals() {
     const FreeMemory free = freeMemory();
     try {
         if (free.bytes > 0) capMemoryForGood(free.bytes);
-        confineReader();
+        confineReader(file);
         send();
     } catch (const std::bad_alloc&) {
         sendText(file, kError,

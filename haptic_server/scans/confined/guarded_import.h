@@ -3,7 +3,7 @@
 // Debian builds GDCM with its assertions on, and ITK's linear algebra aborts on numbers that are not finite:
 // a damaged file can end the process that reads it. The child hands the volume over through a pipe, giving
 // back the memory of what is through, writes nothing to stderr, and is ended when it hangs, takes more memory
-// than is free, or has said all. It reads files and nothing else (import_limits.h). It is for one thread at
+// than is free, or has said all. It reads files and nothing else (confine_reader.h). It is for one thread at
 // a time. A child that is forked from a process with threads can hang, which is why a program with threads
 // starts a reader of its own instead (import_volume.h).
 #pragma once

@@ -1,6 +1,5 @@
-// Refuses sizes that cannot be right before anything is allocated for them, keeps a library from allocating
-// whatever a damaged length field says, and takes from a reader's process all that reading files does not
-// need. There is no Eigen in here: ITK's sources include it.
+// Refuses sizes that cannot be right before anything is allocated for them, and keeps a library from
+// allocating whatever a damaged length field says. There is no Eigen in here: ITK's sources include it.
 #pragma once
 
 #include <sys/resource.h>
@@ -55,12 +54,5 @@ uint64_t memoryForAll(uint64_t bytes_of_one, uint64_t bytes_taken);
 
 // Does the same for all that this process will do, and cannot be taken back.
 void capMemoryForGood(uint64_t extra_bytes) noexcept;
-
-// From now on this process and its threads open files only to read them, and neither start programs nor look
-// into other processes, send them signals, change their limits or type into their terminal; sockets, file
-// systems and the kernel's settings are out of reach (such calls fail with EPERM), and root is root by name
-// only, but for reading. There is no way back. It is called by a process with one thread. Throws UserError
-// when this kernel cannot do it.
-void confineReader();
 
 }  // namespace bonemill

@@ -1,29 +1,18 @@
 #include "haptic_server/scans/confined/guarded_import.h"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sched.h>
 #include <signal.h>
-#include <sys/ioctl.h>
 #include <sys/mman.h>
-#include <sys/mount.h>
-#include <sys/ptrace.h>
 #include <sys/resource.h>
-#include <sys/socket.h>
-#include <sys/stat.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <thread>
 
 #include "haptic_server/scans/confined/shared_name.h"
 #include "haptic_server/scans/import/import_volume.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"
 
 namespace bonemill {
@@ -222,62 +211,6 @@ TEST(GuardedImport, deathOfAThreadNamesTheFileThatTheThreadWasAt) {
         };
         expectUserError([&] { importGuarded("folder", readBesideAndDie); }, {"folder/slice7", "damaged"});
     }
-}
-
-// Names what the reader should not have been able to do.
-std::string doneByReader(const std::string& folder) {
-    std::string done;
-    const auto attempt = [&done](const char* what, long result) {
-        if (result >= 0) done += std::string(what) + " ";
-    };
-    attempt("socket", socket(AF_INET, SOCK_DGRAM, 0));
-    attempt("local socket", socket(AF_UNIX, SOCK_STREAM, 0));
-    attempt("file", open((folder + "/new").c_str(), O_CREAT | O_WRONLY, 0600));
-    attempt("change", open((folder + "/there").c_str(), O_RDWR));
-    attempt("removal", unlink((folder + "/there").c_str()));
-    attempt("mode", chmod((folder + "/there").c_str(), 0777));
-    attempt("trace", ptrace(PTRACE_TRACEME, 0, nullptr, nullptr));
-    attempt("kill", kill(getppid(), 0));
-    // These would fail here for other reasons, too.
-    const auto attemptAllowed = [&done](const char* what, long result) {
-        if (result >= 0 || errno != EPERM) done += std::string(what) + " ";
-    };
-    char key = 'x';
-    attemptAllowed("typing", ioctl(STDIN_FILENO, TIOCSTI, &key));
-    attemptAllowed("console", ioctl(STDIN_FILENO, TIOCLINUX, &key));
-    attempt("queued signal", sigqueue(getppid(), 0, {}));
-    siginfo_t info{};
-    info.si_code = SI_QUEUE;
-    attempt("thread's queued signal", syscall(SYS_rt_tgsigqueueinfo, getppid(), getppid(), 0, &info));
-    attempt("thread's signal", syscall(SYS_tgkill, getppid(), getppid(), 0));
-    rlimit limit{};
-    attempt("limits", prlimit(getppid(), RLIMIT_NOFILE, nullptr, &limit));
-    cpu_set_t processors;
-    sched_getaffinity(0, sizeof processors, &processors);
-    attempt("processors", sched_setaffinity(getppid(), sizeof processors, &processors));
-    attempt("priority", setpriority(PRIO_PROCESS, id_t(getppid()), 5));
-    const sched_param batch{};
-    attempt("scheduling", sched_setscheduler(getppid(), SCHED_BATCH, &batch));
-    attempt("signals of a file", fcntl(STDIN_FILENO, F_SETOWN, getppid()));
-    char byte;
-    if (read(STDIN_FILENO, &byte, 1) != 0) done += "stdin ";
-    attempt("mount", mount("none", folder.c_str(), "tmpfs", 0, nullptr));
-    attempt("process", fork());
-    char name[] = "/bin/true";
-    char* words[] = {name, nullptr};
-    attempt("program", execv(name, words));
-    if (open((folder + "/there").c_str(), O_RDONLY) < 0) done += "cannot read ";
-    std::thread([&done] { done += "thread "; }).join();
-    return done;
-}
-
-TEST(GuardedImport, theReaderReadsFilesAndDoesNothingElse) {
-    const test::TemporaryFolder folder;
-    std::ofstream(folder / "there") << "text";
-    const auto read = [&]() -> RawVolume { throw UserError("done: " + doneByReader(folder.path())); };
-    expectUserError([&] { importGuarded("file", read); }, {"done: thread "});
-    EXPECT_TRUE(std::filesystem::exists(folder / "there"));
-    EXPECT_EQ(std::system("true"), 0) << "only the reader is confined";
 }
 
 TEST(GuardedImport, aReaderProgramThatDoesNotReadIsToldOf) {
