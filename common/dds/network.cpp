@@ -119,6 +119,17 @@ void requirePart(const SecurityFolder& security, NetworkPart part) {
                     self.role + "); this program needs " + kWanted[size_t(part)]);
 }
 
+// People of another session would be strangers here, and this program a stranger to them.
+void requireSession(const SecurityFolder& security, uint32_t session) {
+    const std::optional<uint32_t> made_for = security.self().session;
+    if (made_for == session) return;
+    const std::string folder = "--secure " + security.folder().string();
+    if (!made_for) throw UserError(folder + ": its certificate names no session; " + kMakeNewSession);
+    throw UserError(folder + ": this folder was made for session " + std::to_string(*made_for) +
+                    ", and this is session " + std::to_string(session) + "; give --session " +
+                    std::to_string(*made_for) + ", or the folder of session " + std::to_string(session));
+}
+
 }  // namespace
 
 std::vector<NetworkInterface> networkInterfaces() {
@@ -176,11 +187,14 @@ std::optional<Identity> identityOf(const NetworkOptions& options) {
     return SecurityFolder(options.secure).self();
 }
 
-void setNetwork(const NetworkOptions& options, NetworkPart part) {
+void setNetwork(const NetworkOptions& options, NetworkPart part, std::optional<uint32_t> session) {
     Participant::setConfiguration(networkConfiguration(options));
     std::optional<SecurityFolder> security;
     if (!options.secure.empty()) security.emplace(options.secure);
-    if (security) requirePart(*security, part);
+    if (security) {
+        requirePart(*security, part);
+        if (session) requireSession(*security, *session);
+    }
     Participant::setSecurity(std::move(security));
 }
 

@@ -2,6 +2,7 @@
 // (docs/lab/network.md). It is not for the tick.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,7 +51,9 @@ bool isOnePc(const std::string& configuration);
 
 // From now on every participant of this process joins this network; without a call, that of NetworkOptions().
 // It is called before the first participant, by one thread. Throws UserError, also when the folder of
-// --secure is not this program's, or not in order.
-void setNetwork(const NetworkOptions& options, NetworkPart part = NetworkPart::kViewer);
+// --secure is not this program's, or was made for another session than `session`, or is not in order. A
+// program that is of no session in particular gives none.
+void setNetwork(const NetworkOptions& options, NetworkPart part = NetworkPart::kViewer,
+                std::optional<uint32_t> session = std::nullopt);
 
 }  // namespace bonemill::dds

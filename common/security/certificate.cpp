@@ -7,6 +7,8 @@
 #include <openssl/x509.h>
 #include <openssl/x509v3.h>
 
+#include <charconv>
+#include <string_view>
 #include <utility>
 
 #include "common/base/user_error.h"
@@ -42,6 +44,16 @@ GuidPrefix prefixOf(const X509_NAME* subject) {
     return prefix;
 }
 
+std::optional<uint32_t> sessionOf(const std::string& organisation) {
+    constexpr std::string_view kBefore = "bonemill-session-";
+    if (!organisation.starts_with(kBefore)) return std::nullopt;
+    uint32_t number = 0;
+    const char *const begin = organisation.data() + kBefore.size(), *const end = organisation.data() +
+                                                                                 organisation.size();
+    const auto [rest, error] = std::from_chars(begin, end, number);
+    return error == std::errc{} && rest == end ? std::optional(number) : std::nullopt;
+}
+
 std::time_t unixTimeOf(const ASN1_TIME* time) {
     std::tm parts{};
     return ASN1_TIME_to_tm(time, &parts) == 1 ? timegm(&parts) : 0;
@@ -52,7 +64,7 @@ std::time_t unixTimeOf(const ASN1_TIME* time) {
 Certificate::Certificate(x509_st* owned) : x509_(owned, X509_free) {
     const X509_NAME* const subject = X509_get_subject_name(owned);
     identity_ = {entryOf(subject, NID_commonName), entryOf(subject, NID_organizationalUnitName),
-                 prefixOf(subject)};
+                 prefixOf(subject), sessionOf(entryOf(subject, NID_organizationName))};
 }
 
 std::vector<Certificate> Certificate::readAll(const std::filesystem::path& file) {

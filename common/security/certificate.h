@@ -7,6 +7,7 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct Identity {
     std::string name;
     std::string role;  // server, device, operator, instructor, observer, examiner or gateway
     GuidPrefix prefix{};
+    std::optional<uint32_t> session;  // that it was made for; nothing: make-session has not made it
 };
 
 class Certificate {

@@ -4,13 +4,13 @@
 #include <openssl/err.h>
 #include <openssl/pkcs7.h>
 #include <openssl/x509.h>
-#include <spdlog/spdlog.h>
 
 #include <array>
 #include <memory>
 #include <optional>
 
 #include "common/base/user_error.h"
+#include "common/files/require_private.h"
 
 namespace bonemill {
 namespace {
@@ -103,16 +103,10 @@ void requireFiles(const fs::path& folder) {
                             " is missing: copy the whole folder that deploy/security/make-session has made");
 }
 
-// Another user who can read the key can be this one.
-void warnOfReadableKey(const fs::path& key) {
-    std::error_code error;
-    if ((fs::status(key, error).permissions() & (fs::perms::group_read | fs::perms::others_read)) !=
-        fs::perms::none)
-        spdlog::warn("{} can be read by others; type: chmod 600 {}", key.string(), key.string());
-}
-
 Identity checked(const fs::path& folder, std::time_t now) {
     requireFiles(folder);
+    requirePrivate(folder, "700");
+    requirePrivate(folder / "identity.key", "600");
     const Certificate own = Certificate::read(folder / "identity.pem");
     const Certificate identity_ca = Certificate::read(folder / "identity_ca.pem");
     const Certificate permissions_ca = Certificate::read(folder / "permissions_ca.pem");
@@ -123,7 +117,6 @@ Identity checked(const fs::path& folder, std::time_t now) {
         certificate->requireValidAt(now);
     signedText(folder / "governance.p7s", permissions_ca);
     requirePermissionsFor(signedText(folder / "permissions.p7s", permissions_ca), own, now);
-    warnOfReadableKey(folder / "identity.key");
     return own.identity();
 }
 

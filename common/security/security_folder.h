@@ -14,8 +14,8 @@ namespace bonemill {
 
 class SecurityFolder {
   public:
-    // Checks that everything is there, belongs together and is valid at that unix time, for Cyclone DDS's own
-    // messages say little. Throws UserError.
+    // Checks that everything is there, belongs together, is valid at that unix time and out of others' reach
+    // on this PC, for Cyclone DDS's own messages say little. Throws UserError.
     explicit SecurityFolder(const std::filesystem::path& folder, std::time_t now = std::time(nullptr));
 
     const Identity& self() const noexcept { return self_; }

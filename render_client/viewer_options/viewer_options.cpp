@@ -236,6 +236,7 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
 // With --secure the server asks the certificate who this is; what the viewer says of itself is the same.
 void takeOver(const Identity& identity, const RawOptions& raw, ClientOptions& options) {
     if (raw.name->count() == 0) options.subscriber.name = identity.name;
+    if (raw.session->count() == 0 && identity.session) options.subscriber.session = *identity.session;
     if (identity.role == "gateway") return;
     const std::string certified = identity.role == "observer" ? "viewer" : identity.role;
     const std::vector<std::string> names = roleNames();

@@ -188,7 +188,7 @@ class ReplayServer {
 }  // namespace
 
 int runReplay(const ReplayOptions& options) {
-    dds::setNetwork(options.network, dds::NetworkPart::kServer);
+    dds::setNetwork(options.network, dds::NetworkPart::kServer, options.session);
     return ReplayServer(options).run();
 }
 

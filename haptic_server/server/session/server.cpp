@@ -271,7 +271,7 @@ int runServer(const ServerOptions& given) {
         beginFrom(options);
     else
         chooseResumption(options);
-    dds::setNetwork(options.network, dds::NetworkPart::kServer);
+    dds::setNetwork(options.network, dds::NetworkPart::kServer, options.session);
     if (options.class_table.empty() && std::filesystem::is_directory(options.export_dir))
         options.class_table = (std::filesystem::path(options.export_dir) / "class.csv").string();
     std::vector<ListedScene> scenes = listScenes(foldersOf(options));

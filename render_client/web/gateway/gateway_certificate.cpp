@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "common/base/user_error.h"
+#include "common/files/require_private.h"
 #include "common/files/whole_file.h"
 #include "common/security/certificate.h"
 #include "render_client/web/secrets/secrets.h"
@@ -93,6 +94,7 @@ GatewayCertificate checked(GatewayCertificate place, std::time_t now, const std:
     if (!shown.hasKey(place.key))
         throw UserError(place.key.string() + ": is not the key of " + place.certificate.string() + "; " +
                         remedy);
+    requirePrivate(place.key, "600");
     requireBetween(now, shown.validFrom(), shown.validUntil(), place.certificate.string(), remedy);
     place.fingerprint = fingerprintOf(shown);
     return place;

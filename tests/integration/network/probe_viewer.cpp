@@ -89,7 +89,7 @@ int main(int argc, char** argv) {
         app.add_flag("--moving-slices", are_moving);
         dds::addNetworkOptions(app, network);
         if (!parseCommandLine(app, argc, argv, "probe_viewer")) return 0;
-        dds::setNetwork(network);
+        dds::setNetwork(network, dds::NetworkPart::kViewer, subscriber.session);
         Probe(subscriber, has_slices, are_moving).run();
         return 0;
     });

@@ -34,6 +34,16 @@ TEST(RefusedStart, SaysWhatIsWrongWithTheFolder) {
                   "needs the folder server");
     expectRefused({"render_client", "--command", "pause", "--secure", folder / "now/server"},
                   "needs a person's folder");
+    for (const test::Words& program :
+         {test::Words{"haptic_server", "--scene", "none", "--secure", folder / "now/server"},
+          {"device_daemon", "--secure", folder / "now/device"},
+          {"render_client", "--command", "pause", "--secure", folder / "now/Olga"}}) {
+        test::Words of_another = program;
+        of_another.insert(of_another.end(), {"--session", "8"});
+        expectRefused(of_another,
+                      "this folder was made for session 7, and this is session 8; give --session 7, or the "
+                      "folder of session 8");
+    }
 }
 
 }  // namespace

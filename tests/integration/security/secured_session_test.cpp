@@ -50,7 +50,7 @@ TEST(SecuredSession, PeopleCommandInTheirRolesAndUnderTheirNames) {
 
 TEST(SecuredSession, StrangersAndThoseWhoOnlyLookReadAndWriteNothingThatIsNotTheirs) {
     const SecuredSlab slab;
-    const test::SecuredSession elsewhere({"--person", "Anna:instructor"});
+    const test::SecuredSession elsewhere({"--person", "Anna:instructor"}, testSession());
     const std::string foreign = elsewhere.folderOf("Anna");
     const test::TemporaryFolder lax;
     for (const char* kind : {"auth", "crypto"}) {
@@ -99,8 +99,8 @@ std::string daysAgo(int days) {
 TEST(SecuredSession, WhoseIdentityHasExpiredStaysOutsideWhateverTheOwnClockSays) {
     const SecuredSlab slab({"--from", daysAgo(100), "--days", "3650"});
     const std::string session = std::filesystem::path(slab.folderOf("server")).parent_path();
-    const Finished made =
-        test::makeSession(session, {"--person", "Old:instructor", "--from", daysAgo(100), "--days", "30"});
+    const Finished made = test::makeSession(
+        session, {"--person", "Old:instructor", "--from", daysAgo(100), "--days", "30"}, testSession());
     ASSERT_EQ(made.exit_code, 0) << made.err;
     const auto server = slab.server(true);
     const Finished late = slab.command("Old", {"--command", "pause"});

@@ -20,7 +20,7 @@ using Words = std::vector<std::string>;
 class SecuredSlab {
   public:
     // `more` goes to make-session.
-    explicit SecuredSlab(const Words& more = {}) : people_(joined(more)) {
+    explicit SecuredSlab(const Words& more = {}) : people_(joined(more), testSession()) {
         EXPECT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder_ / "slab.nrrd"}).exit_code,
                   0);
         writeFile(folder_ / "scene.textproto",

@@ -42,6 +42,7 @@ TEST_F(SecurityFolderTest, SaysWhoseItIs) {
     const SecurityFolder folder(olga_);
     EXPECT_EQ(folder.self().name, "Olga");
     EXPECT_EQ(folder.self().role, "operator");
+    EXPECT_EQ(folder.self().session, 7u);
     EXPECT_GE(folder.self().prefix[0], 0x80);
     EXPECT_NE(folder.self().prefix, SecurityFolder(session_.folderOf("Anna")).self().prefix);
     EXPECT_EQ(folder.properties("/plugins").size(), 6u + 3 * 3);
@@ -83,6 +84,21 @@ TEST_F(SecurityFolderTest, IsRefusedWithWhatIsSomebodyElses) {
     expectRefused(olga_, "permissions.p7s was not signed by this folder's permissions_ca.pem");
     exchange("identity_ca.pem", other.folderOf("Olga") + "/identity_ca.pem");
     expectRefused(olga_, "identity.pem was not issued by this folder's identity_ca.pem");
+}
+
+TEST_F(SecurityFolderTest, IsRefusedWhereOthersCanReadOrWriteIt) {
+    const auto may = [](const fs::path& path, int mode) { fs::permissions(path, fs::perms(mode)); };
+    for (const int mode : {0640, 0604, 0620, 0602}) {
+        may(olga_ / "identity.key", mode);
+        expectRefused(olga_, "identity.key can be read or written by others; type: chmod 600 ");
+    }
+    may(olga_ / "identity.key", 0400);
+    for (const int mode : {0750, 0705, 0720, 0702}) {
+        may(olga_, mode);
+        expectRefused(olga_, "Olga can be read or written by others; type: chmod 700 ");
+    }
+    may(olga_, 0700);
+    EXPECT_EQ(refusalOf(olga_), "");
 }
 
 TEST_F(SecurityFolderTest, ATamperedRuleIsNotTheSignedOne) {

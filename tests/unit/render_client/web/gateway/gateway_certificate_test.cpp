@@ -67,6 +67,8 @@ TEST(GatewayCertificate, AnotherOnesKeyAndWhatIsNoneAreNamed) {
     EXPECT_TRUE(says(refusal(made.certificate, folder / "text"), "holds no private key"));
     EXPECT_TRUE(says(refusal(folder / "none", made.key), "cannot be read"));
     EXPECT_TRUE(says(refusal(made.certificate, folder / "none"), "cannot be read"));
+    std::filesystem::permissions(made.key, std::filesystem::perms(0644));
+    EXPECT_TRUE(says(refusal(made.certificate, made.key), "can be read or written by others"));
 }
 
 }  // namespace
