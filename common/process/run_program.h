@@ -16,6 +16,7 @@
 #include <system_error>
 
 #include "common/base/user_error.h"
+#include "common/process/standard_output.h"
 
 namespace bonemill {
 
@@ -52,12 +53,16 @@ inline void requireMemory(size_t bytes, const std::string& what) {
     munmap(place, bytes);
 }
 
-// `body` returns the exit code; what it throws becomes a message and an exit code.
+// `body` returns the exit code; what it throws, and what it could not print (standard_output.h), becomes a
+// message and an exit code.
 template <class Body>
 int runProgram(Body&& body) {
     try {
+        outliveReaders();
         requireFileHandles();
-        return body();
+        const int exit_code = body();
+        requirePrinted();
+        return exit_code;
     } catch (const UserError& error) {
         std::cerr << "error: " << error.what() << std::endl;
         return kUserErrorExitCode;

@@ -1,9 +1,9 @@
 // Measures and asserts nothing. Each sub-command prints a table; docs/measurements.md says which ones
 // to quote.
 #include <CLI/CLI.hpp>
-#include <cstdio>
 
-#include "common/base/user_error.h"
+#include "common/cli/command_line.h"
+#include "common/process/run_program.h"
 #include "tests/bench/bench_commands.h"
 
 int main(int argc, char** argv) {
@@ -23,15 +23,8 @@ int main(int argc, char** argv) {
     bench::addEffectsCommand(app);
     bench::addHeavyCommand(app);
     bench::addDensitiesCommand(app);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        const bool is_help = error.get_exit_code() == 0;
-        app.exit(error);
-        return is_help ? 0 : 2;
-    } catch (const UserError& error) {
-        std::fprintf(stderr, "haptic_bench: %s\n", error.what());
-        return 2;
-    }
-    return 0;
+    return runProgram([&] {
+        parseCommandLine(app, argc, argv, "haptic_bench");
+        return 0;
+    });
 }

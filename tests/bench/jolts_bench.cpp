@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "common/base/units.h"
+#include "common/process/run_program.h"
 #include "tests/stability/jolts.h"
 
 namespace bonemill::test {
@@ -52,18 +53,16 @@ void print(const char* title, const char* format, const std::vector<Row>& rows, 
 int main(int argc, char** argv) {
     using namespace bonemill;
     using namespace bonemill::test;
-    std::vector<Row> rows;
-    try {
+    return runProgram([&] {
+        std::vector<Row> rows;
         for (const JoltEvent& event : joltEvents()) {
             bool is_asked_for = argc < 2;
             for (int n = 1; n < argc; ++n) is_asked_for |= joltEvent(argv[n]).name == event.name;
             if (is_asked_for) rows.push_back(measure(event));
         }
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "jolts_bench: %s\n", error.what());
-        return 2;
-    }
-    print("jolt, N per tick", "%.2f", rows, [](const JoltFigures& f) { return f.jolt; });
-    print("recovery, ms", "%.0f", rows, [](const JoltFigures& f) { return f.recovery * kPerMillisecond; });
-    return 0;
+        print("jolt, N per tick", "%.2f", rows, [](const JoltFigures& f) { return f.jolt; });
+        print("recovery, ms", "%.0f", rows,
+              [](const JoltFigures& f) { return f.recovery * kPerMillisecond; });
+        return 0;
+    });
 }

@@ -12,8 +12,9 @@
 #include <cstdio>
 #include <cstring>
 
-#include "common/base/user_error.h"
+#include "common/cli/command_line.h"
 #include "common/ipc/device_link.h"
+#include "common/process/run_program.h"
 #include "common/rt/clock.h"
 #include "common/rt/periodic_timer.h"
 #include "common/rt/realtime.h"
@@ -236,16 +237,8 @@ int main(int argc, char** argv) {
     app.add_option("--controller-core", o.asking_core, "core of the controller's thread (-1: any)")
         ->capture_default_str();
     bench::addJsonOption(app, o.json);
-    try {
-        app.parse(argc, argv);
-        bench::measure(o);
-    } catch (const CLI::ParseError& error) {
-        const bool is_help = error.get_exit_code() == 0;
-        app.exit(error);
-        return is_help ? 0 : 2;
-    } catch (const UserError& error) {
-        std::fprintf(stderr, "link_bench: %s\n", error.what());
-        return 2;
-    }
-    return 0;
+    return runProgram([&] {
+        if (parseCommandLine(app, argc, argv, "link_bench")) bench::measure(o);
+        return 0;
+    });
 }

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <random>
 
+#include "common/process/run_program.h"
 #include "common/rt/clock.h"
 #include "haptic_server/recording/rerun/rerun.h"
 #include "haptic_server/server/replay/survey.h"
@@ -72,6 +73,8 @@ int main(int argc, char** argv) {
     app.add_option("--minutes", minutes, "length of the recording")->capture_default_str();
     app.add_option("--jumps", jumps, "random ones")->check(CLI::Range(1, 10000))->capture_default_str();
     CLI11_PARSE(app, argc, argv);
-    bonemill::bench::run(minutes, jumps);
-    return 0;
+    return bonemill::runProgram([&] {
+        bonemill::bench::run(minutes, jumps);
+        return 0;
+    });
 }

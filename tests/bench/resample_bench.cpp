@@ -10,6 +10,7 @@
 #include <random>
 
 #include "common/base/units.h"
+#include "common/process/run_program.h"
 #include "haptic_server/scans/densify/region.h"
 #include "haptic_server/surface/mesh/leaf_mesher.h"
 #include "tests/support/contact_scene.h"
@@ -224,5 +225,5 @@ int run(int argc, char** argv) {
 }  // namespace bonemill
 
 int main(int argc, char** argv) {
-    return bonemill::run(argc, argv);
+    return bonemill::runProgram([&] { return bonemill::run(argc, argv); });
 }

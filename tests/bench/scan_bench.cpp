@@ -16,9 +16,10 @@
 #include <functional>
 #include <sstream>
 
-#include "common/base/user_error.h"
+#include "common/cli/command_line.h"
 #include "common/config/scene_file.h"
 #include "common/log/log.h"
+#include "common/process/run_program.h"
 #include "common/rt/clock.h"
 #include "haptic_server/core/bone/bone_model.h"
 #include "haptic_server/scans/dicom/dicom_headers.h"
@@ -280,16 +281,11 @@ int run(int argc, char** argv) {
     app.add_option("--runs", options.runs, "the best of so many counts")->capture_default_str();
     CLI::App* const one = app.add_subcommand("stage", "one stage, for this program itself");
     one->add_option("words", stage)->expected(2);
-    CLI11_PARSE(app, argc, argv);
-    try {
-        if (one->parsed())
-            runStageOf(stage[0], stage[1]);
-        else
-            measure(options);
-    } catch (const UserError& error) {
-        std::fprintf(stderr, "scan_bench: %s\n", error.what());
-        return 2;
-    }
+    if (!parseCommandLine(app, argc, argv, "scan_bench")) return 0;
+    if (one->parsed())
+        runStageOf(stage[0], stage[1]);
+    else
+        measure(options);
     return 0;
 }
 
@@ -297,5 +293,5 @@ int run(int argc, char** argv) {
 }  // namespace bonemill::bench
 
 int main(int argc, char** argv) {
-    return bonemill::bench::run(argc, argv);
+    return bonemill::runProgram([&] { return bonemill::bench::run(argc, argv); });
 }

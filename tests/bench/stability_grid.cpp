@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "common/process/run_program.h"
 #include "tests/bench/stability_plot.h"
 
 namespace bonemill::test {
@@ -114,10 +115,12 @@ int main(int argc, char** argv) {
     app.add_flag("--undeclared", is_undeclared, "The device says nothing");
     app.add_flag("--coarse", is_coarse, "Fewer points");
     CLI11_PARSE(app, argc, argv);
-    std::vector<GridRow> rows;
-    for (const std::string& variant : variants)
-        for (const GridRow& row : pointsOf(is_coarse ? kCoarse : kWhole, variant)) rows.push_back(row);
-    tryAll(rows, !is_undeclared);
-    printSummary(rows);
-    return !out.empty() && !writeGrid(out, rows) ? 1 : 0;
+    return bonemill::runProgram([&] {
+        std::vector<GridRow> rows;
+        for (const std::string& variant : variants)
+            for (const GridRow& row : pointsOf(is_coarse ? kCoarse : kWhole, variant)) rows.push_back(row);
+        tryAll(rows, !is_undeclared);
+        printSummary(rows);
+        return !out.empty() && !writeGrid(out, rows) ? 1 : 0;
+    });
 }

@@ -30,6 +30,7 @@
 #include <memory>
 #include <thread>
 
+#include "common/process/run_program.h"
 #include "tests/bench/zwidth_plot.h"
 #include "tests/stability/hard_scenes.h"
 #include "tests/stability/pressed.h"
@@ -205,7 +206,9 @@ int main(int argc, char** argv) {
         return nullptr;
     };
     const char* rate = valueOf("--rate");
-    const auto rows = bonemill::test::measureAll(valueOf("--variant"), rate ? std::atof(rate) : 0);
     const char* out = valueOf("--out");
-    return rows.empty() || (out && !bonemill::test::writeZwidth(out, rows)) ? 1 : 0;
+    return bonemill::runProgram([&] {
+        const auto rows = bonemill::test::measureAll(valueOf("--variant"), rate ? std::atof(rate) : 0);
+        return rows.empty() || (out && !bonemill::test::writeZwidth(out, rows)) ? 1 : 0;
+    });
 }

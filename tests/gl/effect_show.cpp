@@ -11,6 +11,7 @@
 #include <numeric>
 #include <vector>
 
+#include "common/process/run_program.h"
 #include "haptic_server/cases/phantom/tooth_phantom.h"
 #include "render_client/look/offscreen/osmesa_context.h"
 #include "tests/gl/milling_session.h"
@@ -208,11 +209,7 @@ void measure() {
     std::printf("}\n");
 }
 
-}  // namespace
-}  // namespace bonemill
-
-int main(int argc, char** argv) {
-    using namespace bonemill;
+int show(int argc, char** argv) {
     const std::string what = argc > 1 ? argv[1] : "";
     if (what == "pictures" && argc == 3) {
         std::filesystem::create_directories(argv[2]);
@@ -228,4 +225,11 @@ int main(int argc, char** argv) {
     }
     std::cerr << "usage: effect_show pictures DIR | measure" << std::endl;
     return 2;
+}
+
+}  // namespace
+}  // namespace bonemill
+
+int main(int argc, char** argv) {
+    return bonemill::runProgram([&] { return bonemill::show(argc, argv); });
 }

@@ -10,6 +10,7 @@
 #include "common/dds/network_cli.h"
 #include "common/log/log.h"
 #include "common/process/run_program.h"
+#include "common/process/standard_output.h"
 #include "device_daemon/apps/device_daemon/daemon.h"
 #include "device_daemon/apps/device_daemon/device_choice.h"
 #include "device_daemon/ares/ares_device/ares_settings.h"
@@ -128,10 +129,11 @@ int runDaemon(int argc, char** argv) {
     }
     umask(S_IRWXG | S_IRWXO);  // what a stop leaves behind is its user's alone
     const StopSignals stop_signals;
-    dds::setNetwork(options->network, dds::NetworkPart::kDevice);
+    dds::setNetwork(options->network, dds::NetworkPart::kDevice, options->session);
     DeviceLink link = DeviceLink::create(options->session, LinkSide::kDaemon);
     SceneFollower scenes(std::move(own), *options, link, stop_signals);
     serve(*options, scenes, link, stop_signals);
+    forgiveUnprinted();
     return 0;
 }
 

@@ -7,6 +7,7 @@
 #include "common/config/scene_file.h"
 #include "common/log/log.h"
 #include "common/process/run_program.h"
+#include "common/process/standard_output.h"
 #include "device_daemon/ares/emulator/emulator.h"
 
 namespace bonemill {
@@ -66,6 +67,7 @@ int emulate(int argc, char** argv) {
     std::cout << "listening on " << wire::textOf(emulator.local()) << std::endl;
     emulator.run();
     std::cout << jsonLineOf(emulator.statistics()) << std::endl;
+    forgiveUnprinted();
     return 0;
 }
 

@@ -17,6 +17,7 @@
 #include "common/base/user_error.h"
 #include "common/cli/command_line.h"
 #include "common/process/run_program.h"
+#include "common/process/standard_output.h"
 #include "common/rt/clock.h"
 #include "common/rt/stop_signals.h"
 #include "device_daemon/bridges/bridge/bridge_link.h"
@@ -78,10 +79,7 @@ constexpr int64_t kLookEveryNs = 20 * kNsPerMillisecond;
 // thread and before a library is loaded: all threads inherit that the signals are its own.
 class WayOut {
   public:
-    WayOut() {
-        signal(SIGPIPE, SIG_IGN);  // that no process reads what is printed is no reason to leave force behind
-        thread_ = std::thread([this] { watch(); });
-    }
+    WayOut() : thread_([this] { watch(); }) {}
     ~WayOut() {
         is_over_ = true;
         thread_.join();
@@ -186,6 +184,7 @@ int BridgeRun::runLink() {
     const int result = serve(link);
     sayFarewell(link);
     stop();
+    forgiveUnprinted();
     return result;
 }
 
@@ -254,7 +253,7 @@ void BridgeRun::stop() {
     arm_.stop();
 }
 
-int runProgram(int argc, char** argv, const BridgeProgram& program) {
+int bridgeArm(int argc, char** argv, const BridgeProgram& program) {
     const auto options = parseOptions(argc, argv, program);
     if (!options) return 0;
     if (options->parent) endWithParent(*options->parent);
@@ -273,15 +272,7 @@ int runProgram(int argc, char** argv, const BridgeProgram& program) {
 
 int runBridge(int argc, char** argv, const BridgeProgram& program) {
     keepPointInNumbers();
-    int result = 1;
-    try {
-        result = runProgram(argc, argv, program);
-    } catch (const UserError& error) {
-        say(std::string("error: ") + error.what());
-        result = kUserErrorExitCode;
-    } catch (const std::exception& error) {
-        say(std::string("error: ") + error.what());
-    }
+    const int result = bonemill::runProgram([&] { return bridgeArm(argc, argv, program); });
     _exit(result);  // what vendors' libraries do at exit() is not known to be harmless
 }
 

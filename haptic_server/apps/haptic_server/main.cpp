@@ -13,6 +13,7 @@
 #include "common/dds/network_cli.h"
 #include "common/log/log.h"
 #include "common/process/run_program.h"
+#include "common/process/standard_output.h"
 #include "haptic_server/lab/describe/describe_scene.h"
 #include "haptic_server/lab/simulate/simulate.h"
 #include "haptic_server/scans/import/import_volume.h"
@@ -142,7 +143,9 @@ int serveLive(const Options& options) {
     }
     if (!options.describe) {
         umask(S_IRWXG | S_IRWXO);  // what a session leaves says who did what: it is its user's alone
-        return runServer(options.server);
+        const int exit_code = runServer(options.server);
+        forgiveUnprinted();
+        return exit_code;
     }
     std::cout << describeScene(options.server.scene);
     return 0;

@@ -10,6 +10,7 @@
 #include "common/cli/command_line.h"
 #include "common/cli/version.h"
 #include "common/process/run_program.h"
+#include "common/process/standard_output.h"
 #include "haptic_server/cases/casework/case_request.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "render_client/case_window/case_screen/screen_painter.h"
@@ -102,6 +103,7 @@ int makeCases(int argc, char** argv) {
     if (!parseCommandLine(app, argc, argv, "case_window")) return 0;
     umask(S_IRWXG | S_IRWXO);  // a case is its user's alone
     CaseWindow(options).run();
+    forgiveUnprinted();
     return 0;
 }
 

@@ -12,6 +12,7 @@
 #include "common/files/whole_file.h"
 #include "common/log/log.h"
 #include "common/process/run_program.h"
+#include "common/process/standard_output.h"
 #include "render_client/apps/render_client/scene_feed.h"
 #include "render_client/apps/render_client/unattended_viewer.h"
 #include "render_client/apps/render_client/window_viewer.h"
@@ -102,6 +103,7 @@ int runRelay(const ClientOptions& options) {
     std::cout << "relay for a gateway with --via: "
               << textOf(NetworkPlace{options.relay->address, relay.port()}) << std::endl;
     relay.run(stopRequested);
+    forgiveUnprinted();
     const Relay::Counts counts = relay.counts();
     spdlog::info("the relay ends: it passed on {} bytes and turned {} lines away", counts.bytes,
                  counts.refused);
@@ -123,6 +125,7 @@ int runGateway(const ClientOptions& options) {
     if (!server.hasPage()) std::cout << "the page was not built: only viewers with --connect can come\n";
     std::cout << std::flush;
     server.serveUntil(stopRequested);
+    forgiveUnprinted();
     return 0;
 }
 
@@ -183,7 +186,9 @@ int view(int argc, char** argv) {
     setUpLog("render_client", options->log_level);
     catchStopSignals();
     if (options->relay) return runRelay(*options);
-    dds::setNetwork(options->network);
+    const bool is_of_one = !options->lists_sessions && !options->chooses_session;
+    dds::setNetwork(options->network, dds::NetworkPart::kViewer,
+                    is_of_one ? std::optional(options->subscriber.session) : std::nullopt);
     if (options->connect) connectToGateway(*options);
     if (options->lists_sessions) return runListSessions(*options);
     if (options->serve) return runGateway(*options);
@@ -198,6 +203,7 @@ int view(int argc, char** argv) {
         runOffscreen(*options);
     } else {
         runWindow(*options);
+        forgiveUnprinted();
     }
     return 0;
 }

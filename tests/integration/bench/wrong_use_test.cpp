@@ -20,9 +20,9 @@ TEST(HapticBench, RefusesAFileThatCannotBeWritten) {
     for (std::vector<std::string> arguments : commands) {
         arguments.insert(arguments.begin(), "haptic_bench");
         arguments.insert(arguments.end(), {"--json", none});
-        expectRefused(arguments, "haptic_bench: " + none + ": cannot be written");
+        expectRefused(arguments, "error: " + none + ": cannot be written");
     }
-    expectRefused({"haptic_bench", "scale", "--plot", none}, "haptic_bench: " + none + ": cannot be written");
+    expectRefused({"haptic_bench", "scale", "--plot", none}, "error: " + none + ": cannot be written");
 }
 
 TEST(HapticBench, AFileThatExistsOutlivesAWrongCommandLine) {
