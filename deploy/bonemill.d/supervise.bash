@@ -77,13 +77,11 @@ command_of() {
     esac
 }
 
-# launch ROLE. A process group of its own keeps the terminal's Ctrl-C from it, so that the order of the end is ours. The
-# small shell is there for the moment before the kernel knows whose death it shall watch.
+# launch ROLE. A process group of its own keeps the terminal's Ctrl-C from it, so that the order of the end is ours.
 launch() {
     local words
     command_of "$1"
-    # shellcheck disable=SC2016
-    setsid setpriv --pdeathsig TERM sh -c '[ "$PPID" = "$0" ] && exec "$@"' "$$" "${words[@]}" \
+    end_with "$$" setsid "${words[@]}" \
         >>"$logs/$1.log" 2>&1 </dev/null 9>&- {never}<&- {terminal}>&- {device_words}<&- &
     pid[$1]=$!
     started_s[$1]=$SECONDS

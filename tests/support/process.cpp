@@ -12,6 +12,7 @@
 #include <string_view>
 #include <thread>
 
+#include "tests/support/fork_child.h"
 #include "tests/support/places.h"
 
 namespace bonemill::test {
@@ -59,7 +60,7 @@ Process::Process(const std::vector<std::string>& arguments) {
     words[0] = programOf(arguments[0]).string();
     std::vector<std::string> variables = environmentWith(folder_ / "state");
     const std::vector<char*> argv = pointersTo(words), environment = pointersTo(variables);
-    pid_ = fork();
+    pid_ = forkChild();
     if (pid_ != 0) return;
     redirect(STDOUT_FILENO, folder_ / "out");
     redirect(STDERR_FILENO, folder_ / "err");

@@ -17,7 +17,8 @@ struct Finished {
 };
 
 // Runs a child process; its output goes to files in its own temporary folder, and so does what it
-// keeps in $XDG_STATE_HOME, which tests must not clutter. It is killed when the object goes.
+// keeps in $XDG_STATE_HOME, which tests must not clutter. It is killed when the object goes, and ends when
+// this process does. Make it in the main thread.
 class Process {
   public:
     // The first argument is a program's name in the build's bin folder, or a path.

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "tests/support/dds_session.h"
+#include "tests/support/fork_child.h"
 #include "tests/support/places.h"
 
 namespace bonemill {
@@ -19,20 +19,21 @@ ChildProcess::ChildProcess(const std::string& name, std::string argument) {
     int input[2], output[2];
     // The pipes close on exec: a child that held another one's pipe would keep that one from ending.
     if (pipe2(input, O_CLOEXEC) != 0 || pipe2(output, O_CLOEXEC) != 0) throw std::runtime_error("pipe");
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, input[0], STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, output[1], STDOUT_FILENO);
     std::string path = test::helperDir() + "/" + name;
     std::string domain = std::to_string(testDomain()), session = std::to_string(testSession());
     char* const arguments[] = {path.data(), domain.data(), session.data(), argument.data(), nullptr};
-    const int failure = posix_spawn(&pid_, path.c_str(), &actions, nullptr, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
+    pid_ = test::forkChild();
+    if (pid_ == 0) {
+        dup2(input[0], STDIN_FILENO);
+        dup2(output[1], STDOUT_FILENO);
+        execv(path.c_str(), arguments);
+        _exit(127);
+    }
     close(input[0]);
     close(output[1]);
     to_child_ = input[1];
     from_child_ = output[0];
-    if (failure != 0) throw std::runtime_error("cannot start " + path);
+    if (pid_ < 0) throw std::runtime_error("cannot start " + path);
 }
 
 ChildProcess::~ChildProcess() {

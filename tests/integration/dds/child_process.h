@@ -1,4 +1,5 @@
-// Runs a helper program of the test with its stdin and stdout on pipes, and kills it when the object goes.
+// Runs a helper program of the test with its stdin and stdout on pipes, and kills it when the object goes; it
+// ends when this process does. Make it in the main thread.
 #pragma once
 
 #include <string>

@@ -8,6 +8,8 @@
 #include <functional>
 #include <utility>
 
+#include "tests/support/fork_child.h"
+
 namespace bonemill {
 
 inline constexpr int kSuccess = 0;
@@ -15,7 +17,7 @@ inline constexpr int kSuccess = 0;
 // The child process runs `body` and leaves with its result; it is killed if the test ends first.
 class Child {
   public:
-    explicit Child(const std::function<int()>& body) : pid_(fork()) {
+    explicit Child(const std::function<int()>& body) : pid_(test::forkChild()) {
         if (pid_ == 0) {
             int result = 99;
             try {
