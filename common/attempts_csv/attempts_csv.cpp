@@ -47,7 +47,8 @@ size_t attemptColumns(const std::string& header) {
     return columns >= kFirstColumns ? columns : 0;
 }
 
-std::string attemptLine(const topics::Attempt& attempt, const std::string& scene, size_t columns) {
+std::string attemptLine(const topics::Attempt& attempt, const std::string& scene, const std::string& chain,
+                        size_t columns) {
     const topics::Training& training = attempt.training();
     const bool has_structures = training.has_damaged_mm3() || training.has_least_distance_mm() ||
                                 training.has_max_protected_force_n();
@@ -76,7 +77,8 @@ std::string attemptLine(const topics::Attempt& attempt, const std::string& scene
         verdict.has_passed() ? verdict.passed() ? "yes" : "no" : "",
         csvText(orNone(verdict.has_passed(), joined(verdict.failed_gates()))),
         ifAny(verdict.has_score_percent(), verdict.score_percent()),
-        csvText(verdict.results())};
+        csvText(verdict.results()),
+        chain};
     CsvLine line;
     for (size_t n = 0; n < std::min(columns, cells.size()); ++n) line.field(cells[n]);
     return line.text();

@@ -11,8 +11,8 @@ namespace bonemill {
 inline constexpr char kAttemptsHeader[] =
     "number,start_utc,trainee,scene,time_s,removed_mm3,max_force_n,damaged_mm3,least_distance_mm,"
     "max_protected_force_n,necrotic_mm3,max_temperature_c,structures_touched,warnings,passed,failed_gates,"
-    "score_percent,results";
-inline constexpr size_t kAttemptColumns = 18;
+    "score_percent,results,chain";
+inline constexpr size_t kAttemptColumns = 19;
 
 // How many columns a header has if it is kAttemptsHeader, or the beginning of it that an earlier release
 // wrote (it had kFirstColumns at least); else 0.
@@ -20,10 +20,10 @@ inline constexpr size_t kFirstColumns = 14;
 size_t attemptColumns(const std::string& header);
 
 // Makes one line without its end, as UTF-8: the first `columns` of kAttemptsHeader. `scene` is what people
-// call the scene. What the scene does not measure stays empty; what it measures and did not happen is 0 or
-// "none".
+// call the scene, `chain` the recording's link that covers the attempt, where that is known. What the scene
+// does not measure stays empty; what it measures and did not happen is 0 or "none".
 std::string attemptLine(const topics::Attempt& attempt, const std::string& scene,
-                        size_t columns = kAttemptColumns);
+                        const std::string& chain = {}, size_t columns = kAttemptColumns);
 
 // Tells whether a line of a class table, as written here or by a spreadsheet, is of this trainee.
 bool isAttemptOf(const std::string& line, const std::string& trainee);

@@ -2,15 +2,19 @@
 // of recordings, and how exact a scene's accuracy settings are here.
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <cctype>
 #include <functional>
 #include <iostream>
 #include <string>
 
+#include "common/base/user_error.h"
 #include "common/cli/command_line.h"
 #include "common/cli/version.h"
 #include "common/dds/network_cli.h"
 #include "common/log/log.h"
 #include "common/process/run_program.h"
+#include "common/process/standard_output.h"
 #include "haptic_server/cases/casework/case_request.h"
 #include "haptic_server/lab/accuracy_report/accuracy_report.h"
 #include "haptic_server/lab/assess/assess_journal.h"
@@ -79,8 +83,18 @@ void addReportOptions(CLI::App& app, AccuracyReportOptions& report) {
         ->check(within(1e-3, 1e6));
 }
 
-int verify(const std::string& journal) {
-    const JournalVerdict verdict = verifyJournal(journal, versionText());
+// As hexOf() writes it. Throws UserError.
+std::string linkOf(std::string hex) {
+    std::ranges::transform(hex, hex.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    constexpr size_t kDigits = 64;
+    if (!hex.empty() &&
+        (hex.size() != kDigits || hex.find_first_not_of("0123456789abcdef") != std::string::npos))
+        throw UserError("--chain " + hex + ": a link has 64 hexadecimal digits (0 to 9, a to f)");
+    return hex;
+}
+
+int verify(const std::string& journal, const std::string& noted_link) {
+    const JournalVerdict verdict = verifyJournal(journal, versionText(), linkOf(noted_link));
     std::cout << journal << ": " << verdict.text() << std::flush;
     return verdict.isProven() ? 0 : 1;
 }
@@ -104,7 +118,7 @@ struct Options {
     std::string series_folder;
     ForgetOptions forget;
     AssessOptions assess;
-    std::string journal;
+    std::string journal, noted_link;
     ExportOptions files;
 };
 
@@ -127,9 +141,14 @@ void addFileCommands(CLI::App& app, Options& options, Run& chosen) {
                 return 0;
             }),
         options.report);
-    addReplayOptions(add(app, "replay", "show a recorded session again, as a live one (docs/teach/replay.md)",
-                         chosen, [&] { return runReplay(options.replay); }),
-                     options.replay);
+    addReplayOptions(
+        add(app, "replay", "show a recorded session again, as a live one (docs/teach/replay.md)", chosen,
+            [&] {
+                const int exit_code = runReplay(options.replay);
+                forgiveUnprinted();
+                return exit_code;
+            }),
+        options.replay);
     addCaseOptions(add(app, "make-case", "make a training case of a scan (docs/teach/cases.md)", chosen,
                        [&] {
                            keepFilesPrivate();
@@ -153,10 +172,13 @@ void addSessionCommands(CLI::App& session, Options& options, Run& chosen) {
                          "measure and judge the attempts of a recording anew (docs/teach/assessment.md)",
                          chosen, [&] { return assessJournal(options.assess, std::cout); }),
                      options.assess);
-    add(session, "verify", "run a recording again and compare every bit", chosen,
-        [&] { return verify(options.journal); })
-        .add_option("JOURNAL", options.journal, "recording (.mcap)")
-        ->required();
+    CLI::App& verifying = add(session, "verify", "run a recording again and compare every bit", chosen,
+                              [&] { return verify(options.journal, options.noted_link); });
+    verifying.add_option("JOURNAL", options.journal, "recording (.mcap)")->required();
+    verifying
+        .add_option("--chain", options.noted_link,
+                    "a link that was kept apart: of the class table, a result, a report or the server's log")
+        ->type_name("HEX");
     addExportOptions(add(session, "export", "write a recorded session as files for other programs", chosen,
                          [&] {
                              exportJournal(options.files);

@@ -126,6 +126,7 @@ void Journal::writeLink(int64_t mono_ns) {
     journal::Link link;
     link.set_sha256(chain_.close());
     writer_.addMessage(uint16_t(JournalTopic::kChain), stampOf(mono_ns), link.SerializeAsString());
+    newest_link_->set(hexOf(chain_.link()));
 }
 
 void Journal::add(const TickRecord& record) {
@@ -259,6 +260,7 @@ void Journal::finish() {
     event.mutable_end()->set_ticks(ticks_);
     write(JournalTopic::kEvent, monotonicNowNs(), event);
     writeLink(monotonicNowNs());
+    newest_link_->end();
     writer_.finish();
     file_.append(writer_.take());
     file_.finish();

@@ -18,6 +18,7 @@
 #include "haptic_server/recording/journal/journal_chain.h"
 #include "haptic_server/recording/journal/journal_file.h"
 #include "haptic_server/recording/journal/journal_topics.h"
+#include "haptic_server/recording/journal/newest_link.h"
 #include "haptic_server/recording/statistics/state_hash.h"
 
 namespace bonemill {
@@ -57,6 +58,8 @@ class Journal {
     void finish();
     // After that: what the chain ends with, as hexadecimal digits (journal_chain.h).
     std::string lastLink() const { return hexOf(chain_.link()); }
+    // Any thread: what the chain ends with so far.
+    std::shared_ptr<const NewestLink> newestLink() const { return newest_link_; }
     // Before the recorder thread runs: writes what was put, and waits until it is in the file.
     void flush();
 
@@ -89,6 +92,7 @@ class Journal {
     mcap::Writer writer_;
     std::string buffer_;
     JournalChain chain_;
+    const std::shared_ptr<NewestLink> newest_link_ = std::make_shared<NewestLink>();
     TickHash hash_;
     BoneStateWriter bones_;
     ResultColumns results_;

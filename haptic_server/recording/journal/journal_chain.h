@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "common/digest/digest.h"
 #include "common/mcap/mcap_index.h"
@@ -47,6 +48,9 @@ class JournalChain {
 // Follows the chain through a journal.
 class ChainCheck {
   public:
+    // `noted` is a link that somebody has kept apart, as hexadecimal digits; empty: none.
+    explicit ChainCheck(std::string noted = {}) : noted_(std::move(noted)) {}
+
     void take(JournalTopic topic, const mcap::Message& message) {
         if (first_ns_ == 0) first_ns_ = link_ns_ = message.time_ns;
         if (!problem_.empty()) return;
@@ -56,12 +60,26 @@ class ChainCheck {
             chain_.add(topic, message.time_ns, message.data);
     }
     bool isBroken() const noexcept { return !problem_.empty(); }
+    // The link that was noted is not in the chain as far as that is unbroken.
+    bool lacksNoted() const noexcept { return !noted_.empty() && noted_ns_ == 0; }
     // For people: where it is broken first, or the last link, which proves something to who noted it before.
     std::string text() const {
         if (!problem_.empty()) return problem_;
         if (links_ == 0) return "there is none";
         return "unbroken, " + std::to_string(links_) + " links, the last is " + hexOf(chain_.link()) +
                (chain_.isEmpty() ? "" : "; what comes after it is not proven");
+    }
+    // For people; empty if none was noted.
+    std::string textOfNoted() const {
+        if (noted_.empty()) return {};
+        if (lacksNoted())
+            return "the link that was noted is not in it: this is another recording, or it was changed";
+        char text[128];
+        std::snprintf(text, sizeof text,
+                      "the link that was noted is that of %.1f s: until then the recording is as it was when "
+                      "that was noted",
+                      secondsOfNs(int64_t(noted_ns_ - first_ns_)));
+        return text;
     }
 
   private:
@@ -78,8 +96,11 @@ class ChainCheck {
         }
         ++links_;
         link_ns_ = message.time_ns;
+        if (!noted_.empty() && hexOf(chain_.link()) == noted_) noted_ns_ = link_ns_;
     }
 
+    std::string noted_;
+    uint64_t noted_ns_ = 0;  // 0: it was not met
     JournalChain chain_;
     uint64_t links_ = 0;
     uint64_t first_ns_ = 0, link_ns_ = 0;  // of the first message, of the last good link

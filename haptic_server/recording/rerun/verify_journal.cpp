@@ -211,7 +211,8 @@ std::vector<std::string> reasonsAgainstSameBits(const journal::Manifest& manifes
     return reasons;
 }
 
-JournalVerdict verifyJournal(const std::filesystem::path& path, const std::string& version) {
+JournalVerdict verifyJournal(const std::filesystem::path& path, const std::string& version,
+                             const std::string& noted_link) {
     JournalVerdict verdict;
     const Recording recording(path);
     verdict.not_whole = notWhole(recording.content());
@@ -219,13 +220,15 @@ JournalVerdict verifyJournal(const std::filesystem::path& path, const std::strin
     verdict.reasons = reasonsAgainstSameBits(recording.manifest(), version);
     Simulation simulation = makeSimulation(scene);
     BonePass states(*simulation.bone);
-    ChainCheck chain;
+    ChainCheck chain(noted_link);
     readJournal(path, [&](JournalTopic topic, const mcap::Message& message) {
         states.take(topic, message);
         chain.take(topic, message);
     });
     verdict.is_chain_broken = chain.isBroken();
     verdict.chain = chain.text();
+    verdict.lacks_noted_link = chain.lacksNoted();
+    verdict.noted_link = chain.textOfNoted();
     const Recording::Bones bones = recording.readBones(*simulation.bone);
     Rerun rerun(recording, simulation, bones.checkpoints, *simulation.bone, bones.keyframes.front());
     BitComparison comparison(rerun, *simulation.bone, recordedEffectsOf(scene.scene.effects()), states,
@@ -251,6 +254,7 @@ std::string JournalVerdict::text() const {
                         position / kMicrometre, force);
     for (const std::string& reason : reasons) text += "\n" + reason;
     text += "\nthe chain: " + chain;
+    if (!noted_link.empty()) text += "\n" + noted_link;
     if (!not_whole.empty()) text += "\nthe journal: " + not_whole;
     return text + "\n";
 }

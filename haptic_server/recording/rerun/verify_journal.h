@@ -27,13 +27,19 @@ struct JournalVerdict {
     std::string not_whole;             // what the journal lacks, for people; empty: nothing
     bool is_chain_broken = false;
     std::string chain;  // of the journal's messages, for people
+    bool lacks_noted_link = false;
+    std::string noted_link;  // for people; empty: none was noted
 
-    bool isProven() const noexcept { return ticks > 0 && is_same && reasons.empty() && !is_chain_broken; }
+    bool isProven() const noexcept {
+        return ticks > 0 && is_same && reasons.empty() && !is_chain_broken && !lacks_noted_link;
+    }
     std::string text() const;  // for people: some lines
 };
 
-// `version` is what this program's --version prints. Throws UserError if it is no journal, or its scene
-// cannot be loaded, or reads a file that is another one now.
-JournalVerdict verifyJournal(const std::filesystem::path& path, const std::string& version);
+// `version` is what this program's --version prints, `noted_link` a link of the chain that was kept apart, as
+// 64 hexadecimal digits, or empty. Throws UserError if it is no journal, or its scene cannot be loaded, or
+// reads a file that is another one now.
+JournalVerdict verifyJournal(const std::filesystem::path& path, const std::string& version,
+                             const std::string& noted_link = {});
 
 }  // namespace bonemill

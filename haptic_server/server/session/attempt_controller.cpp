@@ -135,6 +135,11 @@ std::optional<AttemptJudgement> AttemptController::judgement(std::optional<doubl
     judgement.scene_hash = scene_hash_;
     judgement.begin_s = technique->beginS();
     judgement.journal = journal_.fileName();
+    if (const auto newest = journal_.newestLink())
+        judgement.link = [newest, count = newest->count()] {
+            constexpr std::chrono::seconds kLongest{3};  // without a device there are no ticks, and no links
+            return newest->awaitAfter(count, kLongest);
+        };
     if (const JudgedTask* const task = task_ ? task_->task() : nullptr) {
         judgement.is_exam = task->is_exam;
         judgement.is_told = !task->is_exam && task->feedback != TaskFeedback::kNever;

@@ -3,6 +3,7 @@
 // thread, or to whoever runs none beside it.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -34,6 +35,10 @@ class JournalRecorder {
     void noteAttemptBegan(const std::string& trainee, uint64_t bone_order);
     void noteAttemptEnded(const topics::Attempt& attempt);
     void noteAttemptDropped();
+    // Of the recording; null if there is none.
+    std::shared_ptr<const NewestLink> newestLink() const {
+        return journal_ ? journal_->newestLink() : nullptr;
+    }
     // Of the recording; empty if there is none.
     std::string fileName() const { return journal_ ? journal_->path().filename().string() : ""; }
 

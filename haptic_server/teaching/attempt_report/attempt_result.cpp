@@ -147,6 +147,7 @@ AttemptResult readResult(const ReadJson& json) {
     result.start_unix_ns = json.at("start_unix_ns").get<int64_t>();
     result.duration_s = numberOf(json, "duration_s");
     result.journal = json.at("journal").get<std::string>();
+    result.chain = json.value("chain", "");  // earlier releases had none
     result.is_exam = json.at("exam").get<bool>();
     result.assessment = readAssessment(json);
     return result;
@@ -179,6 +180,7 @@ std::string resultJson(const AttemptResult& result) {
         {"start_unix_ns", result.start_unix_ns},
         {"duration_s", result.duration_s},
         {"journal", result.journal},
+        {"chain", result.chain},
         {"exam", result.is_exam},
         {"gates", listOf(assessment.gates, gateJson)},
         {"sub_scores", listOf(assessment.sub_scores, subScoreJson)}};

@@ -18,6 +18,7 @@ struct AttemptResult {
     int64_t start_unix_ns = 0;  // CLOCK_REALTIME
     double duration_s = 0;      // without pauses
     std::string journal;        // the recording's file name; empty: there is none
+    std::string chain;          // its link that covers the attempt, 64 hexadecimal digits; empty: none
     bool is_exam = false;
     Assessment assessment;
 };

@@ -154,10 +154,14 @@ std::string timeLineOf(const AttemptResult& result, double begin_s) {
         result.journal.empty()
             ? ""
             : " · " + element("code", "bonemill_lab replay " + escaped(result.journal) + " --at …");
+    const std::string proof = result.chain.empty()
+                                  ? ""
+                                  : element("p", "The recording's chain at the end of the attempt: " +
+                                                     element("code", escaped(result.chain)));
     const std::string line = timeLineSvg(result.assessment, worst, begin_s);
-    if (line.empty() && worst.empty()) return "";
+    if (line.empty() && worst.empty() && proof.empty()) return "";
     return element("section", element("h2", "The attempt, and its worst moments" + replay) + line +
-                                  worstMomentsOf(worst, begin_s));
+                                  worstMomentsOf(worst, begin_s) + proof);
 }
 
 // Scores where there are some, else the time that it took.

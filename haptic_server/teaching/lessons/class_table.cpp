@@ -50,7 +50,7 @@ size_t columnsOf(const LineFile& file, const std::string& path) {
 // Judges the attempt, writes results and report beside the class table, and fills in the attempt's verdict.
 // `scene` is the scene's title. Returns why the files are not there, or "".
 std::string writeResults(const AttemptJudgement& judgement, const std::string& class_table,
-                         const std::string& scene, topics::Attempt& attempt) {
+                         const std::string& scene, const std::string& chain, topics::Attempt& attempt) {
     try {
         JudgedAttempt judged = judgement.judge();
         AttemptResult result;
@@ -62,6 +62,7 @@ std::string writeResults(const AttemptJudgement& judgement, const std::string& c
         result.start_unix_ns = attempt.start_stamp_ns();
         result.duration_s = attempt.time_s();
         result.journal = judgement.journal;
+        result.chain = chain;
         result.is_exam = judgement.is_exam;
         result.assessment = std::move(judged.assessment);
         const ResultFolder folder(std::filesystem::absolute(class_table).parent_path());
@@ -88,13 +89,14 @@ ClassTable::ClassTable(std::string path) : path_(std::move(path)) {
     }
 }
 
-std::string ClassTable::append(const topics::Attempt& attempt, const std::string& scene) const {
+std::string ClassTable::append(const topics::Attempt& attempt, const std::string& scene,
+                               const std::string& chain) const {
     if (path_.empty()) return "";
     try {
         const LineFile file(path_);
         const size_t columns = columnsOf(file, path_);
         const std::string header = file.size() == 0 ? std::string(kAttemptsHeader) + "\n" : "";
-        file.append(header + attemptLine(attempt, scene, columns) + "\n");
+        file.append(header + attemptLine(attempt, scene, chain, columns) + "\n");
         return "";
     } catch (const std::exception& error) {
         return error.what();
@@ -127,10 +129,12 @@ struct TableWriter::Shared {
     Written write(const Line& line) {
         topics::Attempt attempt = line.attempt;
         std::string files_problem;
-        if (line.judgement) files_problem = writeResults(*line.judgement, table.path(), line.scene, attempt);
+        const std::string chain = line.judgement && line.judgement->link ? line.judgement->link() : "";
+        if (line.judgement)
+            files_problem = writeResults(*line.judgement, table.path(), line.scene, chain, attempt);
         if (!files_problem.empty())
             spdlog::error("the results of attempt {} are not there: {}", attempt.number(), files_problem);
-        std::string problem = table.append(attempt, line.scene);
+        std::string problem = table.append(attempt, line.scene, chain);
         if (!problem.empty())
             spdlog::error("attempt {} is not in the class table: {}", attempt.number(), problem);
         Written written{line.order, attempt.number(), {}, problem.empty() ? files_problem : problem};

@@ -27,6 +27,8 @@ struct AttemptJudgement {
     uint64_t scene_hash = 0;  // sceneHashOf()
     double begin_s = 0;       // of the session
     std::string journal;      // the recording's file name; empty: none
+    // Returns the recording's link that covers the attempt (newest_link.h); may wait. Empty: there is none.
+    std::function<std::string()> link;
     bool is_exam = false;
     bool is_told = true;  // trainees may learn how it went
 };
@@ -42,7 +44,8 @@ class ClassTable {
     bool hasFile() const noexcept { return !path_.empty(); }
     const std::string& path() const noexcept { return path_; }
     // Returns why the line is not there (disk full, among others), or "".
-    std::string append(const topics::Attempt& attempt, const std::string& scene) const;
+    std::string append(const topics::Attempt& attempt, const std::string& scene,
+                       const std::string& chain = {}) const;
 
     // Tells whether a class table lies there. Throws UserError if that cannot be read, or another program
     // keeps it locked.

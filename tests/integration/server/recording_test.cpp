@@ -244,7 +244,7 @@ TEST_F(Recording, VerifyFindsTheTickThatDiffers) {
         EXPECT_EQ(live.wait().exit_code, 0);
     }
     const std::string good = journal(), bad = folder_ / "bad.mcap";
-    mcap::Writer writer(kJournalProfile, "test");
+    mcap::Writer writer(kJournalProfile, "bonemill test");
     readJournal(good, [&, is_first = true](JournalTopic topic, const mcap::Message& message) mutable {
         if (std::exchange(is_first, false))
             for (const JournalTopicName& name : kJournalTopics)
@@ -269,7 +269,19 @@ TEST_F(Recording, VerifyFindsTheTickThatDiffers) {
     EXPECT_NE(verdict.out.find("differs from tick 1234 "), std::string::npos) << verdict.out;
     EXPECT_NE(verdict.out.find("the hand's pose"), std::string::npos) << verdict.out;
 
-    EXPECT_NE(verify(good).out.find("the chain: unbroken"), std::string::npos);
+    const std::string whole = verify(good).out;
+    const std::string before_link = "the chain: unbroken, ", last = ", the last is ";
+    ASSERT_NE(whole.find(before_link), std::string::npos) << whole;
+    const std::string link = whole.substr(whole.find(last) + last.size(), 64);
+    const auto verifyAgainst = [&](const std::string& noted) {
+        return run({"bonemill_lab", "session", "verify", good, "--chain", noted});
+    };
+    const Finished noted = verifyAgainst(link), foreign = verifyAgainst(std::string(64, 'F'));
+    EXPECT_EQ(noted.exit_code, 0) << noted.out;
+    EXPECT_NE(noted.out.find("the link that was noted is that of "), std::string::npos) << noted.out;
+    EXPECT_EQ(foreign.exit_code, 1);
+    EXPECT_NE(foreign.out.find("the link that was noted is not in it"), std::string::npos) << foreign.out;
+    EXPECT_EQ(verifyAgainst("abc").exit_code, 2);
 
     // The volume is another file, with the same name: it is not read.
     const std::string volume = folder_ / "block.nrrd";

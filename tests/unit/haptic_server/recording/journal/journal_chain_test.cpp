@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 
 #include "haptic_server/recording/journal/journal_reader.h"
+#include "haptic_server/recording/journal/newest_link.h"
+#include "tests/support/foreign_mcap.h"
 #include "tests/support/rewritten_journal.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/haptic_server/recording/journal/recorded_session.h"
@@ -32,6 +36,15 @@ class JournalChainTest : public testing::Test {
         readJournal(path, [&](JournalTopic topic, const auto& message) { chain.take(topic, message); });
         EXPECT_EQ(chain.isBroken(), chain.text().starts_with("broken between"));
         return chain.text();
+    }
+    // Says whether the link that was noted is there, and from when it is.
+    std::string checkAgainst(const std::string& noted, const std::vector<JournalMessage>& messages) const {
+        test::writeJournal(folder_ / "changed.mcap", messages, true);
+        ChainCheck chain(noted);
+        readJournal(folder_ / "changed.mcap",
+                    [&](JournalTopic topic, const auto& message) { chain.take(topic, message); });
+        EXPECT_EQ(chain.lacksNoted(), chain.textOfNoted().find("is not in it") != std::string::npos);
+        return chain.textOfNoted();
     }
     std::string check(const std::vector<JournalMessage>& messages) const {
         test::writeJournal(folder_ / "changed.mcap", messages, true);
@@ -101,6 +114,56 @@ TEST_F(JournalChainTest, AForgedChainEndsOtherwise) {
     }
     EXPECT_FALSE(isBroken(forged));
     EXPECT_EQ(check(forged).find(last_link_), std::string::npos);
+    EXPECT_NE(checkAgainst(last_link_, forged).find("is not in it"), std::string::npos);
+}
+
+TEST_F(JournalChainTest, EveryLinkThatWasNotedSaysUntilWhenItProves) {
+    EXPECT_EQ(checkAgainst("", messages_), "");
+    EXPECT_NE(checkAgainst(std::string(64, '0'), messages_).find("is not in it"), std::string::npos);
+    for (const JournalMessage& message : messages_) {
+        if (message.topic != JournalTopic::kChain) continue;
+        const std::string text = checkAgainst(hexOf(message.as<journal::Link>().sha256()), messages_);
+        EXPECT_TRUE(text.starts_with("the link that was noted is that of ")) << text;
+    }
+    std::vector<JournalMessage> broken = messages_;
+    broken[place(JournalTopic::kBone)].time_ns += 1;
+    EXPECT_NE(checkAgainst(last_link_, broken).find("is not in it"), std::string::npos);
+}
+
+// Other programs give other numbers to the channels, and leave the profile out.
+TEST_F(JournalChainTest, AJournalThatAnotherProgramHasWrittenAnewIsTheSame) {
+    std::vector<mcap::Channel> channels;
+    for (const JournalTopicName& topic : kJournalTopics)
+        channels.push_back({uint16_t(100 - int(topic.topic)), 0, std::string(topic.name), "protobuf"});
+    std::vector<test::ForeignMessage> messages;
+    for (const JournalMessage& message : messages_)
+        messages.push_back({uint16_t(100 - int(message.topic)), message.time_ns, message.data});
+    const std::filesystem::path path = folder_ / "anew.mcap";
+    for (const test::ForeignShape& shape : test::foreignShapes()) {
+        std::ofstream(path, std::ios::binary) << test::ForeignMcap(shape).file(channels, messages);
+        EXPECT_EQ(check(path), "unbroken, 3 links, the last is " + last_link_) << shape.name;
+        const JournalContent content = readJournalContent(path, KeepInputs::kYes);
+        EXPECT_EQ(content.problem, "") << shape.name;
+        EXPECT_TRUE(content.has_ended) << shape.name;
+    }
+    std::ofstream(path, std::ios::binary) << test::ForeignMcap({}).file({{1, 1, "/other", "protobuf"}}, {});
+    EXPECT_THROW(readJournalContent(path, KeepInputs::kYes), UserError) << "a recording of something else";
+}
+
+// An attempt's line in the class table waits for the link that covers it.
+TEST(NewestLinkTest, TheLinkAfterTheNextCoversWhatWasPut) {
+    using std::chrono::milliseconds;
+    NewestLink links;
+    EXPECT_EQ(links.awaitAfter(links.count(), milliseconds(1)), "");
+    links.set("a");
+    const uint64_t put = links.count();
+    links.set("b");
+    EXPECT_EQ(links.awaitAfter(put, milliseconds(1)), "b") << "no other came in time";
+    std::jthread recorder([&] { links.set("c"); });
+    EXPECT_EQ(links.awaitAfter(put, std::chrono::minutes(1)), "c");
+    recorder.join();
+    links.end();
+    EXPECT_EQ(links.awaitAfter(links.count(), std::chrono::minutes(1)), "c") << "none comes any more";
 }
 
 TEST_F(JournalChainTest, SaysWhatItDoesNotProve) {

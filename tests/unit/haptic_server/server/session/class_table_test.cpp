@@ -39,7 +39,7 @@ class ClassTableTest : public testing::Test {
 const std::string kHeader = std::string(kAttemptsHeader) + "\n";
 const std::string kAnn =
     "3,2023-11-14T22:13:20Z,\"Ann\",\"Straight bore, molar\",61.5,12.25,4,0,none,,,,\"pulp; nerve, "
-    "left\",\"none\",,\"\",,\"\"\n";
+    "left\",\"none\",,\"\",,\"\",\n";
 
 TEST_F(ClassTableTest, EachAttemptIsAWholeLineBelowTheHeader) {
     const ClassTable table(path());
@@ -47,6 +47,8 @@ TEST_F(ClassTableTest, EachAttemptIsAWholeLineBelowTheHeader) {
     EXPECT_EQ(content(), kHeader + kAnn);
     EXPECT_EQ(ClassTable(path()).append(attemptOf("Ann"), "Straight bore, molar"), "");
     EXPECT_EQ(content(), kHeader + kAnn + kAnn);
+    EXPECT_EQ(table.append(attemptOf("Ann"), "Straight bore, molar", "0a1b"), "");
+    EXPECT_TRUE(content().ends_with(",\"\",0a1b\n")) << "the recording's link";
 }
 
 TEST_F(ClassTableTest, AnotherFileIsNotTouched) {
@@ -64,7 +66,7 @@ TEST_F(ClassTableTest, ATableOfAnEarlierReleaseGoesOn) {
     const std::string header = kHeader.substr(0, kHeader.find(",passed")) + "\n";
     test::writeFile(path(), header);
     EXPECT_EQ(ClassTable(path()).append(attemptOf("Ann"), "Straight bore, molar"), "");
-    EXPECT_EQ(content(), header + kAnn.substr(0, kAnn.size() - 9) + "\n");
+    EXPECT_EQ(content(), header + kAnn.substr(0, kAnn.size() - 10) + "\n");
     test::writeFile(path(), kHeader.substr(0, kHeader.find(",scene")) + "\n");
     EXPECT_THROW(ClassTable{path()}, UserError) << "fewer columns than there ever were";
 }
