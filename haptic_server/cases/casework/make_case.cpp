@@ -299,6 +299,7 @@ void makeCase(const CaseRequest& request, const std::string& version, std::ostre
     writeVolume(folder / kScanOfCase, scan);
     if (!request.labels.empty()) {
         const RawVolume map = importVolume(request.labels);
+        out << request.labels << ": " << map.description << '\n';
         findSegments(map.segments, request.labels, labels);
         writeVolume(folder / kLabelsOfCase, map);
     }

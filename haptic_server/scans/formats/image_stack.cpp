@@ -1,13 +1,14 @@
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "common/base/user_error.h"
 #include "common/process/work_ahead.h"
 #include "haptic_server/scans/confined/import_limits.h"
+#include "haptic_server/scans/formats/slice_names.h"
 #include "haptic_server/scans/formats/volume_file.h"
 #include "haptic_server/scans/frame/physical_frame.h"
 #include "haptic_server/scans/pixels/itk_image_file.h"
@@ -43,27 +44,17 @@ std::vector<fs::path> filesIn(const fs::path& folder) {
     return files;
 }
 
-size_t endOfDigits(const std::string& text, size_t from) {
-    while (from < text.size() && std::isdigit(static_cast<unsigned char>(text[from]))) ++from;
-    return from;
-}
-
-// The digits of the number that begins there, without leading zeros.
-std::string_view numberAt(const std::string& text, size_t begin, size_t end) {
-    while (begin + 1 < end && text[begin] == '0') ++begin;
-    return std::string_view(text).substr(begin, end - begin);
-}
-
 struct Stack {
     fs::path folder;
     std::vector<fs::path> slices;
     size_t others = 0;  // files that are left out
+    std::string remark = {};
 
     bool isPng() const { return extensionOf(slices.front()) == ".png"; }
 };
 
 Stack stackOf(const fs::path& folder) {
-    Stack stack{folder, {}, 0};
+    Stack stack{folder, {}};
     for (const fs::path& file : filesIn(folder))
         if (isPicture(file))
             stack.slices.push_back(file);
@@ -77,6 +68,11 @@ Stack stackOf(const fs::path& folder) {
             throw UserError(slice.string() + ": is of another type than " +
                             stack.slices.front().filename().string() +
                             "; a folder of slices needs PNG files or TIFF files alone");
+    std::vector<std::string> names;
+    for (const fs::path& slice : stack.slices) names.push_back(slice.stem().string());
+    const SliceNumbers numbers = sliceNumbersOf(names);
+    if (!numbers.problem.empty()) throw UserError(folder.string() + ": " + numbers.problem);
+    stack.remark = numbers.remark;
     return stack;
 }
 
@@ -142,28 +138,22 @@ RawValues readPictures(const Stack& stack, const Picture& first) {
 
 }  // namespace
 
-bool isBeforeNaturally(const std::string& a, const std::string& b) {
-    size_t i = 0, j = 0;
-    while (i < a.size() && j < b.size()) {
-        const size_t i_end = endOfDigits(a, i), j_end = endOfDigits(b, j);
-        if (i_end > i && j_end > j) {
-            const std::string_view m = numberAt(a, i, i_end), n = numberAt(b, j, j_end);
-            if (m != n) return m.size() != n.size() ? m.size() < n.size() : m < n;
-            i = i_end;
-            j = j_end;
-        } else {
-            if (a[i] != b[j]) return a[i] < b[j];
-            ++i;
-            ++j;
-        }
-    }
-    if (i < a.size() || j < b.size()) return i == a.size();
-    return a < b;  // "a01" and "a1"
-}
-
 bool isImageStack(const std::filesystem::path& folder) {
     const std::vector<fs::path> files = filesIn(folder);
     return 2 * std::ranges::count_if(files, isPicture) > std::ssize(files);
+}
+
+void refuseOtherPictures(const std::filesystem::path& folder) {
+    const std::vector<fs::path> files = filesIn(folder);
+    const auto isOther = [](const fs::path& path) {
+        constexpr std::array kEndings = {".jpg", ".jpeg", ".jp2", ".bmp", ".gif", ".webp"};
+        return std::ranges::find(kEndings, extensionOf(path)) != kEndings.end();
+    };
+    if (2 * std::ranges::count_if(files, isOther) > std::ssize(files))
+        throw UserError(
+            folder.string() + ": its pictures (" + std::ranges::find_if(files, isOther)->filename().string() +
+            ", ...) are of a kind that is not read; save each slice as PNG or TIFF, grey, with 8 or "
+            "16 bit, from the scanner's own data");
 }
 
 void checkSpacing(const Eigen::Vector3d& spacing_mm, const std::string& file) {
@@ -193,6 +183,7 @@ RawVolume importImageStack(const std::filesystem::path& folder,
     raw.description = std::to_string(stack.slices.size()) + (stack.isPng() ? " PNG" : " TIFF") + " images, " +
                       stack.slices.front().filename().string() + " to " +
                       stack.slices.back().filename().string();
+    if (!stack.remark.empty()) raw.description += ", " + stack.remark;
     if (first.is_white_zero)
         raw.description += "; values as they are stored: 0, which these files show as white, is the lowest";
     if (stack.others > 0) raw.description += "; " + std::to_string(stack.others) + " other files left out";

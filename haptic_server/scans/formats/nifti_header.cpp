@@ -72,15 +72,23 @@ bool isGeometryFinite(const Header& header) {
     return true;
 }
 
+// The codes of lengths; those from 8 on are of time.
+constexpr int kLengthMask = 7, kMetres = 1, kMicrometres = 3;  // 0: not said, 2: mm
+
 double mmPerUnit(const Header& header) {
-    switch (header.at<int8_t>(kUnitsOffset) & 7) {
-        case 1:
-            return 1000;
-        case 3:
-            return 1e-3;
-        default:  // mm, or not said
-            return 1;
-    }
+    const int unit = header.at<int8_t>(kUnitsOffset) & kLengthMask;
+    return unit == kMetres ? 1000 : unit == kMicrometres ? 1e-3 : 1;
+}
+
+void checkUnit(const Header& header, const std::string& file) {
+    const int unit = header.at<int8_t>(kUnitsOffset) & kLengthMask;
+    if (unit > kMicrometres)
+        throw UserError(file + ": its NIfTI header states lengths in a unit that there is not (xyzt_units " +
+                        std::to_string(unit) + "); set it to 2 for mm");
+}
+
+bool isSet(const Header& header, size_t code_offset) {
+    return header.at<int16_t>(code_offset) > 0;
 }
 
 Eigen::Vector3i dimsOf(const Header& header) {
@@ -118,7 +126,10 @@ FileFrame sformOf(const Header& header) {
 FileFrame qformOf(const Header& header) {
     const auto number = [&](size_t offset) { return double(header.at<float>(offset)); };
     const double b = number(kQuaternOffset), c = number(kQuaternOffset + 4), d = number(kQuaternOffset + 8);
-    const double a = std::sqrt(std::max(0.0, 1 - b * b - c * c - d * d));
+    // The numbers are float: of a half turn their rounding would leave 0.03 degrees.
+    constexpr double kRounding = 1e-7;
+    const double rest = 1 - b * b - c * c - d * d;
+    const double a = rest < kRounding ? 0 : std::sqrt(rest);
     Eigen::Matrix3d step = Eigen::Quaterniond(a, b, c, d).normalized().toRotationMatrix();
     for (int axis = 0; axis < 3; ++axis) step.col(axis) *= number(kPixdimOffset + 4 + 4 * size_t(axis));
     if (number(kPixdimOffset) < 0) step.col(2) = -step.col(2);  // qfac
@@ -140,16 +151,36 @@ double distanceMm(const FileFrame& a, const FileFrame& b) {
     return most;
 }
 
-void takeFrame(const Header& header, NiftiHeader& out) {
-    const bool has_sform = header.at<int16_t>(kSformCodeOffset) > 0;
-    const bool has_qform = header.at<int16_t>(kQformCodeOffset) > 0;
-    out.has_patient_space = has_sform || has_qform;
-    if (has_sform)
-        out.frame = sformOf(header);
-    else if (has_qform)
-        out.frame = qformOf(header);
+// Neither form is set: the voxels' size is all that is known. To readers of NIfTI the axes of such a file
+// point in different directions.
+FileFrame plainFrame(const Header& header) {
+    FileFrame frame{.dims = dimsOf(header),
+                    .spacing_mm = Eigen::Vector3d::Ones(),
+                    .directions = Eigen::Matrix3d::Identity(),
+                    .origin_mm = Eigen::Vector3d::Zero()};
+    for (int a = 0; a < 3; ++a)
+        frame.spacing_mm[a] = header.at<float>(kPixdimOffset + 4 + 4 * size_t(a)) * mmPerUnit(header);
+    return frame;
+}
+
+// The library gives up where they differ, unless there is a qform.
+void checkSizesOfSform(const Header& header, const FileFrame& frame, const std::string& file) {
+    constexpr double kMaxShare = 0.01;
+    const Eigen::Vector3d said_mm = plainFrame(header).spacing_mm;
+    if (!((said_mm - frame.spacing_mm).cwiseQuotient(said_mm).cwiseAbs().maxCoeff() <= kMaxShare))
+        throw UserError(
+            file +
+            printed(": its sform makes voxels of %.4g x %.4g x %.4g mm, its pixdim says ",
+                    frame.spacing_mm.x(), frame.spacing_mm.y(), frame.spacing_mm.z()) +
+            printed("%.4g x %.4g x %.4g mm; make them agree", said_mm.x(), said_mm.y(), said_mm.z()));
+}
+
+void takePlace(const Header& header, NiftiHeader& out) {
+    const bool has_sform = isSet(header, kSformCodeOffset), has_qform = isSet(header, kQformCodeOffset);
+    out.place.is_patients = has_sform || has_qform;
+    out.place.frame = has_sform ? sformOf(header) : has_qform ? qformOf(header) : plainFrame(header);
     if (!has_sform || !has_qform) return;
-    const double apart_mm = distanceMm(*out.frame, qformOf(header));
+    const double apart_mm = distanceMm(out.place.frame, qformOf(header));
     if (apart_mm <= kSameFormMm) return;
     out.remark = printed(
         "its sform and qform place voxels up to %.1f mm apart: the sform is taken, as the standard says",
@@ -203,13 +234,17 @@ NiftiHeader readNiftiHeader(const std::filesystem::path& path) {
         throw UserError(file +
                         ": its NIfTI header puts the voxels at an impossible place; the file is damaged");
     checkScale(header, file);
+    checkUnit(header, file);
     checkVoxelSize(header, file);
     const int bits = header.at<int16_t>(kBitpixOffset);
     if (bits <= 0 || bits % 8 != 0)
         throw UserError(file + ": its NIfTI header states " + std::to_string(bits) +
                         " bits per voxel; whole bytes are needed");
     NiftiHeader out{.data_offset = uint64_t(data_offset), .bytes_per_voxel = uint64_t(bits / 8)};
-    takeFrame(header, out);
+    takePlace(header, out);
+    checkFrame(out.place.frame, file);  // before the library, which says it less clearly
+    if (isSet(header, kSformCodeOffset) && !isSet(header, kQformCodeOffset))
+        checkSizesOfSform(header, out.place.frame, file);
     return out;
 }
 

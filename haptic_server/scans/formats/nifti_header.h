@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 
 #include "haptic_server/scans/frame/physical_frame.h"
@@ -11,12 +10,11 @@
 namespace bonemill {
 
 struct NiftiHeader {
-    uint64_t data_offset = 0;        // bytes of the unpacked file before the voxels
-    uint64_t bytes_per_voxel = 0;    // in the file; scaled values take more when they are read
-    bool has_patient_space = false;  // qform or sform are set: they name the patient's sides
-    // Of the sform where it is set, else of the qform, as the standard says; nothing: neither is set. Its
-    // axes may be sheared.
-    std::optional<FileFrame> frame = {};
+    uint64_t data_offset = 0;      // bytes of the unpacked file before the voxels
+    uint64_t bytes_per_voxel = 0;  // in the file; scaled values take more when they are read
+    // Of the sform where it is set, else of the qform, as the standard says; where neither is set, it does
+    // not know the patient.
+    FilePlace place = {};
     std::string remark = {};  // for people, where both are set and disagree; else empty
 };
 

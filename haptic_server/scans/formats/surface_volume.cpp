@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "common/base/units.h"
@@ -117,9 +118,15 @@ class SurfaceSampler {
     uint32_t guess_ = 0;
 };
 
-// 3D Slicer writes which axes it means into the head of the files that it saves.
-bool saysSpace(const std::string& head, const std::string& space) {
-    return head.find("SPACE=" + space) != std::string::npos;
+// 3D Slicer writes which axes it means into the head of the files that it saves; empty: nothing is said.
+std::string spaceOf(const std::string& head, const std::string& file) {
+    constexpr std::string_view kWord = "SPACE=";
+    const size_t at = head.find(kWord);
+    if (at == std::string::npos) return {};
+    const std::string space = head.substr(at + kWord.size(), 3);
+    if (space == "RAS" || space == "LPS") return space;
+    throw UserError(file + ": its head says " + std::string(kWord) + printable(space) +
+                    "..., which is neither LPS nor RAS; export it in one of them");
 }
 
 }  // namespace
@@ -128,17 +135,20 @@ RawVolume importSurface(const std::filesystem::path& path, std::optional<double>
     noteFileBeingRead(path);
     const std::string file = path.string(), head = firstBytes(path, kHeadBytes);
     std::vector<Vector3d> corners = readMeshFile(path, kBoneSolid);
-    if (saysSpace(head, "RAS"))
+    const std::string space = spaceOf(head, file);
+    if (space == "RAS")
         for (Vector3d& p : corners) p.head<2>() = -p.head<2>();
     const TriangleMesh mesh = closedMesh(corners, file, kBoneSolid);
     RawVolume raw;
     raw.geometry = gridAround(mesh.box(), voxel_mm, file);
     raw.values = SurfaceSampler(mesh, raw.geometry, inside, file).sample();
     raw.surface_value = inside / 2;
-    raw.lacks_patient_axes = !saysSpace(head, "RAS") && !saysSpace(head, "LPS");
-    raw.description = "surface of " + std::to_string(mesh.triangles.size()) + " triangles in voxels of " +
-                      number(raw.geometry.spacing.x() * kPerMillimetre) + " mm, bone from " +
-                      number(inside / 2);
+    raw.lacks_patient_axes = space.empty();
+    const Vector3d size_mm = kPerMillimetre * mesh.box().sizes();
+    raw.description =
+        "surface of " + std::to_string(mesh.triangles.size()) + " triangles, " + number(size_mm.x()) + " x " +
+        number(size_mm.y()) + " x " + number(size_mm.z()) + " mm if its numbers are mm, in voxels of " +
+        number(raw.geometry.spacing.x() * kPerMillimetre) + " mm, bone from " + number(inside / 2);
     return raw;
 }
 

@@ -35,14 +35,14 @@ RawVolume importSurface(const std::filesystem::path& path, std::optional<double>
 // Are most of the folder's files PNG or TIFF? Hidden ones do not count.
 bool isImageStack(const std::filesystem::path& folder);
 
-// Grey pictures of 8 or 16 bit, all of one size, in the natural order of their names: columns go along x,
-// rows along y, slices along z. `spacing_mm` is the voxels' size, which pictures do not say. Throws
-// UserError.
+// Throws UserError where most of them are JPEG, BMP or other pictures that lose values or are seldom grey.
+void refuseOtherPictures(const std::filesystem::path& folder);
+
+// Grey pictures of 8 or 16 bit, all of one size, in the natural order of their names (slice_names.h), which
+// leave no number out: columns go along x, rows along y, slices along z. `spacing_mm` is the voxels' size,
+// which pictures do not say. Throws UserError.
 RawVolume importImageStack(const std::filesystem::path& folder,
                            const std::optional<Eigen::Vector3d>& spacing_mm);
-
-// Orders "a2" before "a10": numbers in names count as numbers.
-bool isBeforeNaturally(const std::string& a, const std::string& b);
 
 // Throws UserError unless all three are lengths above 0 that voxels can have.
 void checkSpacing(const Eigen::Vector3d& spacing_mm, const std::string& file);

@@ -21,7 +21,9 @@ void checkNumbers(const FileFrame& frame, const std::string& file) {
     const auto& o = frame.origin_mm;
     if (!o.allFinite() || o.cwiseAbs().maxCoeff() > kMaxOriginMm)
         throw UserError(file + ": the origin is not a sensible position; the header is damaged");
-    if (!frame.directions.allFinite() || frame.directions.colwise().norm().minCoeff() < 0.5)
+    constexpr double kMaxOffLength = 1e-2;
+    const Eigen::Array3d lengths = frame.directions.colwise().norm().transpose();
+    if (!((lengths - 1).abs().maxCoeff() <= kMaxOffLength))
         throw UserError(file + ": the axis directions are not unit vectors; the header is damaged");
 }
 

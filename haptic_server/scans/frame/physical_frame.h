@@ -15,6 +15,11 @@ struct FileFrame {
     Eigen::Vector3d origin_mm;  // centre of voxel (0, 0, 0)
 };
 
+struct FilePlace {
+    FileFrame frame;
+    bool is_patients = false;  // the file says how the patient lay; else its axes are taken for LPS
+};
+
 // Axes may be this far (cosine between two of them) from perpendicular; text headers round to 4-6 digits.
 inline constexpr double kMaxAxisCosine = 1e-3;
 

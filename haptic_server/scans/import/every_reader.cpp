@@ -42,6 +42,7 @@ RawVolume readVolume(const std::filesystem::path& path, const ImportOptions& opt
     const DicomWish wish{options.series_uid, options.acquisition, {}};
     const bool is_folder = isFolder(path);
     if (is_folder && isImageStack(path)) return importImageStack(path, options.spacing_mm);
+    if (is_folder) refuseOtherPictures(path);
     const std::string name = lowerCase(path.filename().string());
     if (!is_folder && (name.ends_with(".nrrd") || name.ends_with(".nhdr")))
         return importNrrd(path, options.spacing_mm);

@@ -115,6 +115,11 @@ RawVolume importVolume(const std::filesystem::path& path, const ImportOptions& o
 RawVolume importVolumeHere(const std::filesystem::path& path, const ImportOptions& options) {
     requireThere(path);
     RawVolume raw = readVolume(path, options);
+    if (raw.lacks_patient_axes)
+        raw.description +=
+            "; nothing in it says how the patient lay: its axes are taken for those to the left, the back "
+            "and "
+            "the head, and left and right may be exchanged";
     const size_t count = raw.values.range().non_finite;
     if (count > 0) raw.description += "; " + std::to_string(count) + " values are not finite";
     return raw;

@@ -11,6 +11,7 @@
 #include "haptic_server/scans/frame/physical_frame.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "haptic_server/scans/nrrd/nrrd_header.h"
+#include "haptic_server/scans/nrrd/nrrd_place.h"
 
 namespace bonemill {
 namespace {
@@ -26,36 +27,6 @@ std::vector<uint64_t> dimsOf(const NrrdFields& fields) {
     std::vector<uint64_t> dims;
     for (const double n : numbersIn(fields.sizes)) dims.push_back(n >= 1 ? uint64_t(n) : 0);
     return dims;
-}
-
-// World axes are LPS; RAS has two of them the other way round.
-Eigen::Vector3d signsOf(const std::string& space) {
-    const bool is_ras = space == "ras" || space == "right-anterior-superior";
-    return is_ras ? Eigen::Vector3d(-1, -1, 1) : Eigen::Vector3d::Ones();
-}
-
-FileFrame frameOf(const NrrdHeader& header, const std::vector<uint64_t>& dims,
-                  const std::filesystem::path& path) {
-    const NrrdFields& fields = header.fields;
-    FileFrame frame{Eigen::Vector3i(int(dims[0]), int(dims[1]), int(dims[2])), Eigen::Vector3d::Ones(),
-                    Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
-    const Eigen::Vector3d signs = signsOf(fields.space);
-    if (const auto numbers = numbersIn(fields.space_directions); numbers.size() == 9) {
-        for (int a = 0; a < 3; ++a) {
-            const Eigen::Vector3d step = Eigen::Vector3d(&numbers[size_t(3 * a)]).cwiseProduct(signs);
-            frame.spacing_mm[a] = step.norm();
-            frame.directions.col(a) = step / frame.spacing_mm[a];
-        }
-    } else if (!fields.space_directions.empty()) {
-        refuse(path, "its space directions are not those of three axes");
-    } else if (const auto spacings = numbersIn(fields.spacings); spacings.size() == 3) {
-        frame.spacing_mm = Eigen::Vector3d(spacings.data());
-    }
-    if (const auto origin = numbersIn(fields.space_origin); origin.size() == 3)
-        frame.origin_mm = Eigen::Vector3d(origin.data()).cwiseProduct(signs);
-    frame.spacing_mm *= header.mm_per_unit;
-    frame.origin_mm *= header.mm_per_unit;
-    return frame;
 }
 
 // The voxels of an open file, unpacked where they are packed.
@@ -153,10 +124,6 @@ void requirePlain(const NrrdHeader& header, const std::filesystem::path& path) {
         refuse(path, "its voxels do not follow its header in the same file");
     if (header.encoding != "raw" && header.encoding != "gzip" && header.encoding != "gz")
         refuse(path, "its encoding is " + header.encoding);
-    // ITK turns the wrong axis of LAS round; no build shall place a patient otherwise than another.
-    if (header.fields.space == "las" || header.fields.space == "left-anterior-superior")
-        throw UserError(path.string() + ": its space is " + header.fields.space +
-                        "; write it as left-posterior-superior");
     if (numbersIn(header.fields.sizes).size() != 3) refuse(path, "it has other than three axes");
 }
 
@@ -170,16 +137,16 @@ RawVolume readPlainNrrd(const std::filesystem::path& path, const std::optional<E
     checkVolumeSize(dims, type.bytes + sizeof(float), path.string());
     requireOneSpacing(header.has_spacing, spacing_mm.has_value(), "spacings or space directions",
                       path.string());
-    FileFrame frame = frameOf(header, dims, path);
-    if (spacing_mm) frame.spacing_mm = *spacing_mm;
+    FilePlace place = nrrdPlaceOf(header, path.string());
+    if (spacing_mm) place.frame.spacing_mm = *spacing_mm;
     RawVolume raw;
     VoxelBytes bytes(path, header);
     type.append(bytes, dims[0] * dims[1] * dims[2], header.fields.endian == "big", raw.values);
     if (!header.segments.empty()) raw.segments = joinLayers(header.segments, 1, raw.values, path.string());
-    const bool flipped = makeRightHanded(frame, path.string(), raw.geometry, raw.values);
+    const bool flipped = makeRightHanded(place.frame, path.string(), raw.geometry, raw.values);
     if (header.exact_geometry && isSameGeometry(*header.exact_geometry, raw.geometry))
         raw.geometry = *header.exact_geometry;
-    raw.lacks_patient_axes = !header.has_patient_space;
+    raw.lacks_patient_axes = !place.is_patients;
     raw.description = std::string("NRRD") + (flipped ? ", left-handed: third axis reversed" : "");
     return raw;
 }

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
+#include <set>
 #include <sstream>
 
 #include "common/base/user_error.h"
@@ -63,18 +65,6 @@ double mmPerUnitOfAll(const std::string& text, const std::filesystem::path& path
     return mm;
 }
 
-// These spaces have the patient's sides as axes, also with time as a fourth; others are the scanner's or
-// nobody's.
-bool isPatientSpace(const std::string& space) {
-    std::string name = fieldName(space);
-    if (name.ends_with("-time")) name.resize(name.size() - 5);
-    if (name.size() == 4 && name.back() == 't') name.pop_back();  // RAST
-    for (const char* known : {"ras", "las", "lps", "right-anterior-superior", "left-anterior-superior",
-                              "left-posterior-superior"})
-        if (name == known) return true;
-    return false;
-}
-
 // The library takes vectors whose length is no number for 1 mm.
 void checkDirections(const std::string& text, const std::filesystem::path& path) {
     constexpr double kFarTooLong = 1e100;
@@ -87,14 +77,14 @@ void checkDirections(const std::string& text, const std::filesystem::path& path)
 // For "nan", which stands where nothing is known, the library takes 1 mm, too.
 void checkSpacings(const std::string& text, const std::filesystem::path& path) {
     for (const double n : numbersIn(text))
-        if (!std::isfinite(n))
+        if (!std::isfinite(n) || n <= 0)
             throw UserError(path.string() + ": its spacings (" + text +
                             ") are no lengths; write the voxels' size into the NRRD header");
 }
 
 // The library counts some of them with 32 bit, and would take 2^32 + 1 for 1.
 void checkSizes(const std::string& text, const std::filesystem::path& path) {
-    constexpr double kMostSize = double(uint64_t(1) << 31);
+    constexpr double kMostSize = std::numeric_limits<int>::max();
     for (const double n : numbersIn(text))
         if (!(n <= kMostSize))
             throw UserError(path.string() + ": its sizes (" + text + ") are absurd; the header is damaged");
@@ -108,6 +98,9 @@ void keepField(const std::string& name, const std::string& value, NrrdFields& fi
     if (name == "spacedirections") fields.space_directions = value;
     if (name == "spaceorigin") fields.space_origin = value;
     if (name == "spacings") fields.spacings = value;
+    if (name == "kinds") fields.kinds = value;
+    if (name == "axismins") fields.axis_mins = value;
+    if (name == "centers" || name == "centerings") fields.centers = value;
     if (name == "spaceunits") fields.space_units = value;
     if (name == "units") fields.axis_units = value;
     if (name == "lineskip" || name == "byteskip") fields.has_skip = fields.has_skip || value != "0";
@@ -116,7 +109,6 @@ void keepField(const std::string& name, const std::string& value, NrrdFields& fi
 void takeField(const std::string& name, const std::string& value, const std::filesystem::path& path,
                NrrdHeader& header) {
     keepField(name, value, header.fields);
-    if (name == "space") header.has_patient_space = isPatientSpace(value);
     if (name == "encoding") header.encoding = fieldName(value);
     if (name == "datafile") header.data_file = value;
     if (name == "spacedirections") checkDirections(value, path);
@@ -125,11 +117,18 @@ void takeField(const std::string& name, const std::string& value, const std::fil
     header.has_spacing = header.has_spacing || name == "spacedirections" || name == "spacings";
 }
 
-void takeLine(const std::string& line, const std::filesystem::path& path, NrrdHeader& header) {
+// `seen` are the fields of the lines before.
+void takeLine(const std::string& line, const std::filesystem::path& path, std::set<std::string>& seen,
+              NrrdHeader& header) {
     const auto colon = line.find(':');
     if (line[0] == '#' || colon == std::string::npos) return;
-    if (line.compare(colon, 2, ":=") != 0)
-        return takeField(fieldName(line.substr(0, colon)), trimmed(line.substr(colon + 1)), path, header);
+    if (line.compare(colon, 2, ":=") != 0) {
+        const std::string name = fieldName(line.substr(0, colon));
+        if (!seen.insert(name).second)
+            throw UserError(path.string() + ": its header states " + trimmed(line.substr(0, colon)) +
+                            " twice; take one of them out");
+        return takeField(name, trimmed(line.substr(colon + 1)), path, header);
+    }
     if (line.substr(0, colon) == kNrrdGeometryKey)
         header.exact_geometry = geometryFromText(line.substr(colon + 2));
     takeSegmentLine(line.substr(0, colon), line.substr(colon + 2), path, header.segments);
@@ -166,11 +165,12 @@ NrrdHeader readNrrdHeader(const std::filesystem::path& path) {
     if (!std::getline(text, line) || line.rfind("NRRD000", 0) != 0)
         throw UserError(path.string() + ": is not a NRRD file (it does not start with NRRD000)");
     NrrdHeader header;
+    std::set<std::string> seen;
     header.bytes = line.size() + 1;
     while (std::getline(text, line)) {
         header.bytes += line.size() + 1;
         if (trimmed(line).empty()) break;
-        takeLine(line, path, header);
+        takeLine(line, path, seen, header);
     }
     if (header.bytes >= kMaxHeaderBytes)
         throw UserError(path.string() + ": the NRRD header does not end; the file is damaged");

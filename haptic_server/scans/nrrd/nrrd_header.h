@@ -1,5 +1,6 @@
 // Our own reading of a NRRD header: what ITK does not tell of it (units, where the data are, our exact
-// geometry), and what a reader without ITK needs (scans/import/plain_nrrd.cpp).
+// geometry) or tells wrongly (nrrd_place.h), and what a reader without ITK needs
+// (scans/import/plain_nrrd.cpp).
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@ namespace bonemill {
 // As the file says it, unchecked; absent fields are empty.
 struct NrrdFields {
     std::string type, endian, space, space_units, axis_units;
-    std::string sizes, space_directions, space_origin, spacings;
+    std::string sizes, space_directions, space_origin, spacings, kinds, axis_mins, centers;
     bool has_skip = false;  // data begin later than right behind the header
 };
 
@@ -26,14 +27,13 @@ struct NrrdHeader {
     std::string data_file;                         // empty: attached
     double mm_per_unit = 1;                        // from "space units", else from "units" of the axes
     bool has_spacing = false;                      // says something of the voxels' size
-    bool has_patient_space = false;                // its "space" names the patient's sides
     std::optional<VolumeGeometry> exact_geometry;  // from nrrd_writer.h
     NrrdSegments segments;                         // of a label map
     NrrdFields fields;
 };
 
 // Reads at most 1 MiB. Throws UserError when it is no NRRD file, or its units or directions are not lengths,
-// or its units differ from axis to axis.
+// or its units differ from axis to axis, or it states a field twice.
 NrrdHeader readNrrdHeader(const std::filesystem::path& path);
 
 inline constexpr const char* kNrrdGeometryKey = "bonemill geometry";

@@ -195,6 +195,7 @@ ScannedMaterials scannedMaterialsOf(const LoadedScene& loaded, const RawVolume& 
     const std::string& label_path = loaded.scene.volume().label_path();
     if (label_path.empty()) return {materialIds(raw, rules), {}};
     const RawVolume file = importLabels(loaded);
+    remarks.push_back(label_path + ": " + file.description);
     findSegments(loaded, file.segments, rules);
     ScannedMaterials materials;
     for (const scene::Material& material : loaded.scene.material())

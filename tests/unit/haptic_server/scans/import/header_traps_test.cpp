@@ -46,12 +46,6 @@ class HeaderTraps : public ::testing::Test {
     test::TemporaryFolder folder_;
 };
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    const auto at = text.find(from);
-    if (at == std::string::npos) throw std::logic_error("no " + from + " to replace");
-    return text.replace(at, from.size(), to);
-}
-
 // The line goes before the one that ends a MetaImage's header.
 std::string withLine(const std::string& bytes, const std::string& line) {
     return replaced(bytes, "DimSize", line + "\nDimSize");

@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "haptic_server/scans/formats/volume_file.h"
+#include "haptic_server/scans/formats/slice_names.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"
@@ -97,6 +97,53 @@ TEST_F(ImageStack, ofPicturesThatDifferIsRefused) {
     std::filesystem::remove(folder_ / "a11.png");
     write("a11.tif", tiff({}));
     expectRefusal({"a11.tif", "another type"});
+}
+
+TEST_F(ImageStack, ofWhichNumbersAreMissingIsRefused) {
+    for (const int n : {0, 1, 2, 3, 4, 8, 9, 11}) write("slice000" + std::to_string(n) + ".png", png({}));
+    expectRefusal({folder_.path().string(), "number 5 to 7, 10", "slice0004 is followed by slice0008"});
+}
+
+TEST_F(ImageStack, ofEvenStepsIsSaidToBe) {
+    for (const char* n : {"02", "04", "06", "08"}) write(std::string("s") + n + ".tif", tiff({}));
+    EXPECT_NE(importVolume(folder_.path(), kSpacing).description.find("numbered in steps of 2"),
+              std::string::npos);
+}
+
+TEST_F(ImageStack, ofOtherPicturesSaysSo) {
+    for (const char* name : {"a1.jpg", "a2.jpg", "a3.JPEG", "a4.bmp"}) write(name, "x");
+    expectRefusal({"a1.jpg", "PNG or TIFF"}, {});
+}
+
+TEST(SliceNames, AreThoseOfOneWholeStack) {
+    const auto problem = [](const std::vector<std::string>& names) { return sliceNumbersOf(names).problem; };
+    for (const std::vector<std::string>& names :
+         {std::vector<std::string>{"a", "b", "d"},
+          {"a1"},
+          {"a7", "a8", "a9"},
+          {"a08", "a09", "a10"},
+          {"ct_2024_1", "ct_2024_2", "ct_2024_3"},
+          {"t1030_s1", "t1031_s2", "t1035_s3"},
+          {"p1_s1", "p1_s2", "p2_s3", "p2_s4"},
+          {"1.2.840.99999999999999999999_1", "1.2.840.99999999999999999999_2"},
+          {"z0010_1", "z0025_2", "z0040_3"},
+          {"s1_z0.5", "s2_z1.0", "s3_z1.5"}})
+        EXPECT_EQ(problem(names), "") << names.back();
+    const std::pair<std::vector<std::string>, const char*> wrong[] = {
+        {{"a1", "a2", "a4"}, "number 3 (a2 is followed by a4)"},
+        {{"a1", "a3", "a5", "a9"}, "number 7 (a5 is followed by a9)"},
+        {{"a1", "a2", "a3", "a103"}, "number 4 to 102"},
+        {{"a1", "a3", "a4", "a8", "a9", "a12", "a13", "a15", "a16", "a18"},
+         "number 2, 5 to 7, 10 to 11, 14, ..."},
+        {{"a1", "a2", "b1", "b2"}, "a1 to a2 (2), b1 to b2 (2)"},
+        {{"a1", "a2", "a3", "overview"}, "overview"},
+        {{"a01", "a1", "a2"}, "a01 and a1 have the same number"},
+        {{"p1_s1", "p1_s2", "p2_s1", "p2_s2"}, "counts them all (p1_s1 and p1_s2, ..., p2_s2)"},
+        {{"z-1", "z0", "z1"}, "several kinds"},
+        {{"a0", "a2", "a4", "a7", "a9"}, "do not run evenly (a4, a7)"},
+    };
+    for (const auto& [names, words] : wrong)
+        EXPECT_NE(problem(names).find(words), std::string::npos) << problem(names) << ", not " << words;
 }
 
 TEST_F(ImageStack, sizeOfVoxelsServesFilesThatDoNotSayIt) {

@@ -24,11 +24,6 @@ class ImportErrors : public ::testing::Test {
         if (name.ends_with(".mha")) writeMetaImageFile(folder_ / name, sample, {});
         return readBytes(folder_ / name);
     }
-    static std::string replaced(std::string text, const std::string& from, const std::string& to) {
-        const auto at = text.find(from);
-        if (at == std::string::npos) throw std::logic_error("no " + from + " to replace");
-        return text.replace(at, from.size(), to);
-    }
     test::TemporaryFolder folder_;
 };
 

@@ -142,6 +142,9 @@ TEST_F(SurfaceVolume, isInTheAxesThatItsFileNames) {
     EXPECT_TRUE(unsaid.lacks_patient_axes);
     EXPECT_FALSE(lps.lacks_patient_axes);
     EXPECT_FALSE(ras.lacks_patient_axes);
+    EXPECT_NE(unsaid.description.find("4 x 6 x 8 mm if its numbers are mm"), std::string::npos)
+        << unsaid.description;
+    expectUserError([&] { imported("a.ply", textPly(box, "comment SPACE=LAS\n")); }, {"SPACE=LAS", "LPS"});
 }
 
 TEST_F(SurfaceVolume, thatIsNoSolidIsRefused) {

@@ -203,4 +203,10 @@ std::string readBytes(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    if (at == std::string::npos) throw std::logic_error("no " + from + " to replace");
+    return text.replace(at, from.size(), to);
+}
+
 }  // namespace bonemill

@@ -50,4 +50,7 @@ void writeInv3File(const std::filesystem::path& path, const SampleVolume& sample
 void writeBytes(const std::filesystem::path& path, const std::string& bytes);
 std::string readBytes(const std::filesystem::path& path);
 
+// The first `from` in it is `to` then; throws std::logic_error where there is none.
+std::string replaced(std::string text, const std::string& from, const std::string& to);
+
 }  // namespace bonemill
