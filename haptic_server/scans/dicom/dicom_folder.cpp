@@ -23,6 +23,12 @@ bool isSamePicture(const DicomSlice& a, const DicomSlice& b) {
     return of_a == of_b;
 }
 
+void requireSlices(const DicomFiles& files, const std::filesystem::path& path) {
+    if (!files.slices.empty()) return;
+    const std::string why = files.damaged.empty() ? files.left_out.text() : files.damaged.front().problem;
+    throw UserError(path.string() + ": holds no DICOM slice that can be used: " + why);
+}
+
 // What a reader of the scan asks first.
 std::string describe(const DicomChoice& choice) {
     const DicomStack& stack = choice.stack;
@@ -36,6 +42,7 @@ std::string describe(const DicomChoice& choice) {
     if (!stack.remark.empty()) text += "; " + stack.remark;
     if (!choice.how_chosen.empty()) text += "; " + choice.how_chosen;
     if (!choice.left_out.empty()) text += "; other series left out: " + choice.left_out;
+    if (!choice.damaged.empty()) text += "; damaged files of other series left out: " + choice.damaged;
     return text;
 }
 
@@ -70,15 +77,23 @@ RawVolume readChoice(const DicomChoice& choice, const std::string& name) {
     return raw;
 }
 
-RawVolume importFolder(const std::filesystem::path& folder, Subfolders subfolders, const DicomWish& wish) {
+// Throws UserError where there is no picture at all.
+DicomFiles filesIn(const std::filesystem::path& folder, Subfolders subfolders) {
     LeftOut left_out;
-    const auto files = filesOf(folder, subfolders, left_out);
-    if (files.empty()) throw UserError(folder.string() + ": the folder is empty; a DICOM series is needed");
-    const std::vector<DicomSlice> slices = slicesOfFiles(files, left_out);
-    if (slices.empty())
-        throw UserError(folder.string() + ": holds no DICOM slice that can be used: " + left_out.text());
-    RawVolume raw = readChoice(chooseStack(slices, wish, folder.string(), isSamePicture), folder.string());
-    if (!left_out.text().empty()) raw.description += "; files left out: " + left_out.text();
+    const auto paths = filesOf(folder, subfolders, left_out);
+    if (paths.empty()) throw UserError(folder.string() + ": the folder is empty; a DICOM series is needed");
+    DicomFiles files = readDicomFiles(paths);
+    left_out.add(files.left_out);
+    files.left_out = left_out;
+    requireSlices(files, folder);
+    return files;
+}
+
+RawVolume importFolder(const std::filesystem::path& folder, Subfolders subfolders, const DicomWish& wish) {
+    const DicomFiles files = filesIn(folder, subfolders);
+    RawVolume raw = readChoice(chooseStack(files.slices, wish, folder.string(), isSamePicture, files.damaged),
+                               folder.string());
+    if (!files.left_out.text().empty()) raw.description += "; files left out: " + files.left_out.text();
     return raw;
 }
 
@@ -96,23 +111,9 @@ RawVolume importAroundSlice(const std::filesystem::path& file, const DicomSlice&
     return raw;
 }
 
-std::vector<std::string> listFiles(const std::vector<std::filesystem::path>& files,
-                                   const std::filesystem::path& path, LeftOut& left_out) {
-    SeriesTableNotes notes;
-    // Damage is told in a line of its own, so that it hides no other series.
-    const std::vector<DicomSlice> slices = slicesOfFiles(files, left_out, &notes.problems);
-    notes.left_out = left_out.text();
-    if (slices.empty())
-        throw UserError(path.string() + ": holds no DICOM slice that can be used: " +
-                        (notes.problems.empty() ? notes.left_out : notes.problems.front()));
-    return seriesTable(stacksOf(slices, isSamePicture), notes);
-}
-
-std::vector<std::string> listFolder(const std::filesystem::path& folder, Subfolders subfolders) {
-    LeftOut left_out;
-    const auto files = filesOf(folder, subfolders, left_out);
-    if (files.empty()) throw UserError(folder.string() + ": the folder is empty; a DICOM series is needed");
-    return listFiles(files, folder, left_out);
+std::vector<std::string> tableOf(const DicomFiles& files) {
+    return seriesTable(stacksOf(files.slices, isSamePicture, files.damaged),
+                       {.left_out = files.left_out.text(), .damaged = files.damaged});
 }
 
 }  // namespace
@@ -152,11 +153,12 @@ RawVolume importDicomFile(const std::filesystem::path& file, const DicomWish& wi
 
 std::vector<std::string> listDicomSeries(const std::filesystem::path& path) {
     std::error_code error;
-    if (std::filesystem::is_directory(path, error)) return listFolder(path, Subfolders::kYes);
-    if (isDicomDirectory(path)) return listFolder(folderOf(path), Subfolders::kYes);
-    LeftOut left_out;
-    if (slicesOfFile(path, left_out).size() > 1) return listFiles({path}, path, left_out);
-    return listFolder(folderOf(path), Subfolders::kNo);
+    if (std::filesystem::is_directory(path, error)) return tableOf(filesIn(path, Subfolders::kYes));
+    if (isDicomDirectory(path)) return tableOf(filesIn(folderOf(path), Subfolders::kYes));
+    const DicomFiles of_file = readDicomFiles({path});
+    requireSlices(of_file, path);
+    if (of_file.slices.size() > 1) return tableOf(of_file);
+    return tableOf(filesIn(folderOf(path), Subfolders::kNo));
 }
 
 }  // namespace bonemill

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 
 #include "common/base/user_error.h"
@@ -189,6 +190,16 @@ std::string reasonToLeaveOut(const DicomScan& scan) {
            "as .seg.nrrd or NIfTI";
 }
 
+std::vector<DicomSlice> slicesOfScanned(const std::filesystem::path& path, const DicomScan& scan,
+                                        LeftOut& left_out) {
+    if (scan.kind == DicomKind::kCutShort)
+        throw UserError(path.string() + ": the DICOM file is cut short or damaged: " + scan.problem);
+    if (scan.kind == DicomKind::kImage && scan.drawing == DicomDrawing::kNone)
+        return readHeader(path, left_out);
+    left_out.add(reasonToLeaveOut(scan), path);
+    return {};
+}
+
 }  // namespace
 
 void LeftOut::add(const std::string& reason, const std::filesystem::path& file) {
@@ -214,44 +225,33 @@ std::string LeftOut::text() const {
 }
 
 std::vector<DicomSlice> slicesOfFile(const std::filesystem::path& path, LeftOut& left_out) {
-    const DicomScan scan = scanDicomFile(path);
-    if (scan.kind == DicomKind::kCutShort)
-        throw UserError(path.string() + ": the DICOM file is cut short or damaged: " + scan.problem);
-    if (scan.kind == DicomKind::kImage && scan.drawing == DicomDrawing::kNone)
-        return readHeader(path, left_out);
-    left_out.add(reasonToLeaveOut(scan), path);
-    return {};
+    return slicesOfScanned(path, scanDicomFile(path), left_out);
 }
 
-std::vector<DicomSlice> slicesOfFiles(const std::vector<std::filesystem::path>& files, LeftOut& left_out,
-                                      std::vector<std::string>* damaged) {
-    struct OfFile {
-        std::vector<DicomSlice> slices;
-        LeftOut left_out;
-        std::string problem;
-    };
+DicomFiles readDicomFiles(const std::vector<std::filesystem::path>& files) {
     uint64_t bytes = 0;
     for (const auto& file : files) bytes = std::max(bytes, mostMemoryToRead(file, 0));
     const MemoryCap cap(memoryForAll(bytes, bytes));
-    std::vector<DicomSlice> slices;
+    DicomFiles all;
     workAhead(
         files,
         [&](const std::filesystem::path& file) {
-            OfFile of_file;
+            DicomFiles of_file;
+            DicomScan scan;
             try {
-                of_file.slices = slicesOfFile(file, of_file.left_out);
+                scan = scanDicomFile(file);
+                of_file.slices = slicesOfScanned(file, scan, of_file.left_out);
             } catch (const UserError& error) {
-                if (!damaged) throw;
-                of_file.problem = error.what();
+                of_file.damaged.push_back({file, error.what(), scan.series_uid});
             }
             return of_file;
         },
-        [&](const std::filesystem::path&, OfFile of_file) {
-            left_out.add(of_file.left_out);
-            slices.insert(slices.end(), of_file.slices.begin(), of_file.slices.end());
-            if (!of_file.problem.empty()) damaged->push_back(std::move(of_file.problem));
+        [&](const std::filesystem::path&, DicomFiles of_file) {
+            all.left_out.add(of_file.left_out);
+            std::ranges::move(of_file.slices, std::back_inserter(all.slices));
+            std::ranges::move(of_file.damaged, std::back_inserter(all.damaged));
         });
-    return slices;
+    return all;
 }
 
 // Links to folders are not followed, for they may lead in circles.

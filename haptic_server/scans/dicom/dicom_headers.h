@@ -35,9 +35,13 @@ std::vector<std::filesystem::path> filesOf(const std::filesystem::path& folder, 
 // damaged, which must not pass as "not an image": the volume would silently lose a slice.
 std::vector<DicomSlice> slicesOfFile(const std::filesystem::path& path, LeftOut& left_out);
 
-// Those of all the files, which are read several at a time. `damaged` gets what is wrong with a file, which
-// is left out; without it the first such error is thrown.
-std::vector<DicomSlice> slicesOfFiles(const std::vector<std::filesystem::path>& files, LeftOut& left_out,
-                                      std::vector<std::string>* damaged = nullptr);
+struct DicomFiles {
+    std::vector<DicomSlice> slices;
+    std::vector<DamagedFile> damaged;
+    LeftOut left_out;
+};
+
+// The pictures of all the files, which are read several at a time.
+DicomFiles readDicomFiles(const std::vector<std::filesystem::path>& files);
 
 }  // namespace bonemill

@@ -132,10 +132,18 @@ bool areInterleaved(const Trait& trait, const DicomStack& whole, const std::vect
             (whole.is_uneven && std::ranges::all_of(stacks, is_even)));
 }
 
+// A stack of one slice tells nothing of what is wrong with it.
+bool haveSlices(const std::vector<DicomStack>& stacks) {
+    return !stacks.empty() &&
+           std::ranges::all_of(stacks, [](const DicomStack& stack) { return stack.slices.size() > 1; });
+}
+
 // How good a split is: stacks that overlap are acquisitions and phases, others may be ranges that were
-// scanned one after the other and belong together.
-std::tuple<bool, bool, size_t> worthOf(const std::vector<DicomStack>& stacks) {
-    return {areProper(stacks) && allOverlap(stacks), areProper(stacks), properSlices(stacks)};
+// scanned one after the other and belong together. Where none leaves a proper stack, the problems of each one
+// are worth more than that they overlap.
+std::tuple<bool, bool, size_t, bool> worthOf(const std::vector<DicomStack>& stacks) {
+    return {areProper(stacks) && allOverlap(stacks), areProper(stacks), properSlices(stacks),
+            haveSlices(stacks)};
 }
 
 // Of stacks at the same places.
@@ -160,7 +168,7 @@ std::vector<DicomStack> partsOf(const std::vector<DicomSlice>& slices,
     whole.name = printable(commonNumber(slices));
     if (whole.has_several) {
         std::vector<DicomStack> best = bestSplit(slices, strangers, is_same_picture);
-        if (properSlices(best) > 0) return best;
+        if (!best.empty()) return best;
         return {std::move(whole)};
     }
     for (const Trait& trait : kTraits) {

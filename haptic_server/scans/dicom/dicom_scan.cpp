@@ -20,6 +20,7 @@ constexpr uint32_t kDoublePixelData = 0x7fe00009;
 constexpr uint32_t kMediaClassUid = 0x00020002;
 constexpr uint32_t kTransferSyntaxUid = 0x00020010;
 constexpr uint32_t kSopClassUid = 0x00080016;
+constexpr uint32_t kSeriesUid = 0x0020000e;
 constexpr uint32_t kItem = 0xfffee000;
 constexpr uint32_t kItemEnd = 0xfffee00d;
 constexpr uint32_t kSequenceEnd = 0xfffee0dd;
@@ -58,14 +59,15 @@ class Scanner {
         if (!startsLikeDicom()) return {};
         try {
             if (has_meta_ && !readMeta())  // deflated: opaque
-                return {DicomKind::kImage, {}, media_class_, drawingOf(media_class_)};
+                return {DicomKind::kImage, {}, media_class_, drawingOf(media_class_), {}};
             while (position_ < size_) skipElement(0);
         } catch (const CutShort& cut) {
-            return {DicomKind::kCutShort, cut.problem, media_class_, drawing_};
+            return {DicomKind::kCutShort, cut.problem, media_class_, drawing_, series_uid_};
         } catch (const Unclear&) {
-            return {DicomKind::kImage, {}, media_class_, drawing_};
+            return {DicomKind::kImage, {}, media_class_, drawing_, series_uid_};
         }
-        return {has_pixels_ ? DicomKind::kImage : DicomKind::kNoImage, {}, media_class_, drawing_};
+        const DicomKind kind = has_pixels_ ? DicomKind::kImage : DicomKind::kNoImage;
+        return {kind, {}, media_class_, drawing_, series_uid_};
     }
 
   private:
@@ -108,7 +110,8 @@ class Scanner {
     }
 
     std::string text(uint32_t length) {
-        std::string value(std::min<uint32_t>(length, 64), '\0');
+        constexpr uint32_t kLongest = 256;  // UIDs have 64
+        std::string value(std::min<uint32_t>(length, kLongest), '\0');
         file_.seekg(position_);
         file_.read(value.data(), std::streamsize(value.size()));
         while (!value.empty() && (value.back() == '\0' || value.back() == ' ')) value.pop_back();
@@ -176,6 +179,7 @@ class Scanner {
         if (depth == 0 && element.tag == kSopClassUid) drawing_ = drawingOf(text(element.length));
         if (element.tag == kItemEnd || element.tag == kSequenceEnd) throw Unclear{};
         checkFits(element);
+        if (depth == 0 && element.tag == kSeriesUid) series_uid_ = text(element.length);
         if (element.length != kUndefinedLength)
             position_ += element.length;  // items of a sequence of known length lie inside it
         else if (element.holds_items)
@@ -218,7 +222,7 @@ class Scanner {
     bool explicit_vr_ = false;
     bool big_endian_ = false;
     bool has_pixels_ = false;
-    std::string media_class_;
+    std::string media_class_, series_uid_;
     DicomDrawing drawing_ = DicomDrawing::kNone;
 };
 

@@ -28,6 +28,7 @@ struct DicomScan {
     std::string problem;      // for people, with kCutShort
     std::string media_class;  // UID of what the file is, where its first lines say it
     DicomDrawing drawing = DicomDrawing::kNone;
+    std::string series_uid;  // empty: nothing before the file's end or its damage says it
 };
 
 // Throws UserError when the file cannot be opened.

@@ -48,8 +48,20 @@ bool hasNumberWithin(const std::string& digits, int low, int high) {
     return number >= low && number <= high;
 }
 
-bool canBeUsed(const DicomStack& stack) {
-    return stack.problem.empty() && !isScout(stack);
+bool isOfSameSeries(const DicomStack& a, const DicomStack& b) {
+    return a.slices.front().series_uid == b.slices.front().series_uid;
+}
+
+// What lies beside the main stack of a series, such as the slices in its gap that are turned, is no scan.
+bool isFragment(const DicomStack& stack, const std::vector<DicomStack>& stacks) {
+    return std::ranges::any_of(stacks, [&](const DicomStack& other) {
+        return isOfSameSeries(stack, other) && other.told_by.empty() && !other.problem.empty() &&
+               other.slices.size() > stack.slices.size();
+    });
+}
+
+bool canBeUsed(const DicomStack& stack, const std::vector<DicomStack>& stacks) {
+    return stack.problem.empty() && !isScout(stack) && !isFragment(stack, stacks);
 }
 
 bool isCt(const DicomStack& stack) {
@@ -58,10 +70,13 @@ bool isCt(const DicomStack& stack) {
 
 double thinnestOf(const std::vector<DicomStack>& stacks) {
     double thinnest = std::numeric_limits<double>::max();
+    const auto counts = [&](const DicomStack& stack, bool is_ct) {
+        return canBeUsed(stack, stacks) && isCt(stack) == is_ct;
+    };
     const bool any_ct =
-        std::ranges::any_of(stacks, [](const DicomStack& stack) { return canBeUsed(stack) && isCt(stack); });
+        std::ranges::any_of(stacks, [&](const DicomStack& stack) { return counts(stack, true); });
     for (const DicomStack& stack : stacks)
-        if (canBeUsed(stack) && isCt(stack) == any_ct) thinnest = std::min(thinnest, stack.slice_spacing_mm);
+        if (counts(stack, any_ct)) thinnest = std::min(thinnest, stack.slice_spacing_mm);
     return thinnest;
 }
 
@@ -174,14 +189,28 @@ bool holds(const DicomStack& stack, const std::filesystem::path& file) {
     return std::ranges::any_of(stack.slices, [&](const DicomSlice& slice) { return slice.path == file; });
 }
 
-auto rankOf(const DicomStack& stack, const DicomWish& wish) {
-    const DicomTraits& traits = stack.slices.front().traits;
-    const bool is_scan = stack.slices.size() > kMaxScouts;
-    return std::tuple(isWanted(stack, wish), !wish.file.empty() && is_scan && holds(stack, wish.file),
-                      stack.told_by.empty() || stack.problem.empty(), is_scan && stack.slices.front().isCt(),
-                      stack.slices.size(), -acquisitionOf(stack).value_or(std::numeric_limits<double>::max()),
-                      traits.image_type.starts_with("ORIGINAL"), isBoneKernel(traits.kernel));
-}
+// How well the stacks show bone. Of those that cannot be used the largest scan comes first.
+class BoneRank {
+  public:
+    // The stacks must outlive it.
+    explicit BoneRank(const std::vector<DicomStack>& stacks)
+        // Distances differ in their last digits by the rounding of the positions.
+        : stacks_(stacks), most_mm_(kMaxThicker * thinnestOf(stacks) * 1.001) {}
+
+    // The better, the greater.
+    auto operator()(const DicomStack& stack) const {
+        const bool can_be_used = canBeUsed(stack, stacks_), is_scan = !isScout(stack);
+        const bool is_sharp = can_be_used && hasBoneKernel(stack) && stack.slice_spacing_mm <= most_mm_;
+        return std::tuple(can_be_used, is_scan, is_scan && isCt(stack), is_sharp,
+                          can_be_used ? -std::lround(100 * stack.slice_spacing_mm) : 0, stack.slices.size(),
+                          -acquisitionOf(stack).value_or(std::numeric_limits<double>::max()),
+                          stack.slices.front().traits.image_type.starts_with("ORIGINAL"));
+    }
+
+  private:
+    const std::vector<DicomStack>& stacks_;
+    double most_mm_;
+};
 
 std::string nameOfWish(const DicomWish& wish) {
     std::string text = wish.series_uid.empty() ? "" : "series " + wish.series_uid;
@@ -195,6 +224,37 @@ std::vector<const DicomStack*> pointersTo(const std::vector<DicomStack>& stacks)
     return pointers;
 }
 
+std::string sizeTitleAndProblem(const DicomStack& stack) {
+    return sizeAndTitle(stack) + (stack.problem.empty() ? "" : ", which cannot be used: " + stack.problem);
+}
+
+// Of other series than the chosen one.
+std::string damagedElsewhere(const std::vector<DamagedFile>& damaged) {
+    constexpr size_t kMaxListed = 4;
+    std::string text;
+    for (size_t n = 0; n < std::min(damaged.size(), kMaxListed); ++n)
+        text += (n > 0 ? ", " : "") + damaged[n].problem;
+    return damaged.size() > kMaxListed ? text + ", and so on: " + std::to_string(damaged.size()) + " files"
+                                       : text;
+}
+
+// Says of stacks that may miss pictures which file is at fault.
+void noteDamage(std::vector<DicomStack>& stacks, const std::vector<DamagedFile>& damaged) {
+    for (DicomStack& stack : stacks) {
+        const std::string& uid = stack.slices.front().series_uid;
+        const auto concerns = [&](const DamagedFile& file) {
+            return file.series_uid.empty() || file.series_uid == uid;
+        };
+        const auto file = std::ranges::find_if(damaged, concerns);
+        if (file == damaged.end()) continue;
+        const char* const which =
+            file->series_uid.empty() ? "a file that may be of this series" : "a file of this series";
+        stack.problem += (stack.problem.empty() ? "" : "; ") + std::string(which) +
+                         " cannot be read: " + file->problem +
+                         "; copy it anew, or move it elsewhere to do without it";
+    }
+}
+
 // The parts of its series are named, other stacks listed.
 DicomChoice choiceOf(const std::vector<DicomStack>& stacks, const DicomStack& best) {
     DicomChoice choice;
@@ -205,7 +265,7 @@ DicomChoice choiceOf(const std::vector<DicomStack>& stacks, const DicomStack& be
         else if (&stack != &best)
             others.push_back(&stack);
     }
-    choice.left_out = listOf(others, sizeAndTitle);
+    choice.left_out = listOf(others, sizeTitleAndProblem);
     if (!parts.empty())
         choice.how_chosen = "the series holds " + std::to_string(parts.size()) +
                             " stacks that overlap, told apart by " + best.told_by + ": " +
@@ -232,27 +292,20 @@ bool isBoneKernel(const std::string& kernel) {
 }
 
 BoneRecommendation recommendForBone(const std::vector<DicomStack>& stacks) {
-    // Distances differ in their last digits by the rounding of the positions.
-    const double limit = kMaxThicker * thinnestOf(stacks) * 1.001;
-    const auto rank = [&](const DicomStack& stack) {
-        return std::tuple(canBeUsed(stack), isCt(stack),
-                          hasBoneKernel(stack) && stack.slice_spacing_mm <= limit,
-                          -std::lround(100 * stack.slice_spacing_mm), stack.slices.size(),
-                          stack.slices.front().traits.image_type.starts_with("ORIGINAL"));
-    };
-    const auto best = std::ranges::max_element(stacks, {}, rank);
-    if (best == stacks.end() || !canBeUsed(*best)) return {};
+    const auto best = std::ranges::max_element(stacks, {}, BoneRank(stacks));
+    if (best == stacks.end() || !canBeUsed(*best, stacks)) return {};
     return {&*best, whyOf(*best)};
 }
 
-std::vector<DicomStack> stacksOf(const std::vector<DicomSlice>& slices,
-                                 const IsSamePicture& is_same_picture) {
+std::vector<DicomStack> stacksOf(const std::vector<DicomSlice>& slices, const IsSamePicture& is_same_picture,
+                                 const std::vector<DamagedFile>& damaged) {
     const Groups groups = groupsOf(slices);
     std::vector<DicomStack> stacks;
     for (const auto& group : groups)
         for (DicomStack& part : partsOf(group, strangersOf(group, groups), is_same_picture))
             stacks.push_back(std::move(part));
     countSharedNames(stacks);
+    noteDamage(stacks, damaged);
     return stacks;
 }
 
@@ -267,19 +320,26 @@ bool isScout(const DicomStack& stack) {
 }
 
 DicomChoice chooseStack(const std::vector<DicomSlice>& slices, const DicomWish& wish,
-                        const std::string& folder, const IsSamePicture& is_same_picture) {
+                        const std::string& folder, const IsSamePicture& is_same_picture,
+                        const std::vector<DamagedFile>& damaged) {
     // No picture of a series is read that is not wanted.
     const auto is_same = [&](const DicomSlice& a, const DicomSlice& b) {
         return (!wish.series_uid.empty() && a.series_uid != wish.series_uid) || is_same_picture(a, b);
     };
-    const std::vector<DicomStack> stacks = stacksOf(slices, is_same);
-    const auto best =
-        std::ranges::max_element(stacks, {}, [&](const DicomStack& stack) { return rankOf(stack, wish); });
+    const std::vector<DicomStack> stacks = stacksOf(slices, is_same, damaged);
+    const BoneRank for_bone(stacks);
+    const auto rank = [&](const DicomStack& stack) {
+        const bool is_named = !wish.file.empty() && !isScout(stack) && holds(stack, wish.file);
+        return std::tuple(isWanted(stack, wish), is_named, for_bone(stack));
+    };
+    const auto best = std::ranges::max_element(stacks, {}, rank);
     if (!isWanted(*best, wish))
         throw UserError(folder + ": holds no " + nameOfWish(wish) + "; it holds " +
                         listOf(pointersTo(stacks), sizeAndTitle));
     if (!best->problem.empty()) throw UserError(folder + ": " + best->problem);
-    return choiceOf(stacks, *best);
+    DicomChoice choice = choiceOf(stacks, *best);
+    choice.damaged = damagedElsewhere(damaged);
+    return choice;
 }
 
 }  // namespace bonemill

@@ -70,6 +70,13 @@ struct DicomSlice : DicomPlace {
     }
 };
 
+// A file that cannot be read: a series may miss its pictures.
+struct DamagedFile {
+    std::filesystem::path path;
+    std::string problem;     // for people: names the file
+    std::string series_uid;  // empty: it is not known, and may be any
+};
+
 // Do two slices at the same place hold the same picture?
 using IsSamePicture = std::function<bool(const DicomSlice&, const DicomSlice&)>;
 

@@ -143,6 +143,44 @@ void note(std::string& remark, const std::string& text) {
     remark += (remark.empty() || text.empty() ? "" : "; ") + text;
 }
 
+// How many slices lie at each place, ascending.
+std::vector<size_t> slicesAtPlaces(const std::vector<DicomSlice>& slices, const Eigen::Vector3d& normal) {
+    std::vector<size_t> counts;
+    double place = 0;
+    for (const DicomSlice& slice : slices) {
+        if (counts.empty() || placeAlong(normal, slice) - place >= kSamePlaceMm) {
+            place = placeAlong(normal, slice);
+            counts.push_back(0);
+        }
+        ++counts.back();
+    }
+    return counts;
+}
+
+// What to do depends on how many there are, and of how many places.
+std::string problemOfSamePlace(const std::vector<DicomSlice>& slices, const DicomSlice& a,
+                               const DicomSlice& b) {
+    const Eigen::Vector3d normal = slices.front().normal();
+    const std::vector<size_t> counts = slicesAtPlaces(slices, normal);
+    const std::string both = nameAndPlace(a, normal) + " and " + nameAndPlace(b, normal);
+    if (counts.size() == 1)
+        return "all its " + std::to_string(slices.size()) +
+               " slices lie at the same place and differ, such as " + both +
+               ": they show one place at several times, or their export has lost where each of them lies, "
+               "and "
+               "are no volume; take another series, or export this one anew with the Image Position of each "
+               "slice";
+    const std::string two = "two slices lie at the same place and differ: " + both;
+    if (std::ranges::all_of(counts, [&](size_t count) { return count == counts.front(); }))
+        return two + ", and so at each of " + std::to_string(counts.size()) + " places: the series holds " +
+               std::to_string(counts.front()) +
+               " acquisitions that nothing in the headers tells apart: keep the files of one of them";
+    const auto more = std::ranges::count_if(counts, [](size_t count) { return count > 1; });
+    return two + ", and so at " + std::to_string(more) + " of " + std::to_string(counts.size()) +
+           " places: parts of other acquisitions that nothing in the headers tells apart, or a wrong Image "
+           "Position: move the files that do not belong to the stack elsewhere, or export the series anew";
+}
+
 // One of each place stays. Pictures that differ there are of two acquisitions: the stack's problem.
 void dropCopies(DicomStack& stack, const Eigen::Vector3d& normal, const IsSamePicture& is_same_picture) {
     std::vector<DicomSlice> kept{stack.slices.front()};
@@ -154,11 +192,7 @@ void dropCopies(DicomStack& stack, const Eigen::Vector3d& normal, const IsSamePi
         }
         stack.has_several = !is_same_picture(kept.back(), slice);
         if (!stack.has_several) continue;
-        stack.problem =
-            "two slices lie at the same place and differ: " + nameAndPlace(kept.back(), normal) + " and " +
-            nameAndPlace(slice, normal) +
-            "; the series holds several acquisitions that nothing in the headers tells apart: keep "
-            "the files of one of them";
+        stack.problem = problemOfSamePlace(stack.slices, kept.back(), slice);
         return;
     }
     if (const size_t copies = stack.slices.size() - kept.size())
@@ -326,7 +360,8 @@ DicomStack arrangedStack(std::vector<DicomSlice> slices, const std::vector<Dicom
     if (!stack.problem.empty()) return stack;
     if (stack.slices.size() == 1)
         stack.problem = "a volume needs 2 or more slices; there is one (" +
-                        stack.slices.front().path.filename().string() + ")";
+                        stack.slices.front().path.filename().string() + ")" +
+                        (stack.remark.empty() ? "" : "; " + stack.remark);
     else
         findPlaces(stack, strangers);
     return stack;

@@ -73,7 +73,7 @@ std::vector<std::string> aligned(const std::vector<Row>& rows) {
 void recommend(const std::vector<DicomStack>& stacks, std::vector<std::string>& lines) {
     const BoneRecommendation best = recommendForBone(stacks);
     if (!best.stack) {
-        lines.push_back("recommended for bone: none, for no stack here can be used");
+        lines.push_back("recommended for bone: none, for no stack here is a scan that can be used");
         return;
     }
     const std::string &uid = best.stack->slices.front().series_uid, &name = best.stack->name;
@@ -126,10 +126,10 @@ std::vector<std::string> seriesTable(const std::vector<DicomStack>& stacks, cons
     if (stacks.size() > kMaxRows)
         lines.push_back("and " + std::to_string(stacks.size() - kMaxRows) + " more");
     recommend(stacks, lines);
-    for (size_t p = 0; p < std::min(notes.problems.size(), kMaxProblems); ++p)
-        lines.push_back("cannot be read: " + notes.problems[p]);
-    if (notes.problems.size() > kMaxProblems)
-        lines.push_back("cannot be read: " + std::to_string(notes.problems.size() - kMaxProblems) + " more");
+    for (size_t n = 0; n < std::min(notes.damaged.size(), kMaxProblems); ++n)
+        lines.push_back("cannot be read: " + notes.damaged[n].problem);
+    if (notes.damaged.size() > kMaxProblems)
+        lines.push_back("cannot be read: " + std::to_string(notes.damaged.size() - kMaxProblems) + " more");
     if (!notes.left_out.empty()) lines.push_back("files left out: " + notes.left_out);
     for (std::string& line : lines) line = shortened(line, 2 * kLongestLine);
     return lines;

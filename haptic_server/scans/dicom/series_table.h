@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "haptic_server/scans/dicom/dicom_slice.h"
+
 namespace bonemill {
 
 struct DicomStack;
@@ -24,8 +26,8 @@ struct SeriesRow {
 std::vector<SeriesRow> rowsOfTable(const std::vector<std::string>& lines);
 
 struct SeriesTableNotes {
-    std::string left_out;               // files that belong to no stack; empty: none
-    std::vector<std::string> problems;  // of files that cannot be read
+    std::string left_out;              // files that belong to no stack; empty: none
+    std::vector<DamagedFile> damaged;  // files that cannot be read
 };
 
 // Lines of printable text: a head, one line of each stack, which is the best for bone and how to choose it,

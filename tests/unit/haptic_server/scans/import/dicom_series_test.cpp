@@ -200,7 +200,7 @@ TEST(DicomSeries, framesOfOneFileAreNamed) {
     }
     slices[3].position_mm = slices[2].position_mm;
     expectUserError([&] { chooseStack(slices, {}, "f", [](const auto&, const auto&) { return false; }); },
-                    {"multi.dcm frame 3", "multi.dcm frame 4", "several acquisitions"});
+                    {"multi.dcm frame 3", "multi.dcm frame 4", "at 1 of 3 places"});
     EXPECT_EQ(chosen(slices).slices.size(), 3u) << "a copy";
 }
 

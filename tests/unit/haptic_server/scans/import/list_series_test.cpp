@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "haptic_server/scans/confined/guarded_import.h"
 #include "haptic_server/scans/dicom/series_table.h"
 #include "haptic_server/scans/import/import_volume.h"
@@ -40,6 +42,38 @@ class ListSeries : public testing::Test {
         return "";
     }
     void list() { lines_ = listSeries(folder_.path()); }
+    // Cuts `bytes` off the end of this slice's file.
+    void cut(const std::string& name, size_t bytes) const {
+        const std::string all = readBytes(folder_ / name);
+        writeBytes(folder_ / name, all.substr(0, all.size() - bytes));
+    }
+    // What is recommended is what is read, whether it is asked for or not; where nothing is, nothing is read.
+    // Returns its description, or what is wrong.
+    std::string expectTaken(const std::string& uid, const std::string& acquisition = "-") {
+        list();
+        SCOPED_TRACE(text());
+        const auto rows = rowsOfTable(lines_);
+        const auto row = std::ranges::find(rows, true, &SeriesRow::is_recommended);
+        if (uid.empty()) {
+            EXPECT_EQ(row, rows.end());
+            EXPECT_FALSE(line({"recommended for bone: none"}).empty());
+            try {
+                return "read: " + importVolume(folder_.path()).description;
+            } catch (const UserError& error) {
+                return error.what();
+            }
+        }
+        if (row == rows.end() || row->uid != uid || row->acquisition != acquisition) {
+            ADD_FAILURE() << uid << " is not recommended";
+            return {};
+        }
+        ImportOptions options{.series_uid = row->uid};
+        if (acquisition != "-") options.acquisition = acquisition;
+        const RawVolume asked = importVolume(folder_.path(), options), unasked = importVolume(folder_.path());
+        EXPECT_TRUE(asked.values == unasked.values) << unasked.description;
+        EXPECT_EQ(std::to_string(unasked.geometry.dims.z()), row->slices);
+        return unasked.description;
+    }
     std::string text() const {
         std::string all;
         for (const std::string& text : lines_) all += text + "\n";
@@ -167,6 +201,86 @@ TEST_F(ListSeries, PhasesOfFramesAreToldApart) {
         for (size_t n = 0; n < raw.values.size(); ++n) EXPECT_EQ(raw.values[n], 100 * phase + int(n / 20));
     }
     EXPECT_EQ(listSeries(folder_ / "a.dcm"), listSeries(folder_.path()));
+}
+
+void expectWords(const std::string& text, std::initializer_list<std::string> words) {
+    for (const std::string& word : words)
+        EXPECT_NE(text.find(word), std::string::npos) << "no \"" << word << "\" in: " << text;
+}
+
+TEST_F(ListSeries, ADamagedFileOfAnotherSeriesIsLeftOutWithAWord) {
+    writeStack("1.2.1", 6, 1, [](DicomImage&) {});
+    writeStack("1.2.2", 9, 1, [](DicomImage&) {});
+    cut("2_8", 20);
+    const std::string read = expectTaken("1.2.1");
+    expectWords(read, {"damaged files of other series left out", "2_8: the DICOM file is cut short", "1.2.2",
+                       "which cannot be used: a file of this series cannot be read"});
+    expectUserError([&] { importVolume(folder_.path(), {.series_uid = "1.2.2"}); },
+                    {"a file of this series cannot be read", "2_8", "cut short", "copy it anew"});
+    writeStack("1.2.2", 1, 1, [](DicomImage& image) { image.pixel_spacing = "0\\0"; });
+    std::filesystem::remove(folder_ / "2_8");
+    expectWords(expectTaken("1.2.1"), {"3_0", "Pixel Spacing"});
+}
+
+TEST_F(ListSeries, ADamagedFileOfTheSeriesIsNotLeftOut) {
+    writeStack("1.2.1", 6, 1, [](DicomImage&) {});
+    writeBytes(folder_ / "1_6", readBytes(folder_ / "1_5"));
+    cut("1_6", 20);
+    expectWords(expectTaken(""), {"a file of this series cannot be read", "1_6"});
+}
+
+TEST_F(ListSeries, ADamagedFileOfWhoKnowsWhichSeriesIsOfAny) {
+    writeStack("1.2.1", 6, 1, [](DicomImage&) {});
+    writeStack("1.2.2", 6, 1, [](DicomImage&) {});
+    writeBytes(folder_ / "2_5", readBytes(folder_ / "2_5").substr(0, 260));
+    expectWords(expectTaken(""), {"a file that may be of this series cannot be read", "2_5", "elsewhere"});
+}
+
+TEST_F(ListSeries, WhatIsNoPictureIsLeftOutWithAWord) {
+    writeStack("1.2.1", 6, 1, [](DicomImage&) {});
+    writeStack("1.2.2", 1, 1, [](DicomImage& image) { image.has_pixels = false; });
+    writeStack("1.2.3", 7, 1, [](DicomImage& image) { image.position.clear(); });
+    writeStack("1.2.4", 3, 1, [](DicomImage& image) { image.modality = "CT"; });
+    writeBytes(folder_ / "note.txt", "text");
+    writeBytes(folder_ / "empty.dcm", "");
+    expectWords(expectTaken("1.2.1"), {"1 DICOM files without an image (2_0)", "2 files that are not DICOM",
+                                       "7 images without a position", "3 slices 5x4 of CT series 1.2.4"});
+}
+
+TEST_F(ListSeries, WhatIsTakenUnaskedIsWhatIsRecommended) {
+    writeStack("1.2.1", 12, 0.7, [](DicomImage& image) { image.kernel = "B30f"; });
+    writeStack("1.2.2", 8, 1, [](DicomImage& image) { image.kernel = "B70f"; });
+    expectWords(expectTaken("1.2.2"), {"12 slices 5x4 of CT series 1.2.1"});
+    writeStack("1.2.0", 30, 0.5, [](DicomImage& image) { image.modality = "MR"; });
+    expectTaken("1.2.2");
+    for (const char* number : {"7", "5"})  // the same places
+        writeStack("1.2.3", 9, 0.8, [&](DicomImage& image) {
+            image.acquisition_number = number;
+            image.kernel = "H60s";
+        });
+    expectTaken("1.2.3", "5");
+    for (const int k : {3, 4, 5, 6}) std::filesystem::remove(folder_ / ("5_" + std::to_string(k)));
+    expectWords(expectTaken("1.2.3", "7"), {"told apart by acquisition number"});
+}
+
+TEST_F(ListSeries, WhatLiesBesideABrokenStackIsNoScan) {
+    writeStack("1.2.1", 16, 1, [](DicomImage&) {});
+    for (const int k : {5, 6, 7, 8, 9}) std::filesystem::remove(folder_ / ("1_" + std::to_string(k)));
+    writeStack("1.2.1", 5, 1, [k = 5](DicomImage& image) mutable {
+        image.position = "0\\0\\" + std::to_string(k++);
+        image.columns = 4;
+        image.pixels.resize(16);
+    });
+    expectWords(expectTaken(""), {"has 4x4 pixels, the others 5x4"});
+    writeStack("1.2.2", 4, 3, [](DicomImage&) {});
+    expectWords(expectTaken("1.2.2"), {"which cannot be used: between"});
+}
+
+TEST_F(ListSeries, ScoutsAreTakenOnlyWhereThereIsNothingElse) {
+    writeStack("1.2.1", 3, 1, [](DicomImage&) {});
+    expectWords(expectTaken(""), {"read: DICOM series 1.2.1"});
+    writeStack("1.2.2", 4, 1, [](DicomImage&) {});
+    expectTaken("1.2.2");
 }
 
 TEST_F(ListSeries, WhatHoldsNoSeriesIsRefused) {
