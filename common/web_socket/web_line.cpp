@@ -83,6 +83,7 @@ void WebLine::State::shakeHands(const WebTarget& target, Clock::time_point end) 
         SSL_set1_host(ssl, target.host.c_str());
         SSL_set_tlsext_host_name(ssl, target.host.c_str());
     }
+    ERR_clear_error();  // the queue is the thread's: what others left must not be taken for this line's
     for (int result = SSL_connect(ssl); result != 1; result = SSL_connect(ssl)) {
         const int error = SSL_get_error(ssl, result);
         const short events = error == SSL_ERROR_WANT_READ    ? POLLIN
@@ -105,12 +106,10 @@ void WebLine::State::prove(const WebTarget& target) const {
             shown);
 }
 
-// The error queue is the thread's: what is old must not be taken for new.
 long WebLine::State::moved(long result) {
     if (result > 0) return result;
     if (!ssl) return result < 0 && (errno == EAGAIN || errno == EINTR) ? 0 : -1;
     const int error = SSL_get_error(ssl, int(result));
-    ERR_clear_error();
     wants_to_write = error == SSL_ERROR_WANT_WRITE;
     return wants_to_write || error == SSL_ERROR_WANT_READ ? 0 : -1;
 }
@@ -131,12 +130,14 @@ WebLine::~WebLine() = default;
 
 long WebLine::read(char* bytes, size_t most) {
     SSL* const ssl = state_->ssl;
+    ERR_clear_error();  // as above
     return state_->moved(ssl ? SSL_read(ssl, bytes, int(most)) : recv(state_->socket.get(), bytes, most, 0));
 }
 
 long WebLine::write(const char* bytes, size_t size) {
     if (size == 0) return 0;
     SSL* const ssl = state_->ssl;
+    ERR_clear_error();
     return state_->moved(ssl ? SSL_write(ssl, bytes, int(size))
                              : send(state_->socket.get(), bytes, size, MSG_NOSIGNAL));
 }

@@ -15,8 +15,12 @@ namespace {
 
 constexpr unsigned char kContinuation = 0, kText = 1, kBinary = 2, kClose = 8, kPing = 9, kPong = 10,
                         kLast = 0x80;
-constexpr size_t kMaxUntaken = 64;   // messages; then the network waits
-constexpr size_t kMaxAnswer = 8192;  // bytes of the handshake's answer
+constexpr unsigned char kReserved = 0x70, kOpcode = 0x0f;
+constexpr uint64_t kMaxControl = 125;   // bytes (RFC 6455, 5.5)
+constexpr size_t kMaxUntaken = 64;      // messages; then the network waits
+constexpr size_t kMaxAtOnce = 8 << 20;  // bytes that one move() reads: whoever sends without end gets no more
+constexpr size_t kMaxUnsent = 1 << 20;  // bytes, with which no ping is answered
+constexpr size_t kMaxAnswer = 8192;     // bytes of the handshake's answer
 
 std::string base64(const unsigned char* bytes, int size) {
     std::string text(size_t(4 * ((size + 2) / 3)) + 1, '\0');
@@ -107,10 +111,11 @@ void WebSocketClient::move() {
     // Who hangs up has often said why: what has come is there to be read, though nothing can be said any
     // more.
     std::array<char, 65536> bytes;
-    for (long came = 1; came > 0 && !has_ended_ && messages_.size() < kMaxUntaken;) {
+    size_t read = 0;
+    for (long came = 1; came > 0 && !has_ended_ && messages_.size() < kMaxUntaken && read < kMaxAtOnce;) {
         came = line_.read(bytes.data(), bytes.size());
         if (came < 0 || (came == 0 && is_broken)) has_ended_ = true;
-        if (came > 0) incoming_.append(bytes.data(), size_t(came));
+        if (came > 0) incoming_.append(bytes.data(), size_t(came)), read += size_t(came);
         while (takeFrame()) {
         }
         incoming_.erase(0, std::exchange(taken_, 0));
@@ -131,17 +136,26 @@ bool WebSocketClient::takeFrame() {
         size = 0;
         for (size_t n = 0; n < length_bytes; ++n) size = size << 8 | byte(2 + n);
     }
+    const auto first = static_cast<unsigned char>(byte(0));
     // A server masks nothing.
-    if ((byte(1) & 0x80) != 0 || size > kMaxMessageBytes || partial_.size() + size > kMaxMessageBytes) {
+    if ((byte(1) & 0x80) != 0 || !isFrame(first, size) || size > kMaxMessageBytes ||
+        partial_.size() + size > kMaxMessageBytes) {
         has_ended_ = true;
         return false;
     }
     if (there < 2 + length_bytes + size) return false;
-    const auto first = static_cast<unsigned char>(byte(0));
     const std::string_view payload(incoming_.data() + taken_ + 2 + length_bytes, size_t(size));
     taken_ += 2 + length_bytes + size_t(size);
-    takePayload(first & 0x0f, (first & kLast) != 0, payload);
+    takePayload(first & kOpcode, (first & kLast) != 0, payload);
     return !has_ended_;
+}
+
+// Returns whether a frame may begin so here (RFC 6455, 5.2, 5.4, 5.5); no extension was agreed on.
+bool WebSocketClient::isFrame(unsigned char first, uint64_t size) const {
+    const unsigned char opcode = first & kOpcode;
+    if ((first & kReserved) != 0) return false;
+    if (opcode >= kClose) return (first & kLast) != 0 && size <= kMaxControl;
+    return (opcode == kContinuation) == is_partial_;
 }
 
 void WebSocketClient::takePayload(unsigned char opcode, bool is_last, std::string_view payload) {
@@ -152,10 +166,12 @@ void WebSocketClient::takePayload(unsigned char opcode, bool is_last, std::strin
             [[fallthrough]];
         case kContinuation:
             partial_ += payload;
+            is_partial_ = !is_last;
             if (is_last) messages_.push_back(std::exchange(partial_, {}));
             return;
         case kPing:
-            return queueFrame(kPong, payload.substr(0, 125));
+            if (outgoing_.size() < kMaxUnsent) queueFrame(kPong, payload);
+            return;
         case kPong:
             return;
         default:

@@ -46,6 +46,7 @@ class WebSocketClient {
                     std::chrono::steady_clock::time_point end);
     void queueFrame(unsigned char opcode, std::string_view payload);
     bool takeFrame();
+    bool isFrame(unsigned char first, uint64_t size) const;
     void takePayload(unsigned char opcode, bool is_last, std::string_view payload);
 
     WebLine line_;
@@ -54,6 +55,7 @@ class WebSocketClient {
     size_t taken_ = 0;  // of incoming_
     std::string outgoing_;
     std::string partial_;
+    bool is_partial_ = false;  // a message's first part has come, its last not
     std::deque<std::string> messages_;
     bool has_ended_ = false;
 };
