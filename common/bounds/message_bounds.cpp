@@ -3,10 +3,10 @@
 #include <google/protobuf/stubs/logging.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <vector>
 
+#include "common/text/foreign_text.h"
 #include "proto/bounds.pb.h"
 #include "proto/scene.pb.h"
 
@@ -181,7 +181,7 @@ std::string shownText(const std::string& text, size_t max_bytes) {
         const auto lead = static_cast<unsigned char>(text[i]);
         const size_t length = lead < 0x80 ? 1 : lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
         if (i + length > text.size() || shown.size() + length > max_bytes) break;
-        if (length > 1 || std::isprint(lead)) shown.append(text, i, length);
+        if (unprintableBytes(text, i) == 0) shown.append(text, i, length);
         i += length;
     }
     return shown;

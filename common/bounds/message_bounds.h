@@ -17,8 +17,8 @@ bool parseWithinBounds(std::span<const uint8_t> payload, google::protobuf::Messa
 
 bool isWithinBounds(const google::protobuf::Message& message);
 
-// Returns what stands on a screen: no control signs, no broken UTF-8 (cut off with all that follows), and no
-// more than `max_bytes`.
+// Returns what stands on a screen: nothing unprintable (foreign_text.h), no broken UTF-8 (cut off with all
+// that follows), and no more than `max_bytes`.
 std::string shownText(const std::string& text, size_t max_bytes);
 
 // Returns the value of a number's field, or of its element `index` if it is repeated; 0 for what is no

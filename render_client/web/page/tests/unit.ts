@@ -51,7 +51,7 @@ test('numbers are worded as in the native viewer', () => {
 });
 
 test('texts of others lose what is no sign', () => {
-  assert.equal(shownText('a\u0000b\u202ec\nd'), 'abcd');
+  assert.equal(shownText('a\u0000b\u202ec\nd\u061ce\u2067f\u{e0041}g\u200d'), 'abcdefg\u200d');
   assert.equal(shownText('x'.repeat(600)).length, 512);
 });
 

@@ -14,7 +14,9 @@ export function within(value: number, low: number, high: number): number {
   return value;
 }
 
-// Without control signs, without signs that turn the direction of what follows, and not too long.
+const kUnprintable = /[\p{Cc}\p{Cs}\u00ad\u061c\u180e\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb\u{e0000}-\u{e007f}]/gu;
+
+// Without what common/text/foreign_text.h calls unprintable, and not too long.
 export function shownText(text: string, most = kLongestText): string {
-  return [...text.replace(/[\p{Cc}\p{Cs}\u200e\u200f\u202a-\u202e\u2066-\u2069]/gu, '')].slice(0, most).join('');
+  return [...text.replace(kUnprintable, '')].slice(0, most).join('');
 }
