@@ -19,6 +19,22 @@ namespace {
 constexpr char kMapped[] = "\0\0\0\0\0\0\0\0\0\0\xff\xff";
 constexpr size_t kMappedBytes = sizeof kMapped - 1;
 
+std::string whyNot(int error, uint16_t port) {
+    switch (error) {
+        case EACCES:
+            return "this user may not open the port (those below 1024 are root's); take a higher one, such "
+                   "as "
+                   "8443, or type: sudo sysctl net.ipv4.ip_unprivileged_port_start=" +
+                   std::to_string(port);
+        case EADDRINUSE:
+            return "another program has this port; stop it (ss -ltnp shows it), or take another port";
+        case EADDRNOTAVAIL:
+            return "this PC has no such address; ip -brief address shows those that it has";
+        default:
+            return std::strerror(error);
+    }
+}
+
 }  // namespace
 
 PeerAddress peerAddressOf(const sockaddr_storage& address) {
@@ -48,7 +64,9 @@ Descriptor listenOn(const std::string& address, uint16_t port) {
     wish.ai_socktype = SOCK_STREAM;
     wish.ai_flags = AI_PASSIVE | AI_NUMERICHOST;
     if (getaddrinfo(address.c_str(), std::to_string(port).c_str(), &wish, &found) != 0)
-        throw UserError(address + ": this is no address of a network; 0.0.0.0 stands for all");
+        throw UserError("cannot listen on " + address +
+                        ": this is a name, or no address. Give an address of this "
+                        "PC (ip -brief address shows them), or 0.0.0.0 for all");
     const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> addresses(found, &freeaddrinfo);
     Descriptor made(socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     const int on = 1;
@@ -56,7 +74,7 @@ Descriptor listenOn(const std::string& address, uint16_t port) {
     if (!made || bind(made.get(), found->ai_addr, found->ai_addrlen) != 0 ||
         listen(made.get(), SOMAXCONN) != 0)
         throw UserError("cannot listen on " + address + " port " + std::to_string(port) + ": " +
-                        std::strerror(errno));
+                        whyNot(errno, port));
     return made;
 }
 
