@@ -44,10 +44,10 @@ constexpr auto kNever = std::chrono::steady_clock::time_point::max();
 
 }  // namespace
 
-Relay::Relay(const RelayOptions& options, const RelayBounds& bounds)
+Relay::Relay(const RelayOptions& options, const RelayBounds& bounds, Descriptor listener)
     : options_(options),
       bounds_(bounds),
-      listener_(listenOn(options.address, options.port)),
+      listener_(listener ? std::move(listener) : listenOn(options.address, options.port)),
       wrong_secrets_(kMaxWrongSecrets, kWrongSecretEvery_ns) {
     port_ = portOf(listener_.get());
     // Some are always left: a listener that cannot accept would be asked again and again.
@@ -130,6 +130,8 @@ void Relay::serve(Line& line, uint32_t events) {
             return;  // its bytes stay where they are
         case Stage::kPassing:
             return pass(line);
+        case Stage::kFarewell:
+            return drop(line);
     }
 }
 
@@ -245,6 +247,22 @@ void Relay::pass(Line& line) {
     if (!line.has_ended) watch(line);
 }
 
+// All is said: what this side still sends is read and dropped until it closes, too. A socket that is closed
+// with unread input resets the line, and what was said last would be lost.
+void Relay::bidFarewell(Line& line) {
+    if (line.stage == Stage::kFarewell) return;
+    line.stage = Stage::kFarewell;
+    line.until = Clock::now() + bounds_.to_close;
+    shutdown(line.socket.get(), SHUT_WR);
+    watch(line);
+}
+
+void Relay::drop(Line& line) {
+    std::array<char, kMaxRead> buffer;
+    const ssize_t count = recv(line.socket.get(), buffer.data(), buffer.size(), 0);
+    if (count == 0 || (count < 0 && errno != EAGAIN)) end(line);
+}
+
 void Relay::say(Line& line, std::string_view bytes) {
     // Only a control line can be told more than pass() allows for: one that does not read is gone.
     if (line.to_say.size() + bytes.size() > bounds_.bytes_under_way) return end(line);
@@ -263,14 +281,15 @@ void Relay::flush(Line& line) {
         said += size_t(count);
     }
     line.to_say.erase(0, said);
-    if (line.to_say.empty() && line.ends_when_said) return end(line);
+    if (line.to_say.empty() && line.ends_when_said) return bidFarewell(line);
     watch(line);
     if (was_full && line.partner) watch(*line.partner);
 }
 
 void Relay::watch(Line& line) {
-    const bool reads = line.stage != Stage::kWaiting && !line.ends_when_said &&
+    const bool takes = line.stage != Stage::kWaiting && !line.ends_when_said &&
                        (!line.partner || line.partner->to_say.size() < bounds_.bytes_under_way);
+    const bool reads = takes || line.stage == Stage::kFarewell;
     epoll_event event{};
     event.events = (reads ? uint32_t(EPOLLIN) : 0) | (line.to_say.empty() ? 0 : uint32_t(EPOLLOUT));
     event.data.ptr = &line;
@@ -290,7 +309,7 @@ void Relay::end(Line& line) {
         partner->ends_when_said = true;
         partner->until = Clock::now() + bounds_.to_meet;
         if (partner->to_say.empty()) {
-            end(*partner);
+            bidFarewell(*partner);
         } else {
             watch(*partner);
         }

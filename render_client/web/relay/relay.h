@@ -29,12 +29,13 @@ struct RelayBounds {
     std::chrono::milliseconds to_greet{5000};
     std::chrono::milliseconds to_meet{10000};  // a guest its gateway
     std::chrono::milliseconds ping{10000};     // of the gateway; after three it is gone
+    std::chrono::milliseconds to_close{2000};  // a line whose other half has ended
 };
 
 class Relay {
   public:
-    // Listens. Throws UserError.
-    explicit Relay(const RelayOptions& options, const RelayBounds& bounds = {});
+    // Listens, there or where `listener` already does. Throws UserError.
+    explicit Relay(const RelayOptions& options, const RelayBounds& bounds = {}, Descriptor listener = {});
     ~Relay();
 
     uint16_t port() const noexcept { return port_; }
@@ -53,7 +54,7 @@ class Relay {
 
   private:
     using Clock = std::chrono::steady_clock;
-    enum class Stage { kNew, kGreeting, kProof, kControl, kWaiting, kPassing };
+    enum class Stage { kNew, kGreeting, kProof, kControl, kWaiting, kPassing, kFarewell };
     struct Line;
 
     void acceptAll();
@@ -67,6 +68,8 @@ class Relay {
     void takePongs(Line& line);
     void join(Line& gateway_side, const GuestId& guest);
     void pass(Line& line);
+    void bidFarewell(Line& line);
+    void drop(Line& line);
     void say(Line& line, std::string_view bytes);
     void flush(Line& line);
     void watch(Line& line);
