@@ -134,6 +134,10 @@ CLI::Option* addServeOptions(CLI::App& app, RawServe& raw, const std::vector<CLI
     CLI::Option* const key =
         app.add_option("--key", options.key, "Its private key, PEM")->type_name("FILE")->needs(certificate);
     certificate->needs(key);
+    app.add_option("--known-as", options.names,
+                   "Another name by which guests reach it, besides those of --certificate; may be repeated")
+        ->type_name("HOST")
+        ->needs(certificate);
     app.add_option("--guests", options.guests,
                    "Who may come in, as deploy/security/invite writes it (default ~/.config/bonemill/"
                    "guests.textproto)")

@@ -168,25 +168,25 @@ bool allAgree(const GuestSession& session, const nlohmann::json& report) {
 nlohmann::json measure(const GuestsOptions& o) {
     nlohmann::json json;
     GuestSession session(o);
-    json["gateway_bytes_alone"] = residentBytesOf(session.gateway().pid());
-    json["gateway_share_alone"] = shareOfACore(session.gateway().pid(), kAloneTime);
+    json["gateway_bytes_alone"] = residentBytesOf(test::workOf(session.gateway()));
+    json["gateway_share_alone"] = shareOfACore(test::workOf(session.gateway()), kAloneTime);
     const uint64_t sent_before = session.sentBytes();
     session.startGuests();
     json["bytes_per_guest_until_whole"] = double(session.sentBytes() - sent_before) / o.guests;
     for (const char* key : {"connected_s", "first_s", "whole_s"}) json[key] = spread(session, key);
-    json["gateway_bytes_with_guests"] = residentBytesOf(session.gateway().pid());
+    json["gateway_bytes_with_guests"] = residentBytesOf(test::workOf(session.gateway()));
 
     for (int n = 0; n < o.stalled; ++n) session.guests()[size_t(n)]->signal(SIGSTOP);
     session.startMilling();
     const uint64_t sent = session.sentBytes();
     const double server = processorSeconds(session.server().pid()),
-                 gateway = processorSeconds(session.gateway().pid());
+                 gateway = processorSeconds(test::workOf(session.gateway()));
     std::this_thread::sleep_for(std::chrono::seconds(o.mill_s));
     json["server_share"] = (processorSeconds(session.server().pid()) - server) / o.mill_s;
-    json["gateway_share"] = (processorSeconds(session.gateway().pid()) - gateway) / o.mill_s;
+    json["gateway_share"] = (processorSeconds(test::workOf(session.gateway())) - gateway) / o.mill_s;
     json["kbit_per_s_per_guest"] = 8e-3 * double(session.sentBytes() - sent) / o.mill_s / o.guests;
     json["cut_to_viewer_ms"] = worstLag(session);
-    json["gateway_bytes_after_milling"] = residentBytesOf(session.gateway().pid());
+    json["gateway_bytes_after_milling"] = residentBytesOf(test::workOf(session.gateway()));
     for (int n = 0; n < o.stalled; ++n) session.guests()[size_t(n)]->signal(SIGCONT);
 
     if (o.cut_s > 0) {

@@ -116,6 +116,14 @@ void writeFile(const std::string& path, const std::string& content) {
     std::ofstream(path, std::ios::binary) << content;
 }
 
+int workOf(const Process& program) {
+    const std::string pid = std::to_string(program.pid());
+    std::ifstream children("/proc/" + pid + "/task/" + pid + "/children");
+    int work = 0;
+    children >> work;
+    return work;
+}
+
 std::string readFile(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     std::ostringstream content;

@@ -13,6 +13,8 @@
 #include "common/log/log.h"
 #include "common/process/run_program.h"
 #include "common/process/standard_output.h"
+#include "common/process/supervisor.h"
+#include "common/tcp/listen.h"
 #include "render_client/apps/render_client/scene_feed.h"
 #include "render_client/apps/render_client/unattended_viewer.h"
 #include "render_client/apps/render_client/window_viewer.h"
@@ -96,37 +98,54 @@ int runListSessions(const ClientOptions& options) {
     return sessions.empty() ? 1 : 0;
 }
 
-// render_client --relay: a relay instead of a viewer. Says where it can be reached, and serves until a stop
-// signal. Returns the exit code. Throws UserError.
+// render_client --relay and --serve: a relay or a gateway instead of a viewer. They say where they can be
+// reached, and serve until a stop signal, supervised. Return the exit code. Throw UserError.
+//
+// Both listen before their work begins: so a place that cannot be had is said at once, and who comes while
+// the work is started again waits.
 int runRelay(const ClientOptions& options) {
-    Relay relay(*options.relay);
-    std::cout << "relay for a gateway with --via: "
-              << textOf(NetworkPlace{options.relay->address, relay.port()}) << std::endl;
-    relay.run(stopRequested);
-    forgiveUnprinted();
-    const Relay::Counts counts = relay.counts();
-    spdlog::info("the relay ends: it passed on {} bytes and turned {} lines away", counts.bytes,
-                 counts.refused);
-    return 0;
+    Descriptor listener = listenOn(options.relay->address, options.relay->port);
+    const std::string place = textOf(NetworkPlace{options.relay->address, portOf(listener.get())});
+    return supervise("the relay", stopRequested, [&](const Heartbeat& heart, bool is_first) {
+        Relay relay(*options.relay, {}, std::move(listener));
+        if (is_first) std::cout << "relay for a gateway with --via: " << place << std::endl;
+        relay.run([&heart] {
+            heart.beat();
+            return stopRequested();
+        });
+        const Relay::Counts counts = relay.counts();
+        spdlog::info("the relay ends: it passed on {} bytes and turned {} lines away", counts.bytes,
+                     counts.refused);
+        forgiveUnprinted();
+        return 0;
+    });
 }
 
-// render_client --serve: a gateway instead of a viewer. Says where it can be reached, and serves until a stop
-// signal. Returns the exit code. Throws UserError.
-int runGateway(const ClientOptions& options) {
-    gateway::GatewayServer server(*options.serve);
-    std::cout << "gateway of session " << options.serve->session << ": https://"
-              << textOf(NetworkPlace{options.serve->address, server.port()}) << '\n';
-    if (options.serve->via)
+void introduce(const gateway::GatewayServer& server, const gateway::GatewayOptions& options) {
+    std::cout << "gateway of session " << options.session << ": https://"
+              << textOf(NetworkPlace{options.address, server.port()}) << '\n';
+    if (options.via)
         std::cout << "through the relay, once it is reached: https://"
-                  << textOf(NetworkPlace{options.serve->via->host, options.serve->via->port}) << '\n';
+                  << textOf(NetworkPlace{options.via->host, options.via->port}) << '\n';
     if (server.certificate().is_self_made)
         std::cout << "certificate of its own making, which browsers ask about; fingerprint (SHA-256): "
                   << server.certificate().fingerprint << '\n';
     if (!server.hasPage()) std::cout << "the page was not built: only viewers with --connect can come\n";
     std::cout << std::flush;
-    server.serveUntil(stopRequested);
-    forgiveUnprinted();
-    return 0;
+}
+
+int runGateway(const ClientOptions& options) {
+    Descriptor listener = listenOn(options.serve->address, options.serve->port);
+    return supervise("the gateway", stopRequested, [&](const Heartbeat& heart, bool is_first) {
+        gateway::GatewayServer server(*options.serve, std::move(listener));
+        if (is_first) introduce(server, *options.serve);
+        server.serveUntil([&heart] {
+            heart.beat();
+            return stopRequested();
+        });
+        forgiveUnprinted();
+        return 0;
+    });
 }
 
 // Returns true when `condition` held in time, false after `end` or a stop signal.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kMaxAddresses = 4096;  // that failed
 constexpr double kBitsPerByte = 8;
-constexpr std::chrono::seconds kLookEvery{1};
+constexpr std::chrono::milliseconds kLookEvery{250};  // what was withdrawn is over within 1 s
 
 const char* wordOf(topics::Viewer::Role role) {
     switch (role) {
@@ -95,8 +95,10 @@ Guest* Gateway::come(const GuestOrigin& origin, Clock::time_point now) {
 
 void Gateway::leave(Guest* guest) {
     if (guest->isAdmitted())
-        spdlog::info("guest {} has left{}{}", guest->speaker().name, guest->reason().empty() ? "" : ": ",
-                     guest->reason());
+        log_.say(GuestLog::Level::kInfo, guest->speaker().name,
+                 "guest " + guest->speaker().name + " has left" +
+                     (guest->reason().empty() ? "" : ": " + guest->reason()),
+                 Clock::now());
     std::erase_if(guests_, [guest](const auto& one) { return one.get() == guest; });
 }
 
@@ -114,8 +116,10 @@ void Gateway::receive(Guest& guest, std::string_view frame, Clock::time_point no
 }
 
 void Gateway::welcome(Guest& guest) {
-    spdlog::info("guest {} ({}) has come from {}", guest.speaker().name, wordOf(guest.speaker().role),
-                 guest.origin().text());
+    log_.say(GuestLog::Level::kInfo, guest.speaker().name,
+             "guest " + guest.speaker().name + " (" + wordOf(guest.speaker().role) + ") has come from " +
+                 guest.origin().text(),
+             Clock::now());
     for (const auto& other : guests_)
         if (other.get() != &guest && other->seat() == guest.seat())
             other->refuse("This session goes on in another window.", true);
@@ -126,7 +130,11 @@ void Gateway::noteFailure(const GuestOrigin& origin, Clock::time_point now) {
     if (failures_.size() >= kMaxAddresses && !failures_.contains(origin)) return;
     Failures& failures = failures_[origin];
     if (++failures.count == 1) failures.since = now;
-    if (failures.count <= kMaxFailures) spdlog::warn("a wrong link came from {}", origin.text());
+    if (failures.count <= kMaxFailures) noteComplaint(origin, "a wrong link came");
+}
+
+void Gateway::noteComplaint(const GuestOrigin& origin, const std::string& complaint) {
+    log_.say(GuestLog::Level::kWarning, origin.text(), complaint + ", from " + origin.text(), Clock::now());
 }
 
 void Gateway::step(Clock::time_point now) {
@@ -149,9 +157,12 @@ void Gateway::step(Clock::time_point now) {
 void Gateway::lookAtList(Clock::time_point now) {
     looked_ = now;
     list_.reread();
-    for (const auto& guest : guests_)
+    for (const auto& guest : guests_) {
         if (!guest->isInvited(unixSeconds()))
             guest->refuse("This invitation has ended. Ask for a new one.", true);
+        else if (!guest->isAsAdmitted())  // from here on he orders nothing; his ticket opens what he may now
+            guest->refuse("This invitation was changed: come in again.", false);
+    }
 }
 
 }  // namespace bonemill::gateway

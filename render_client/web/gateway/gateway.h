@@ -15,6 +15,7 @@
 #include "render_client/web/gateway/gateway_options.h"
 #include "render_client/web/gateway/guest.h"
 #include "render_client/web/gateway/guest_list.h"
+#include "render_client/web/gateway/guest_log.h"
 #include "render_client/web/gateway/session_mirror.h"
 
 namespace bonemill::gateway {
@@ -33,6 +34,8 @@ class Gateway {
     // stays until leave().
     Guest* come(const GuestOrigin& origin, Clock::time_point now);
     void leave(Guest* guest);
+    // Somebody from there wanted what is not his: it is for the log.
+    void noteComplaint(const GuestOrigin& origin, const std::string& complaint);
     // Takes one whole frame of the guest.
     void receive(Guest& guest, std::string_view frame, Clock::time_point now);
     // Takes what is new from the session, and looks after the guests: often.
@@ -65,6 +68,7 @@ class Gateway {
     Hall hall_;
     std::list<std::unique_ptr<Guest>> guests_;
     std::map<GuestOrigin, Failures> failures_;
+    GuestLog log_;
     Clock::time_point looked_;
     uint64_t epoch_ = 0;  // of the run that is shown
     SilenceMonitor deaf_watch_;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "render_client/link/subscribe/heard_peers.h"
 #include "render_client/web/relay/relay_greeting.h"
@@ -21,6 +22,7 @@ struct GatewayOptions {
     uint16_t port = 0;                  // 0: any that is free
     std::filesystem::path certificate;  // PEM; empty: one of its own making
     std::filesystem::path key;          // PEM
+    std::vector<std::string> names;     // of hosts, besides the certificate's, that are this gateway's
     std::filesystem::path guests;       // empty: in the user's configuration
     std::filesystem::path page;         // folder of the page
     double guest_mbit_per_s = 20;       // at most, to each guest

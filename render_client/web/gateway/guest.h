@@ -62,6 +62,8 @@ class Guest {
     // Of its seat; empty before it is admitted.
     const std::string& seat() const;
     bool isInvited(int64_t now_s) const;
+    // Its invitation says the same as when it came.
+    bool isAsAdmitted() const { return !admission_ || hall_.guests.isAsAdmitted(*admission_); }
     // It came with a token that nobody was given.
     bool hasFailed() const noexcept { return has_failed_; }
     bool wishesBricks() const { return stream_ && stream_->wishesBricks(); }

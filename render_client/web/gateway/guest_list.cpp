@@ -12,6 +12,7 @@
 
 #include "common/base/user_error.h"
 #include "common/files/whole_file.h"
+#include "common/text/foreign_text.h"
 #include "render_client/web/secrets/secrets.h"
 
 namespace bonemill::gateway {
@@ -40,7 +41,8 @@ bool isInvitation(const Invitation& invitation) {
     const std::string& hash = invitation.token_sha256();
     return hash.size() == 64 && hash.find_first_not_of("0123456789abcdef") == std::string::npos &&
            !invitation.name().empty() && invitation.name().size() <= 64 &&
-           invitation.people() <= GuestList::kMaxPeople && topics::Viewer::Role_IsValid(invitation.role());
+           !hasUnprintable(invitation.name()) && invitation.people() <= GuestList::kMaxPeople &&
+           topics::Viewer::Role_IsValid(invitation.role());
 }
 
 uint32_t peopleOf(const Invitation& invitation) {
@@ -112,6 +114,12 @@ const Invitation* GuestList::find(const std::string& token_sha256) const {
 bool GuestList::isInvited(const std::string& token_sha256, int64_t now_s) const {
     const Invitation* const invitation = find(token_sha256);
     return invitation && !hasExpired(*invitation, now_s);
+}
+
+bool GuestList::isAsAdmitted(const Admission& admission) const {
+    const Invitation* const invitation = find(admission.token_sha256);
+    return invitation && invitation->role() == admission.role &&
+           invitation->expires_s() == admission.expires_s;
 }
 
 Admission GuestList::admit(const std::string& token, int64_t now_s) {

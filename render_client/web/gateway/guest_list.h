@@ -99,6 +99,8 @@ class GuestList {
     Admission admit(const std::string& token, int64_t now_s);
     // Whoever was admitted with this is still invited.
     bool isInvited(const std::string& token_sha256, int64_t now_s) const;
+    // Nothing of what it was told then has changed in its invitation: the role, and when it ends.
+    bool isAsAdmitted(const Admission& admission) const;
     int size() const { return guests_.invitations_size(); }
 
   private:

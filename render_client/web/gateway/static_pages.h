@@ -6,8 +6,6 @@
 #include <map>
 #include <string>
 
-struct lws;
-
 namespace bonemill::gateway {
 
 struct StaticFile {
@@ -32,24 +30,5 @@ class StaticPages {
     std::map<std::string, StaticFile> files_;  // by path
     bool is_built_ = false;
 };
-
-// Every answer has this.
-inline constexpr const char* kContentPolicy =
-    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; connect-src 'self'; "
-    "img-src 'self' data: blob:; font-src 'self'; media-src 'self' blob:; worker-src 'self' blob:; "
-    "manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-
-// Answers one request over HTTP with a file of the page. For the thread of libwebsockets.
-//
-// It lies in the connection's own memory, which libwebsockets sets to zero.
-struct HttpAnswer {
-    const std::string* bytes;  // what is left of it begins at `sent`
-    size_t sent;
-    bool ends_connection;
-};
-
-// Both return what the callback returns: other than 0 ends the connection.
-int beginAnswer(lws* connection, const StaticPages& pages, HttpAnswer& answer);
-int continueAnswer(lws* connection, HttpAnswer& answer);
 
 }  // namespace bonemill::gateway

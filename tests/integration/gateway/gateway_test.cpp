@@ -141,6 +141,24 @@ TEST(Gateway, WhoIsWithdrawnIsSentAwayAndWhoIsNotInvitedStaysOutside) {
     EXPECT_TRUE(guest.pollUntil([&] { return guest.refusal && guest.socket.hasEnded(); }));
 }
 
+TEST(Gateway, WhoseRoleWasChangedComesInAgainWithTheNewOne) {
+    TestServer server(3);
+    RunningGateway gateway(invitationOf("Anna", "OPERATOR", kToken));
+    TestGuest before(gateway, kToken, true);
+    ASSERT_TRUE(before.isWelcome());
+    gateway.invite(invitationOf("Anna", "VIEWER", kToken));
+    EXPECT_TRUE(before.pollUntil([&] { return before.refusal && before.socket.hasEnded(); }));
+    EXPECT_FALSE(before.refusal->is_final()) << "the ticket opens the seat";
+    TestGuest after(gateway, before.welcome->ticket(), true);
+    ASSERT_TRUE(after.isWelcome());
+    EXPECT_EQ(after.welcome->role(), topics::Viewer::VIEWER);
+    FromGuest command;
+    command.mutable_command()->set_sequence(1);
+    command.mutable_command()->set_reset_volume(true);
+    EXPECT_TRUE(after.sendUntil(command, [&] { return !after.answer.empty(); }));
+    EXPECT_NE(after.answer.find("a viewer only looks"), std::string::npos) << after.answer;
+}
+
 TEST(Gateway, SpeaksForItsGuestsAsTheListKnowsThem) {
     TestServer server(3);
     const RunningGateway gateway(invitationOf("Anna", "OPERATOR", kToken) +

@@ -71,8 +71,9 @@ class Stranger {
     bool has_ended_ = false;
 };
 
-// Shakes hands with TLS up to this version, and returns OpenSSL's reason; 0: it speaks it.
-int refusalOfTls(const RunningGateway& gateway, int version) {
+// Shakes hands with TLS up to this version, up to 1.2 with these suites alone, and returns OpenSSL's reason;
+// 0: it speaks it.
+int refusalOfTls(const RunningGateway& gateway, int version, const char* suites = "ALL") {
     using Context = std::unique_ptr<SSL_CTX, decltype(&SSL_CTX_free)>;
     using Connection = std::unique_ptr<SSL, decltype(&SSL_free)>;
     const Descriptor socket = dialled(gateway);
@@ -81,6 +82,7 @@ int refusalOfTls(const RunningGateway& gateway, int version) {
     SSL_CTX_set_security_level(context.get(), 0);  // this side takes everything
     SSL_CTX_set_min_proto_version(context.get(), TLS1_VERSION);
     SSL_CTX_set_max_proto_version(context.get(), version);
+    EXPECT_EQ(SSL_CTX_set_cipher_list(context.get(), suites), 1);
     const Connection connection(SSL_new(context.get()), SSL_free);
     SSL_set_fd(connection.get(), socket.get());
     ERR_clear_error();
@@ -94,6 +96,10 @@ TEST(GatewayPort, SpeaksNoTlsBefore12) {
     EXPECT_EQ(refusalOfTls(gateway, TLS1_1_VERSION), SSL_R_TLSV1_ALERT_PROTOCOL_VERSION);
     EXPECT_EQ(refusalOfTls(gateway, TLS1_2_VERSION), 0);
     EXPECT_EQ(refusalOfTls(gateway, TLS1_3_VERSION), 0);
+    EXPECT_EQ(refusalOfTls(gateway, TLS1_2_VERSION, "ECDHE-ECDSA-AES128-SHA:ECDHE-ECDSA-AES256-SHA384"),
+              SSL_R_SSLV3_ALERT_HANDSHAKE_FAILURE)
+        << "of 1.2 no suite with CBC";
+    EXPECT_EQ(refusalOfTls(gateway, TLS1_2_VERSION, "ECDHE-ECDSA-CHACHA20-POLY1305"), 0);
 }
 
 TEST(GatewayPort, PlainHttpGetsNoAnswer) {
@@ -146,8 +152,7 @@ TEST(HostileGuest, WhoDripsIsEnded) {
     EXPECT_FALSE(anna.socket.hasEnded());
 }
 
-// libwebsockets takes them without a word: they never are a message. Who sends nothing else gets no more than
-// a turn.
+// They never are a message. Who sends nothing else gets no more than a turn.
 TEST(HostileGuest, PingsAndPartsWithoutBytesHarmNobody) {
     TestServer server(3);
     const RunningGateway gateway(invitationOf("Anna", "VIEWER", "anna"));

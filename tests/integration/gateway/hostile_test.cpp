@@ -70,14 +70,43 @@ TEST(GatewayPort, OpensASessionOnlyForItsOwnPageAndForViewers) {
     EXPECT_TRUE(answerTo(gateway, upgrade("/session", protocol)).starts_with("HTTP/1.1 101")) << "a viewer";
     EXPECT_TRUE(answerTo(gateway, upgrade("/session", protocol + "Origin: https://there\r\n"))
                     .starts_with("HTTP/1.1 101"));
-    for (const char* origin : {"https://elsewhere", "http://there", "null", "https://there.elsewhere"})
-        EXPECT_EQ(answerTo(gateway, upgrade("/session", protocol + "Origin: " + origin + "\r\n"))
-                      .find("HTTP/1.1 101"),
-                  std::string::npos)
+    EXPECT_TRUE(answerTo(gateway, upgrade("/session", protocol + "Origin: HTTPS://There:443\r\n"))
+                    .starts_with("HTTP/1.1 101"))
+        << "the default port may be named";
+    for (const char* origin :
+         {"https://elsewhere", "http://there", "null", "https://there.elsewhere", "https://there:444"})
+        EXPECT_TRUE(answerTo(gateway, upgrade("/session", protocol + "Origin: " + origin + "\r\n"))
+                        .starts_with("HTTP/1.1 403"))
             << origin;
     for (const std::string& request : {upgrade("/other", protocol), upgrade("/session", ""),
                                        upgrade("/session", "Sec-WebSocket-Protocol: http\r\n")})
         EXPECT_EQ(answerTo(gateway, request).find("HTTP/1.1 101"), std::string::npos) << request;
+}
+
+TEST(GatewayPort, AnswersWhatIsNoGetAsHttpWants) {
+    const RunningGateway gateway("");
+    const std::string end = "Host: there\r\nConnection: close\r\n\r\n";
+    const std::string head = answerTo(gateway, "HEAD /main.js HTTP/1.1\r\n" + end);
+    EXPECT_TRUE(head.starts_with("HTTP/1.1 200")) << head;
+    EXPECT_NE(head.find("Content-Length: 10\r\n"), std::string::npos) << head;
+    EXPECT_TRUE(head.ends_with("\r\n\r\n")) << "no body: " << head;
+    for (const char* line :
+         {"POST / HTTP/1.1\r\n", "CONNECT there:443 HTTP/1.1\r\n", "OPTIONS * HTTP/1.1\r\n"}) {
+        const std::string answer = answerTo(gateway, line + end);
+        EXPECT_TRUE(answer.starts_with("HTTP/1.1 405")) << line << answer;
+        EXPECT_NE(answer.find("Allow: GET, HEAD\r\n"), std::string::npos) << line << answer;
+    }
+    const std::string old = answerTo(gateway, get("/session",
+                                                  "Upgrade: websocket\r\nConnection: Upgrade\r\n"
+                                                  "Sec-WebSocket-Version: 8\r\n"));
+    EXPECT_TRUE(old.starts_with("HTTP/1.1 426")) << old;
+    EXPECT_NE(old.find("Sec-WebSocket-Version: 13\r\n"), std::string::npos) << old;
+    EXPECT_TRUE(answerTo(gateway, "GET / HTTP/1.1\r\nConnection: close\r\n\r\n").starts_with("HTTP/1.1 400"))
+        << "without a host";
+    EXPECT_TRUE(answerTo(gateway, "nonsense\r\n\r\n").starts_with("HTTP/1.1 400"));
+    EXPECT_TRUE(answerTo(gateway, upgrade("/session", "Sec-WebSocket-Protocol: bonemill.v1\r\n") + "early")
+                    .starts_with("HTTP/1.1 400"))
+        << "frames before the answer";
 }
 
 TEST(GatewayPort, AnotherCertificateIsRefusedWithItsFingerprint) {

@@ -33,6 +33,10 @@ TEST(GatewayOptions, ServesThisPcAloneUnlessAnAddressIsGiven) {
         EXPECT_THROW(parsed({"--serve", place}), UserError) << place;
     EXPECT_THROW(parsed({"--page", "p"}), UserError) << "of no gateway";
     EXPECT_THROW(parsed({"--serve", "1", "--key", "k"}), UserError) << "a key without its certificate";
+    EXPECT_THROW(parsed({"--serve", "1", "--known-as", "k"}), UserError) << "a name without a certificate";
+    EXPECT_EQ(parsed({"--serve", "1", "--certificate", "c", "--key", "k", "--known-as", "sim.example.org"})
+                  .serve->names,
+              std::vector<std::string>{"sim.example.org"});
     EXPECT_THROW(parsed({"--serve", "1", "--command", "reset"}), UserError);
 }
 
