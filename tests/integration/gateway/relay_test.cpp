@@ -115,7 +115,7 @@ TEST(RelayedGateway, AClassOfThirtyGetsTheWholeModel) {
     RelayedGateway gateway(invitationOf("Class", "VIEWER", kRelayedToken, 0, kClass), kClass);
     gateway.startGateway();
     ASSERT_TRUE(gateway.waitUntilReached());
-    const double before = peakMemoryOf(gateway.relay().pid());
+    const double before = peakMemoryOf(test::workOf(gateway.relay()));
     std::vector<std::unique_ptr<TestGuest>> guests;
     for (uint32_t n = 0; n < kClass; ++n) {
         guests.push_back(std::make_unique<TestGuest>(gateway.throughRelay(), kRelayedToken, true));
@@ -126,7 +126,8 @@ TEST(RelayedGateway, AClassOfThirtyGetsTheWholeModel) {
     server.show({syntheticNode(3, 2), emptyNode(5, 2)});
     const NodeDigest digest = server.publisher.digest();
     for (const auto& guest : guests) EXPECT_TRUE(guest->pollUntil([&] { return guest->digest() == digest; }));
-    EXPECT_LT(peakMemoryOf(gateway.relay().pid()) - before, 8) << "MiB; 64 KiB wait for each end at most";
+    EXPECT_LT(peakMemoryOf(test::workOf(gateway.relay())) - before, 8)
+        << "MiB; 64 KiB wait for each end at most";
 }
 
 }  // namespace

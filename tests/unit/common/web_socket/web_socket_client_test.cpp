@@ -6,10 +6,13 @@
 #include <openssl/sha.h>
 #include <poll.h>
 
+#include <optional>
+#include <random>
 #include <string>
 #include <thread>
 
 #include "common/tcp/listen.h"
+#include "tests/support/mutated_bytes.h"
 
 namespace bonemill {
 namespace {
@@ -87,6 +90,54 @@ TEST(WebSocketClient, HearsWhatWasSaidBeforeTheOtherSideHungUp) {
     EXPECT_EQ(message, "you must go");
     client.move();
     EXPECT_TRUE(client.hasEnded());
+}
+
+// RFC 6455, 5.2, 5.4, 5.5. Behind each comes as much more as the line takes.
+TEST(WebSocketClient, EndsAtWhatIsNoFrame) {
+    const std::string long_head("\x82\x7f\0\0\0\0\x10\0\0\0", 10);  // 256 MiB
+    const std::pair<const char*, std::string> wrongs[] = {
+        {"nothing to continue", frameOf(0x80, "a")},
+        {"a message within a message", frameOf(0x02, "a") + frameOf(0x82, "b")},
+        {"another kind than was asked for", frameOf(0x81, "text")},
+        {"a reserved bit", frameOf(0xc2, "a")},
+        {"a reserved opcode", frameOf(0x83, "a")},
+        {"a reserved control opcode", frameOf(0x8b, "a")},
+        {"a ping in parts", frameOf(0x09, "a")},
+        {"a ping that is too long", std::string("\x89\x7e\0\x7e", 4) + std::string(126, 'a')},
+        {"a mask", std::string("\x82\x81\0\0\0\0a", 7)},
+        {"a message that is too long", long_head},
+        {"a close", frameOf(0x88, "\x03\xe8")}};
+    for (const auto& [what, bytes] : wrongs) {
+        StandIn server;
+        server.say(frameOf(0x82, "before") + bytes + frameOf(0x82, std::string(100, 'x')));
+        for (int n = 0; n < 100 && !server.client->hasEnded(); ++n) {
+            server.client->wait(-1, std::chrono::milliseconds(100));
+            server.client->move();
+        }
+        EXPECT_TRUE(server.client->hasEnded()) << what;
+        std::string message;
+        EXPECT_TRUE(server.client->receive(message) && message == "before") << what;
+        EXPECT_FALSE(server.client->receive(message)) << what;
+    }
+}
+
+TEST(WebSocketClient, MutatedFramesEndOrPassAndNothingElse) {
+    std::mt19937 random(32);
+    const std::string genuine = frameOf(0x02, "one ") + frameOf(0x00, "two ") + frameOf(0x89, "ping") +
+                                frameOf(0x80, "three") + frameOf(0x82, std::string(120, 'b')) +
+                                std::string("\x82\x7e\0\x80", 4) + std::string(128, 'c');
+    for (int n = 0; n < 300; ++n) {
+        StandIn server;
+        for (int burst = 0; burst < 5; ++burst) server.say(test::mutated(genuine, random));
+        server.hangUp();
+        std::string message;
+        for (int looks = 0; looks < 100 && !server.client->hasEnded(); ++looks) {
+            server.client->wait(-1, std::chrono::milliseconds(100));
+            server.client->move();
+            while (server.client->receive(message)) EXPECT_LE(message.size(), 5 * genuine.size());
+        }
+        ASSERT_TRUE(server.client->hasEnded()) << n;
+    }
 }
 
 }  // namespace
