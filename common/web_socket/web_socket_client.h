@@ -35,8 +35,8 @@ class WebSocketClient {
     void move();
     // Takes the next whole message that has come; false: there is none.
     bool receive(std::string& message);
-    // Ended by the other side, the network, or a message that is none.
-    bool hasEnded() const noexcept { return has_ended_; }
+    // Ended by the other side, the network, or a message that is none; and all that came before was received.
+    bool hasEnded() const noexcept { return has_ended_ && messages_.empty(); }
     bool hasUnsent() const noexcept { return !outgoing_.empty(); }
     // Waits until something can be moved, or `wake` (a file, or -1) can be read.
     void wait(int wake, std::chrono::nanoseconds patience) { line_.wait(hasUnsent(), wake, patience); }
