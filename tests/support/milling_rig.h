@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "haptic_server/core/tick/fixed_tick.h"
+#include "haptic_server/core/tick/tick_budget.h"
 #include "haptic_server/surface/mesh/mesh_check.h"
 #include "tests/support/test_bodies.h"
 #include "tests/support/typical_effects.h"
@@ -32,29 +33,36 @@ struct RigConfig {
     // Either of these is listed instead of energy_removal.
     std::optional<TimeRemovalConfig> time_removal;
     std::optional<AddMaterialConfig> add_material;
-    double shaft_radius = 0;  // m, of a ball's shaft along the tool's axis; 0: none
+    double shaft_radius = 0;  // m, along the tool's axis, behind a cylinder with flat ends; 0: none
+    double shaft_end = 8e-3;  // m from the tool's origin
     Burr burr{.radius = 1e-3, .speed = 40 * kKrpm};
+    double edge_radius = 0;  // m, of a cylindrical burr
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  // of the tool
     EnergyRemovalConfig removal = kEnergyRemoval;
     Preset preset = Preset::kBalanced;
     int shell_factor = 1;
     size_t most_milled_cells = TickConfig{}.most_milled_cells;
     double hand_stiffness = 3000;  // N/m: of the coupling
+    // As much time as at 1 kHz on a plain PC (TickBudget); else plenty.
+    bool has_budget = false;
+    std::optional<SurfaceFrictionConfig> friction = {};
 };
 
-inline std::vector<ToolShape> shapesOf(const Burr& burr) {
+inline std::vector<ToolShape> shapesOf(const Burr& burr, double edge_radius = 0) {
     const Eigen::Vector3d half = burr.length / 2 * Eigen::Vector3d::UnitY();
-    if (burr.kind == BurrKind::kCylinder) return {CylinderShape{-half, half, burr.radius}};
+    if (burr.kind == BurrKind::kCylinder) return {CylinderShape{-half, half, burr.radius, edge_radius}};
     if (burr.kind == BurrKind::kCone) return {ConeShape{-half, half, burr.tip_radius, burr.radius}};
     return {SphereShape{Eigen::Vector3d::Zero(), burr.radius}};
 }
 
 inline std::vector<ToolShape> shapesOf(const RigConfig& config) {
-    std::vector<ToolShape> shapes = shapesOf(config.burr);
-    constexpr double kLength = 8e-3;  // m
-    if (config.shaft_radius > 0)
+    std::vector<ToolShape> shapes = shapesOf(config.burr, config.edge_radius);
+    const Eigen::Vector3d end = config.shaft_end * Eigen::Vector3d::UnitY();
+    if (config.shaft_radius > 0 && config.burr.kind == BurrKind::kCylinder)
         shapes.push_back(
-            CapsuleShape{Eigen::Vector3d::Zero(), kLength * Eigen::Vector3d::UnitY(), config.shaft_radius});
+            CylinderShape{config.burr.length / 2 * Eigen::Vector3d::UnitY(), end, config.shaft_radius});
+    else if (config.shaft_radius > 0)
+        shapes.push_back(CapsuleShape{Eigen::Vector3d::Zero(), end, config.shaft_radius});
     return shapes;
 }
 
@@ -188,6 +196,8 @@ class MillingRig final : private TickIo {
         tick.gradient.coupling.translation_stiffness = config.hand_stiffness;
         tick.gradient.coupling.relaxing_share = 0;
         tick.most_milled_cells = config.most_milled_cells;
+        if (config.has_budget) TickBudget::apply(tick.dt, tick.gradient, tick.most_milled_cells);
+        tick.effects.surface_friction = config.friction;
         tick.effects.time_removal = config.time_removal;
         tick.effects.add_material = config.add_material;
         if (!config.time_removal && !config.add_material) tick.effects.energy_removal = config.removal;

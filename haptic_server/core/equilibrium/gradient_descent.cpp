@@ -16,6 +16,10 @@ constexpr double kRotationLength = 0.03;  // m
 constexpr double kSmallestReach = 1e-9;   // m: a shorter step is no step
 constexpr double kShortestLesson = 1e-7;  // m: over a shorter one the forces change mostly by rounding
 constexpr int kMaxCuts = 4;               // of a step that goes uphill
+// Point tests of each candidate: for one more look at the energy where the candidates are others now and at a
+// step with all its cuts, and for the shortest sweep.
+constexpr double kSweepRounding = 1e-6;  // m: more than a sweep allows for
+constexpr size_t kTriesKept = kMaxCuts + 2, kLeastSweep = 2;
 // One cut leaves so much of a step's length: one that goes deep into a hard wall must become short.
 constexpr double kLongestCut = 0.5, kShortestCut = 0.05;
 constexpr double kFirstLambda = 1e-2, kMaxLambda = 1e6;
@@ -127,16 +131,28 @@ Vector6d GradientModel::limited(const State& state, const Vector6d& newton, cons
     const Vector6d step = withinSpeed(state, newton, tick);
     const auto room = [&] { return contact_.margin() - reachOf(between(X_VT_gathered_, state.X_VT)); };
     if (reachOf(step) <= room()) return step;
-    if (settings_.continuous_collision && pointTestsLeft() > 0) {
-        gather(state.X_VT, reachOf(step) * (1 + 1e-9), *tick.out);
-        const double share = contact_.advance(*field_, state.X_VT, step, trustRadius() / 2, pointTestsLeft());
-        point_tests_ += contact_.takePointTests();
-        return share * step;
-    }
-    if (room() < trustRadius() / 2 && pointTestsLeft() > 0) gather(state.X_VT, trustRadius(), *tick.out);
+    if (settings_.continuous_collision && canGatherAgain()) return swept(state, step, tick);
+    if (room() < trustRadius() / 2 && canGatherAgain()) gather(state.X_VT, trustRadius(), *tick.out);
     if (reachOf(step) <= room()) return step;
     tick.out->is_motion_clamped = true;
     return step * std::max(0.0, room() / reachOf(step));
+}
+
+// Returns as much of a long step as the sweep finds free. Where so many points are near, as around a drill in
+// its hole, that no time would be left to find where along the step the energy is lowest, it is cut to what
+// needs no sweep.
+Vector6d GradientModel::swept(const State& state, const Vector6d& step, const Tick& tick) noexcept {
+    const double reach = reachOf(step), unswept = trustRadius() / 2 - kSweepRounding;
+    gather(state.X_VT, reach * (1 + 1e-9), *tick.out);
+    if (reach <= unswept) return step;  // no point can come so deep that the sweep would end
+    const size_t kept = kTriesKept * contact_.candidateCount(), left = pointTestsLeft();
+    if (left < kept + kLeastSweep * contact_.candidateCount()) {
+        tick.out->is_motion_clamped = true;
+        return unswept / reach * step;
+    }
+    const double share = contact_.advance(*field_, state.X_VT, step, trustRadius() / 2, left - kept);
+    point_tests_ += contact_.takePointTests();
+    return share * step;
 }
 
 // Returns whether what the step can gain is less than the rounding of the depths makes: a rise then says
@@ -199,18 +215,31 @@ bool GradientModel::descend(State& state, const Tick& tick) noexcept {
         ++tick.out->iterations;
         const State before = state;
         const bool has_moved = moveDown(state, step, tick);
-        if (pointTestsLeft() == 0) {
-            tick.out->has_contact_overflow = true;
-            break;
-        }
         if (has_moved) {
             learnFrom(before, state);
             lambda_ = lambda_ > kFirstLambda / 10 ? lambda_ / 10 : 0;
-        } else if (!tryOtherwise(state, tick, n + 1 == settings_.iterations)) {
+        } else if (!tryOtherwise(state, tick, n + 1 == settings_.iterations || !canLookAgain())) {
+            break;
+        }
+        if (!canLookAgain()) {
+            noteCutShort(state, tick);
             break;
         }
     }
     return true;
+}
+
+// The tick ends for want of time. That is worth coarser samples where it holds the tool, tick by tick; not
+// where the tool goes on, or where the next tick makes it good.
+void GradientModel::noteCutShort(const State& state, const Tick& tick) noexcept {
+    const bool has_moved = reachOf(between(tick.X_VT_start, state.X_VT)) > kSmallestReach;
+    is_cut_short_ = isFelt(state) && !(has_moved && tick.out->is_motion_clamped);
+    tick.out->has_contact_overflow |= is_cut_short_ && (was_cut_short_ || !has_moved);
+}
+
+// Are the forces out of balance by more than a hand may miss?
+bool GradientModel::isFelt(const State& state) noexcept {
+    return outOfBalance(state) > std::max(kFelt, kFeltBesideForce * state.contact_force);
 }
 
 // After a step that led uphill: what was learnt may be to blame, or it was too long. False: this tick ends.
@@ -219,7 +248,7 @@ bool GradientModel::tryOtherwise(const State& state, const Tick& tick, bool is_l
     curvature_.forget();
     if (has_learnt && !is_last) return true;
     if (!has_learnt) lambda_ = std::min(std::max(kFirstLambda, lambda_ * 10), kMaxLambda);
-    tick.out->has_stalled = outOfBalance(state) > std::max(kFelt, kFeltBesideForce * state.contact_force);
+    tick.out->has_stalled = isFelt(state);
     return false;
 }
 

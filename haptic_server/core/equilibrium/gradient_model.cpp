@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/geometry/pose.h"
 
@@ -178,7 +179,8 @@ void GradientModel::gather(const Pose& X_VT, double margin, SpoStep& out) noexce
     out.has_contact_overflow |= !contact_.gather(bone, *field_, X_VT, margin, pointTestsLeft());
     out.has_fewer_samples |= contact_.hasFewerSamples();
     out.candidates = uint32_t(contact_.candidateCount());
-    point_tests_ += contact_.takePointTests();
+    gathering_tests_ = contact_.takePointTests();
+    point_tests_ += gathering_tests_;
 }
 
 GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick) noexcept {
@@ -207,6 +209,7 @@ SpoStep GradientModel::advance(const Pose& X_VT, const Pose& X_VT_device) noexce
     SpoStep out;
     const Tick tick{X_VT, X_VT_device, &out};
     point_tests_ = 0;
+    was_cut_short_ = std::exchange(is_cut_short_, false);
     State state = begin(tick);
     const Wrench effects_at_start = state.effects;
     goOn(state, tick);

@@ -103,6 +103,8 @@ class GradientModel final : public SpoModel {
     void goOn(State& state, const Tick& tick) noexcept;
     bool descend(State& state, const Tick& tick) noexcept;
     bool tryOtherwise(const State& state, const Tick& tick, bool is_last) noexcept;
+    void noteCutShort(const State& state, const Tick& tick) noexcept;
+    static bool isFelt(const State& state) noexcept;
     void feel(const Pose& X_VT, const Tick& tick) noexcept;
     // N; rotation in units of the solve.
     static double outOfBalance(const State& state) noexcept;
@@ -111,6 +113,7 @@ class GradientModel final : public SpoModel {
     Vector6d newtonStep(const State& state) const noexcept;
     Vector6d withinSpeed(const State& state, const Vector6d& newton, const Tick& tick) const noexcept;
     Vector6d limited(const State& state, const Vector6d& newton, const Tick& tick) noexcept;
+    Vector6d swept(const State& state, const Vector6d& step, const Tick& tick) noexcept;
     bool isLostInNoise(const State& state, const Vector6d& step) const noexcept;
     bool moveDown(State& state, const Vector6d& step, const Tick& tick) noexcept;
     static void dropTraces(SpoStep& step) noexcept;
@@ -119,6 +122,9 @@ class GradientModel final : public SpoModel {
     size_t pointTestsLeft() const noexcept {
         return point_tests_ < most_point_tests_ ? most_point_tests_ - point_tests_ : 0;
     }
+    // A gathering is followed by looks at what it found.
+    bool canGatherAgain() const noexcept { return pointTestsLeft() > 2 * gathering_tests_; }
+    bool canLookAgain() const noexcept { return pointTestsLeft() > contact_.candidateCount(); }
 
     GradientConfig config_;
     SpoWorld world_;
@@ -140,8 +146,10 @@ class GradientModel final : public SpoModel {
     Pose X_VT_gathered_;
     uint32_t gatherings_ = 0;
     size_t affordable_samples_ = SIZE_MAX;
-    size_t most_point_tests_ = 0;  // with this field
-    size_t point_tests_ = 0;       // in this tick
+    size_t most_point_tests_ = 0;                        // with this field
+    size_t point_tests_ = 0;                             // in this tick
+    size_t gathering_tests_ = 0;                         // of the last gathering
+    bool is_cut_short_ = false, was_cut_short_ = false;  // this tick, and the last one
     ContinuousRotation way_;
     RelaxingSpring relaxing_;
     CurvatureSecant curvature_;
