@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <span>
 #include <utility>
 
 #include "haptic_server/core/contact/cell_corners.h"
-#include "haptic_server/core/kernels/kernels.h"
-#include "haptic_server/core/volume/density_view.h"
 #include "haptic_server/core/volume/floor_index.h"
 
 namespace bonemill {
@@ -18,9 +15,6 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using Eigen::Vector3i;
 
-// Slopes flatter than this share of that of a ramp from air, or from full density, to the iso-value in one
-// voxel count as this, so that a surface on a plateau moves on.
-constexpr double kMinSlope = 0.02;
 constexpr double kGoldenRatio = 0.6180339887498949;  // spreads the roundings evenly
 
 int coarsestFactor(const PointShell& shell) noexcept {
@@ -72,9 +66,11 @@ SurfaceShift::SurfaceShift(const BoneModel& bone, double largest_reach, size_t m
       fresh_(size_t(size_.x())),
       collector_(bone.lattice, size_, most_cells) {}
 
-void SurfaceShift::begin(const BoneModel& bone, const Vector3d& p_VB) noexcept {
+void SurfaceShift::begin(const BoneModel& bone, const Burr& burr, const Pose& X_VT) noexcept {
     forget();
-    const Eigen::Array3d middle = p_VB.array() / bone.volume.spacing().array();
+    burr_ = burr;
+    X_VT_ = X_VT;
+    const Eigen::Array3d middle = X_VT.position.array() / bone.volume.spacing().array();
     const Eigen::Array3d last = (bone.volume.dims().array() + 1 - size_.array()).cast<double>();
     first_ = (middle - size_.cast<double>().array() / 2).max(-1.0).min(last).floor().cast<int>().matrix();
     room_ = {(first_.array() + 1).max(0), (first_ + size_).array() - 2};
@@ -121,36 +117,6 @@ void SurfaceShift::add(const BoneModel& bone, PatchId patch, double energy, doub
     Order& order = orders_[last_node_];
     order.energy += float(energy);
     order.depth = std::max(order.depth, float(depth));
-}
-
-// Lists the shell's points around those with energy.
-void SurfaceShift::findPatches(const BoneModel& bone) noexcept {
-    near_count_ = 0;
-    const IndexBox cells = patch_cells_.grown(2 * block_);
-    const IndexBox reachable{cells.min.cwiseMax(first_),
-                             cells.max.cwiseMin(first_ + size_ - Vector3i::Ones())};
-    const auto has_surface = [iso = bone.volume.iso()](const DensityRange& range, const IndexBox&) {
-        return range.holds(iso);
-    };
-    // A point lies in its block.
-    const Eigen::Array3f step = bone.volume.spacing().cast<float>();
-    const Eigen::AlignedBox3f box{(reachable.min.cast<float>().array() - 1) * step,
-                                  (reachable.max.cast<float>().array() + float(block_ + 1)) * step};
-    bone.lattice.forEachLeaf(cells, has_surface, [&](LeafId leaf) {
-        const Vector3i first = bone.lattice.cellsOf(leaf).min;
-        bone.shell.forEachBlock(bone.shell.followed(), leaf, [&](const ShellBlock& b, uint32_t count) {
-            const Vector3f center(b.center[0], b.center[1], b.center[2]);
-            if (box.squaredExteriorDistance(center) > b.radius * b.radius) return;
-            for (uint32_t n = 0; n < count && near_count_ < near_.size(); ++n) {
-                const Vector3i cell = first + b.key[n].index() * block_;
-                const bool is_near = (cell.array() >= reachable.min.array()).all() &&
-                                     (cell.array() <= reachable.max.array()).all();
-                if (is_near)
-                    near_[near_count_++] = {Vector3f(b.x[n], b.y[n], b.z[n]), b.area[n],
-                                            uint32_t(index(cell))};
-            }
-        });
-    });
 }
 
 // It has the voxels that can be written; `at` in voxel steps.
@@ -218,53 +184,23 @@ SurfaceShift::Span SurfaceShift::touchedIn(size_t row, int low, int high) const 
     return span;
 }
 
-void SurfaceShift::spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share,
-                                double most) noexcept {
-    const Vector3f inverse = bone.volume.spacing().cwiseInverse().cast<float>();
-    const int to_iso = std::min(int(bone.volume.iso()), kMaxDensity - bone.volume.iso());
-    const double least_slope = kMinSlope * to_iso / bone.volume.spacing().maxCoeff();
-    alignas(64) float x[kSinkBatch], y[kSinkBatch], z[kSinkBatch], recession[kSinkBatch],
-        least_excess[kSinkBatch], drop[kSinkBatch], area[kSinkBatch];
-    SinkingPoints wishes{x, y, z, recession, least_excess, drop, 0};
-    for (const NearPatch& patch : std::span(near_).first(near_count_)) {
-        const Order& order = orders_[patch.node];
-        if (!(order.energy > 0)) continue;
-        const Vector3i cell = floorIndices(patch.at.cwiseProduct(inverse));
-        const double wanted = share * double(order.energy) / (u.ofCell(cell) * double(patch.area));
-        is_too_fast_ |= wanted > most;
-        const double s = std::min({wanted, double(order.depth), most});
-        const int n = wishes.count++;
-        x[n] = patch.at.x(), y[n] = patch.at.y(), z[n] = patch.at.z();
-        area[n] = patch.area, recession[n] = float(s), least_excess[n] = float(least_slope * s);
-        if (wishes.count < kSinkBatch) continue;
-        spread(bone.volume, wishes, area);
-        wishes.count = 0;
-    }
-    spread(bone.volume, wishes, area);
-}
-
-void SurfaceShift::spread(const VoxelVolume& volume, const SinkingPoints& wishes,
-                          const float* areas) noexcept {
-    kernels().sink_surface(densityView(volume), wishes);
-    for (int n = 0; n < wishes.count; ++n) {
-        const VoxelHat hat = hatAround({wishes.x[n], wishes.y[n], wishes.z[n]});
-        if (hat.count[0] == 0) continue;
-        touch(hat);
-        const size_t at = index({hat.first[0], hat.first[1], hat.first[2]});
-        kernels().add_hat(hat, areas[n], wishes.drop[n], &drops_[at], &weights_[at]);
-    }
-}
-
-// The surface that is to stay has its say, where the other one has.
-void SurfaceShift::spreadRest(const BoneModel& bone) noexcept {
-    const Vector3f inverse = bone.volume.spacing().cwiseInverse().cast<float>();
-    for (const NearPatch& patch : std::span(near_).first(near_count_)) {
-        if (orders_[patch.node].energy > 0) continue;
-        const VoxelHat hat = hatAround(patch.at.cwiseProduct(inverse));
-        if (isAnyTouched(hat))
-            kernels().add_hat_where_any(hat, patch.area,
-                                        &weights_[index({hat.first[0], hat.first[1], hat.first[2]})]);
-    }
+// Of the bone inside the burr, which is little: as much as the burr is pressed in.
+void SurfaceShift::leaveOutRestInsideBurr(const VoxelVolume& volume) noexcept {
+    const double reach = burr_.reach();
+    const Pose X_TV = X_VT_.inverse();
+    for (int k = touched_.min.z(); k <= touched_.max.z(); ++k)
+        for (int j = touched_.min.y(); j <= touched_.max.y(); ++j) {
+            const size_t first_word = row(j, k);
+            for (int word = 0; word < row_words_; ++word)
+                forEachBit(word, asked_[first_word + size_t(word)], [&](int i) {
+                    const Vector3i voxel(first_.x() + i, j, k);
+                    const Vector3d p_V = volume.spacing().cwiseProduct(voxel.cast<double>());
+                    if ((p_V - X_VT_.position).squaredNorm() >= reach * reach) return;
+                    if (volume.at(voxel.x(), voxel.y(), voxel.z()) < volume.iso()) return;
+                    float& weight = weights_[index(voxel)];
+                    if (burr_.signedDistance(X_TV * p_V) < 0) weight = -weight;
+                });
+        }
 }
 
 // Calls visit(cell) for the cells that have a touched voxel.
@@ -337,6 +273,7 @@ double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double shar
     spreadWishes(bone, u, share, kMaxShift * double(ticks) * bone.volume.spacing().minCoeff());
     result.is_cut_short |= is_too_fast_;
     if (touched_.isEmpty()) return 0;
+    leaveOutRestInsideBurr(bone.volume);
     spreadRest(bone);
     collect(bone, result);
     if (collector_.isEmpty()) return 0;
@@ -383,7 +320,7 @@ void SurfaceShift::collectRow(const VoxelVolume& volume, const Vector3i& first, 
         const Density old = old_[size_t(i)];
         Density& fresh = fresh_[size_t(i)] = old;
         if (drop[i] > 0) {
-            const double left = double(old) - double(drop[i]) / double(weight[i]);
+            const double left = double(old) - double(drop[i]) / std::abs(double(weight[i]));
             fresh = std::min(old, Density(std::floor(std::max(left, 0.0) + rounding_)));
         }
         if (fresh == old) forgetVoxel(first + Vector3i(i, 0, 0));

@@ -6,7 +6,8 @@
 // iso-value that they have there; all corners of a cell by the same, so that the ramp of densities keeps its
 // slope. A voxel falls by the mean of what the patches around it ask for, weighted by area and distance
 // (trilinear hat of the shell's block size); patches without contact ask for nothing, so that the surface
-// beside the burr stays.
+// beside the burr stays. Inside the burr they have no say: a crumb of some counts beside a rim would else
+// outlast it, and hold the shaft that follows.
 //
 // What that removes is then measured: the sum over the cells of specific energy times the change of their
 // fill (cell_fill.h). The sum telescopes: over a session it is that of what is missing in the end.
@@ -21,6 +22,7 @@
 #include "haptic_server/core/milling/cell_fill.h"
 #include "haptic_server/core/milling/change_collector.h"
 #include "haptic_server/core/milling/specific_energy.h"
+#include "haptic_server/core/tool/burr.h"
 
 namespace bonemill {
 
@@ -33,8 +35,8 @@ class SurfaceShift {
     // that of MillingConfig.
     SurfaceShift(const BoneModel& bone, double largest_reach, size_t most_contacts, size_t most_cells);
 
-    // Begins a new tick with the burr's centre here.
-    void begin(const BoneModel& bone, const Eigen::Vector3d& p_VB) noexcept;
+    // Begins a new tick with the burr of the tool at this pose.
+    void begin(const BoneModel& bone, const Burr& burr, const Pose& X_VT) noexcept;
     // Energy to be spent at one contact of this patch, J, and its depth, m: the patch
     // recedes no farther than its deepest contact reaches. It is quick when the contacts of a patch follow
     // each other.
@@ -74,6 +76,7 @@ class SurfaceShift {
     void spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share, double most) noexcept;
     void spread(const VoxelVolume& volume, const SinkingPoints& wishes, const float* areas) noexcept;
     void spreadRest(const BoneModel& bone) noexcept;
+    void leaveOutRestInsideBurr(const VoxelVolume& volume) noexcept;
     VoxelHat hatAround(const Eigen::Vector3f& at) const noexcept;
     template <class Visit>
     bool forEachRow(const VoxelHat& hat, Visit&& visit) const noexcept;
@@ -98,9 +101,12 @@ class SurfaceShift {
     Eigen::Vector3i size_;                             // of the scratch box
     Eigen::Vector3i first_ = Eigen::Vector3i::Zero();  // its first voxel
     IndexBox room_;                                    // of voxels that can be written
-    int block_ = 1;                                    // of the shell in force, in voxels
+    Burr burr_;
+    Pose X_VT_;
+    int block_ = 1;  // of the shell in force, in voxels
     std::vector<Order> orders_;
-    // Voxel by voxel: the weighted sum of what is asked for, and of the weights.
+    // Voxel by voxel: the weighted sum of what is asked for, and of the weights; negative where the rest has
+    // no say.
     std::vector<float> drops_, weights_;
     int row_words_;
     std::vector<RowBits> asked_;   // row by row: voxels that something was asked of

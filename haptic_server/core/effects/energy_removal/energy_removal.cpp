@@ -189,7 +189,7 @@ class EnergyRemoval final : public HapticEffect {
     double spendContacts(const EffectTick& tick, const BoneModel& bone) noexcept {
         const Burr& burr = tick.tool->burr;
         const Eigen::Vector3d axis = tick.X_VT.rotation * Eigen::Vector3d::UnitY();
-        shift_.begin(bone, tick.X_VT.position);
+        shift_.begin(bone, burr, tick.X_VT);
         if (config_.threshold_pressure > 0) weighRegions(tick);
         if (turns_ > 1 && turn_ == 0) shareLeaves(tick);
         double energy = 0;

@@ -16,6 +16,7 @@ using Eigen::Vector3d;
 constexpr double kEnergy = 0.4e9;  // J/m³
 constexpr double kReach = 1.2e-3;  // m
 constexpr size_t kMaxCells = 1'000'000;
+const Burr kNoBurr{.radius = 0};
 
 struct Plane {
     Vector3d point{2.51e-3, 2.48e-3, 2.53e-3}, normal;
@@ -56,7 +57,7 @@ double lower(BoneModel& bone, const Plane& plane, double recession, int ticks) {
     const SpecificEnergy u(uniform(), nullptr, bone.volume.iso());
     double spent = 0;
     for (int n = 0; n < ticks; ++n) {
-        shift.begin(bone, plane.point);
+        shift.begin(bone, kNoBurr, {plane.point, Eigen::Quaterniond::Identity()});
         forEachPoint(bone, [&](const Vector3d& p, double area, PatchId patch) {
             if (plane.sideways(p) < kReach && isOfPlane(bone, p))
                 shift.add(bone, patch, kEnergy * area * recession / ticks, 1e-3);
@@ -114,7 +115,7 @@ TEST(SurfaceShift, MovesNoFartherThanAQuarterOfAVoxelOrTheDepth) {
     for (const double depth : {1e-3, 5e-6}) {
         BoneModel bone = halfSpace(plane, Vector3d::Constant(0.125e-3), 1);
         SurfaceShift shift(bone, 1.5 * kReach, 65536, kMaxCells);
-        shift.begin(bone, plane.point);
+        shift.begin(bone, kNoBurr, {plane.point, Eigen::Quaterniond::Identity()});
         forEachPoint(bone, [&](const Vector3d& p, double, PatchId patch) {
             if (plane.sideways(p) < kReach && isOfPlane(bone, p)) shift.add(bone, patch, 1, depth);
         });
@@ -129,6 +130,30 @@ TEST(SurfaceShift, MovesNoFartherThanAQuarterOfAVoxelOrTheDepth) {
     }
 }
 
+// The face beside it, which nothing touches, has no say in the burr.
+TEST(SurfaceShift, ACrumbInsideTheBurrGoes) {
+    const Vector3d spacing = Vector3d::Constant(0.125e-3);
+    const Plane plane{.normal = Vector3d::UnitZ()};
+    VolumeGeometry geometry = test::cubeGeometry(41, spacing.x());
+    VoxelVolume volume = test::bodyVolume(geometry, test::halfSpace(plane.point, plane.normal));
+    const Eigen::Vector3i crumb(20, 20, 21);
+    volume.set(crumb.x(), crumb.y(), crumb.z(), Density(volume.iso() + 6));
+    BoneModel bone(std::move(volume), Eigen::Vector3i::Constant(16), {.levels = {{1}}});
+    const Pose X_VT{spacing.cwiseProduct(crumb.cast<double>()), Eigen::Quaterniond::Identity()};
+    const Burr burr{.radius = 0.05e-3};
+    SurfaceShift shift(bone, 1.5 * kReach, 65536, kMaxCells);
+    const SpecificEnergy u(uniform(), nullptr, bone.volume.iso());
+    for (int n = 0; n < 3; ++n) {
+        shift.begin(bone, burr, X_VT);
+        forEachPoint(bone, [&](const Vector3d& p, double, PatchId patch) {
+            if ((p - X_VT.position).norm() < burr.radius) shift.add(bone, patch, 1e-6, 50e-6);
+        });
+        MillingResult result;
+        shift.apply(bone, u, 1, 1, result);
+    }
+    EXPECT_LT(bone.volume.at(crumb.x(), crumb.y(), crumb.z()), bone.volume.iso());
+}
+
 TEST(SurfaceShift, LeavesTheRestForTheNextTickWhereTimeIsShort) {
     const Plane plane{.normal = Vector3d::UnitZ()};
     BoneModel bone = halfSpace(plane, Vector3d::Constant(0.125e-3), 1);
@@ -137,7 +162,7 @@ TEST(SurfaceShift, LeavesTheRestForTheNextTickWhereTimeIsShort) {
     IndexBox changed;
     int short_ticks = 0;
     for (int n = 0; n < 20; ++n) {
-        shift.begin(bone, plane.point);
+        shift.begin(bone, kNoBurr, {plane.point, Eigen::Quaterniond::Identity()});
         forEachPoint(bone, [&](const Vector3d& p, double area, PatchId patch) {
             if (plane.sideways(p) < kReach && isOfPlane(bone, p))
                 shift.add(bone, patch, kEnergy * area * 1e-6, 1e-3);
