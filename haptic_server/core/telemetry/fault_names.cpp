@@ -8,11 +8,24 @@ namespace bonemill {
 namespace {
 
 // By bit.
-constexpr const char* kNames[] = {
-    "overrun",       "stale_device",   "bad_device_pose",    "solve",         "motion_clamped",
-    "force_clamped", "shell_overflow", "contact_overflow",   "volume_full",   "milling_cut_short",
-    "coarser_shell", "stalled",        "implausible_device", "early_samples", "fewer_samples",
-    "not_recorded"};
+constexpr const char* kNames[] = {"overrun",
+                                  "stale_device",
+                                  "bad_device_pose",
+                                  "solve",
+                                  "motion_clamped",
+                                  "force_clamped",
+                                  "shell_overflow",
+                                  "contact_overflow",
+                                  "volume_full",
+                                  "milling_cut_short",
+                                  "coarser_shell",
+                                  "stalled",
+                                  "implausible_device",
+                                  "early_samples",
+                                  "fewer_samples",
+                                  "not_recorded",
+                                  "as_balanced",
+                                  "as_fast"};
 static_assert(1u << (std::size(kNames) - 1) == kLastFault);
 
 }  // namespace

@@ -30,9 +30,11 @@ enum TickFault : uint32_t {
     kFaultEarlySamples = 1u << 13,       // samples come faster than the loop's rate: the tick was held back
     kFaultFewerSamples = 1u << 14,  // the contact is sampled less finely than asked for: there was no time
     kFaultNotRecorded =
-        1u << 15,  // no tick's: the recording or the trace lacks something (disk full or slow)
+        1u << 15,                 // no tick's: the recording or the trace lacks something (disk full or slow)
+    kFaultAsBalanced = 1u << 16,  // a finer preset was asked for: there is no time for it, balanced is felt
+    kFaultAsFast = 1u << 17,      // the same; fast is felt
 };
-constexpr uint32_t kLastFault = kFaultNotRecorded;
+constexpr uint32_t kLastFault = kFaultAsFast;
 
 struct TickRecord {
     uint64_t tick;

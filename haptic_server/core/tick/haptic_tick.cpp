@@ -45,6 +45,7 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
                             tools_[tool_],
                             config.dt}),
       model_(&models_.of(accuracy_.chosen().law)),
+      affordable_preset_(config.dt),
       affordable_(config.dt),
       sample_cap_(config.dt),
       later_work_(config.dt),
@@ -67,9 +68,11 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
 }
 
 // A choice is taken up when its contact points are up to date; until then the old one stays in force.
-void HapticTick::chooseSettings(const SpoStep& step, uint32_t& faults) noexcept {
+void HapticTick::chooseSettings(SpoStep step, uint32_t& faults) noexcept {
     PointShell& shell = bone_.shell;
-    AccuracySettings chosen = accuracy_[decisions_.accuracy];
+    const AccuracySettings& wished = accuracy_[decisions_.accuracy];
+    AccuracySettings chosen = affordable_preset_.settings(wished, step);
+    if (chosen != wished) faults |= AffordablePreset::faultOf(chosen);
     const int asked_for = chosen.shell_factor;
     chosen.shell_factor = affordable_.factor(shell, asked_for, settings_.shell_factor, step);
     if (chosen.shell_factor > asked_for) faults |= kFaultCoarserShell;

@@ -62,7 +62,7 @@ class HapticTick {
     void placeTool() noexcept;
     bool isInBone(const Pose& X_VT, double radius) const noexcept;
     void decide(const DeviceInput& input) noexcept;
-    void chooseSettings(const SpoStep& step, uint32_t& faults) noexcept;
+    void chooseSettings(SpoStep step, uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;
     void chooseTool() noexcept;
     void beginEffects(const DeviceInput& input) noexcept;
@@ -86,6 +86,7 @@ class HapticTick {
     SpoModels models_;
     SpoModel* model_;  // of models_, in force
     AccuracySettings settings_;
+    AffordablePreset affordable_preset_;
     AffordableShell affordable_;
     SampleCap sample_cap_;
     LaterWork later_work_;

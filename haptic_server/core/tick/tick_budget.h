@@ -6,12 +6,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 
 #include "haptic_server/core/contact/contact_configs.h"
 #include "haptic_server/core/contact/point_shell.h"
 #include "haptic_server/core/equilibrium/spo_model.h"
 #include "haptic_server/core/milling/timed_milling.h"
 #include "haptic_server/core/telemetry/tick_input.h"
+#include "haptic_server/core/telemetry/tick_record.h"
 
 namespace bonemill {
 
@@ -71,6 +73,52 @@ class AffordableShell {
 
     int ticks_of_quiet_;
     int finest_ = 1;  // factor that can be afforded
+    int quiet_ = 0;
+};
+
+// Finds the preset that there is time for: the one asked for, or the next lower one when the solve of a tick
+// was cut short; the lowest keeps all its samples for longest. A truncated solve is another tool in every
+// tick; a lower preset is the same one. It goes back up when the finer one could have been afforded for a
+// second. Settings that are no preset stay what they are. It is RT-safe, for the tick thread only.
+class AffordablePreset {
+  public:
+    // A tick takes dt seconds.
+    explicit AffordablePreset(double dt) noexcept : ticks_of_quiet_(int(kQuiet / dt)) {}
+
+    // After a tick, returns what to compute with; of `step` it takes the overflow that it makes good.
+    AccuracySettings settings(const AccuracySettings& asked_for, SpoStep& step) noexcept {
+        if (asked_for != asked_for_) lower_by_ = quiet_ = 0;
+        asked_for_ = asked_for;
+        const size_t asked = placeOf(asked_for), lowest = std::size(kFinestFirst) - 1;
+        if (asked > lowest) return asked_for;
+        if (step.has_contact_overflow && asked + lower_by_ < lowest) {
+            ++lower_by_;
+            step.has_contact_overflow = false;
+        }
+        const bool is_quiet = !step.has_contact_overflow && kTimesAsMuch * step.budget_share < 0.5;
+        quiet_ = is_quiet && lower_by_ > 0 ? quiet_ + 1 : 0;
+        if (quiet_ > ticks_of_quiet_) --lower_by_, quiet_ = 0;
+        return lower_by_ == 0 ? asked_for : presetSettings(kFinestFirst[asked + lower_by_]);
+    }
+    // The fault that tells of these settings in place of those asked for.
+    static uint32_t faultOf(const AccuracySettings& settings) noexcept {
+        return settings == presetSettings(Preset::kFast) ? kFaultAsFast : kFaultAsBalanced;
+    }
+
+  private:
+    static constexpr Preset kFinestFirst[] = {Preset::kExact, Preset::kBalanced, Preset::kFast};
+    static constexpr double kQuiet = 1;        // s
+    static constexpr double kTimesAsMuch = 4;  // work, in the next finer preset at the most
+
+    static size_t placeOf(const AccuracySettings& settings) noexcept {
+        size_t place = 0;
+        while (place < std::size(kFinestFirst) && presetSettings(kFinestFirst[place]) != settings) ++place;
+        return place;
+    }
+
+    int ticks_of_quiet_;
+    AccuracySettings asked_for_;
+    size_t lower_by_ = 0;
     int quiet_ = 0;
 };
 

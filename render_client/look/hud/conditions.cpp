@@ -40,6 +40,10 @@ constexpr struct {
     {"early_samples", "The device is faster than the loop: a tick was held back.", HudTone::kPlain},
     {"fewer_samples", "A little less detail is felt: there was no time to sample the contact more finely.",
      HudTone::kPlain},
+    {"as_balanced", "A little less detail is felt: there is no time for this accuracy, felt is balanced.",
+     HudTone::kPlain},
+    {"as_fast", "A little less detail is felt: there is no time for this accuracy, felt is fast.",
+     HudTone::kPlain},
     {"not_recorded", "Not all of the session is recorded: the server's disk is full or slow.",
      HudTone::kAlarm},
 };

@@ -67,6 +67,35 @@ TEST(TickBudget, TooManyPointsForATickMeanACoarserShellAndSaySo) {
     EXPECT_EQ(bench.bone.shell.scalingFactor(bench.bone.shell.followed()), 1);
 }
 
+TEST(TickBudget, APresetThatThereIsNoTimeForGivesWayToTheNextOne) {
+    const AccuracySettings exact = presetSettings(Preset::kExact),
+                           balanced = presetSettings(Preset::kBalanced), fast = presetSettings(Preset::kFast);
+    AffordablePreset affordable(1e-3);
+    for (const AccuracySettings& next : {balanced, fast}) {
+        SpoStep cut_short;
+        cut_short.has_contact_overflow = true;
+        EXPECT_EQ(affordable.settings(exact, cut_short), next);
+        EXPECT_FALSE(cut_short.has_contact_overflow);  // the shell stays as fine as it is
+    }
+    SpoStep still_too_much;
+    still_too_much.has_contact_overflow = true;
+    EXPECT_EQ(affordable.settings(exact, still_too_much), fast);
+    EXPECT_TRUE(still_too_much.has_contact_overflow);
+    EXPECT_EQ(AffordablePreset::faultOf(balanced), uint32_t(kFaultAsBalanced));
+    EXPECT_EQ(AffordablePreset::faultOf(fast), uint32_t(kFaultAsFast));
+
+    for (const AccuracySettings& next : {balanced, exact}) {
+        SpoStep quiet, busy;
+        quiet.budget_share = 0.1, busy.budget_share = 0.4;
+        for (int n = 0; n < 2000; ++n) EXPECT_NE(affordable.settings(exact, busy), next);
+        for (int n = 0; n < 1001; ++n) affordable.settings(exact, quiet);
+        EXPECT_EQ(affordable.settings(exact, busy), next);
+    }
+    AccuracySettings own = exact;
+    own.sample_spacing = 0;
+    EXPECT_EQ(affordable.settings(own, still_too_much), own);
+}
+
 TEST(TickBudget, PlentyOfTimeChangesNothing) {
     FixedTickConfig config;
     config.effects.time_removal = test::kTimeRemoval;
