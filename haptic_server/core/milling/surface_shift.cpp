@@ -273,7 +273,7 @@ double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double shar
     spreadWishes(bone, u, share, kMaxShift * double(ticks) * bone.volume.spacing().minCoeff());
     result.is_cut_short |= is_too_fast_;
     if (touched_.isEmpty()) return 0;
-    leaveOutRestInsideBurr(bone.volume);
+    if (ticks == 1) leaveOutRestInsideBurr(bone.volume);  // else it also is surface whose turn comes later
     spreadRest(bone);
     collect(bone, result);
     if (collector_.isEmpty()) return 0;

@@ -7,7 +7,7 @@
 // slope. A voxel falls by the mean of what the patches around it ask for, weighted by area and distance
 // (trilinear hat of the shell's block size); patches without contact ask for nothing, so that the surface
 // beside the burr stays. Inside the burr they have no say: a crumb of some counts beside a rim would else
-// outlast it, and hold the shaft that follows.
+// outlast it, and hold the shaft that follows (but not where patches take turns, and may be in contact).
 //
 // What that removes is then measured: the sum over the cells of specific energy times the change of their
 // fill (cell_fill.h). The sum telescopes: over a session it is that of what is missing in the end.

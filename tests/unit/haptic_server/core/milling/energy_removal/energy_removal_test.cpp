@@ -263,6 +263,28 @@ TEST(EnergyRemoval, AThresholdDoesNotKnowVoxelsAndTicks) {
     }
 }
 
+// Over whole strokes, from R/h = 8 to 4: cuts as deep as some voxels hardly know them, thin ones do
+// (docs/teach/effects.md).
+TEST(EnergyRemoval, AThresholdKnowsTheVoxelsInThinCutsOnly) {
+    for (const auto& [depth, most] : {std::pair{0.8e-3, 0.05}, {0.3e-3, 0.25}}) {
+        double finest = 0;
+        for (const double voxels : {8.0, 6.0, 5.0, 4.0}) {
+            RigConfig config;
+            config.size = {7e-3, 4e-3, 3e-3};
+            config.spacing.setConstant(config.burr.radius / voxels);
+            config.rotation = kUpright;
+            config.removal.threshold_pressure = 1e6;
+            MillingRig rig(config);
+            constexpr double kSink = 0.15, kFeed = 6e-3;
+            const Vector3d start = onTop(rig) - Vector3d(1.5e-3, 0, 0);
+            rig.feed(kSink, start, {0, 0, -depth / kSink});
+            rig.feed(0.5, start - Vector3d(0, 0, depth), {kFeed, 0, 0});
+            if (finest == 0) finest = rig.removedVolume();
+            EXPECT_NEAR(rig.removedVolume() / finest, 1, most) << depth << ' ' << voxels;
+        }
+    }
+}
+
 TEST(EnergyRemoval, DiamondsTakeMoreEnergy) {
     RigConfig config = sideways();
     config.burr.grit = BurrGrit::kDiamond;
