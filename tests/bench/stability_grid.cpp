@@ -3,9 +3,12 @@
 // The grid: dry friction 0 to 0.5 N, mass 0.03 to 1 kg, damping 0.05 to 5 N·s/m, delay 0 to 3 ticks, encoders
 // of 0 to 50 µm, hands from none to stiff, on a plane and in a hole; and, in slices at one friction, jitter
 // of a tick, one period in twenty lost, and motors that give 3 N. The device says what it is like; with
-// --undeclared it says nothing.
+// --undeclared only what it gives.
 //
-//   stability_grid [--out DIR] [--variant NAME] [--undeclared] [--coarse]
+// With --random it is 200 random devices instead, each of which says the truth, what is wrong by 30 %, and
+// only what it gives.
+//
+//   stability_grid [--out DIR] [--variant NAME] [--undeclared] [--coarse] [--random]
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
@@ -33,7 +36,7 @@ struct Way {
 constexpr Way kWays[] = {{"even", 0, 0, 0}, {"jitter", 1, 0, 0}, {"lost", 0, 0.05, 0}, {"weak", 0, 0, 3}};
 constexpr double kFrictionOfSlices = 0.02;
 
-std::vector<GridRow> pointsOf(const Axes& whole, const std::string& variant) {
+std::vector<GridRow> pointsOf(const Axes& whole, const std::string& variant, Says says) {
     std::vector<GridRow> rows;
     for (const Way& way : kWays) {
         const Axes& axes = &way == kWays ? whole : kCoarse;
@@ -48,12 +51,44 @@ std::vector<GridRow> pointsOf(const Axes& whole, const std::string& variant) {
                                     if (is_slice && friction != kFrictionOfSlices) continue;
                                     rows.push_back({variant,
                                                     way.name,
-                                                    {place, hand, friction, mass, damping, delay,
-                                                     way.jitter_ticks, way.lost_share, step, way.most_force},
+                                                    LoopPoint{.place = place,
+                                                              .hand = hand,
+                                                              .friction = friction,
+                                                              .mass = mass,
+                                                              .damping = damping,
+                                                              .delay_ticks = delay,
+                                                              .jitter_ticks = way.jitter_ticks,
+                                                              .lost_share = way.lost_share,
+                                                              .encoder_step = step,
+                                                              .most_force = way.most_force},
+                                                    says,
                                                     {}});
                                 }
     }
     return rows;
+}
+
+std::vector<GridRow> randomDevices(const std::string& variant) {
+    std::vector<GridRow> rows;
+    for (const Says says : {Says::kTruth, Says::kWrong, Says::kLittle})
+        for (int n = 0; n < kRandomDevices; ++n)
+            rows.push_back({variant, "random", randomDevice(n), says, {}});
+    return rows;
+}
+
+void printRandom(const std::vector<GridRow>& rows) {
+    for (const std::string& variant : variantsOf(rows))
+        for (const Says says : {Says::kTruth, Says::kWrong, Says::kLittle}) {
+            int quiet = 0, all = 0, kept = 0;
+            for (const GridRow& row : rows) {
+                if (row.variant != variant || row.says != says) continue;
+                ++all;
+                quiet += row.verdict.isQuiet();
+                kept += row.verdict.share >= 0.9;
+            }
+            std::printf("%-12s says %-7s %3d of %3d quiet, %3d with 0.9 of the stiffness or more\n",
+                        variant.c_str(), nameOf(says), quiet, all, kept);
+        }
 }
 
 const Variant& variantOf(const std::string& name) {
@@ -64,11 +99,11 @@ const Variant& variantOf(const std::string& name) {
 }
 
 // It uses every core; the figures do not depend on time.
-void tryAll(std::vector<GridRow>& rows, bool declares) {
+void tryAll(std::vector<GridRow>& rows) {
     std::atomic<size_t> next = 0;
     const auto work = [&] {
         for (size_t n = next++; n < rows.size(); n = next++)
-            rows[n].verdict = tryLoop(rows[n].point, variantOf(rows[n].variant), declares);
+            rows[n].verdict = tryLoop(rows[n].point, variantOf(rows[n].variant), rows[n].says);
     };
     std::vector<std::jthread> workers;
     for (unsigned n = 0; n < std::max(1u, std::thread::hardware_concurrency()); ++n)
@@ -108,19 +143,24 @@ int main(int argc, char** argv) {
     for (const Variant& variant : allVariants()) names.push_back(variant.name);
     std::vector<std::string> variants{"thesis_2012", "balanced"};
     std::string out;
-    bool is_coarse = false, is_undeclared = false;
+    bool is_coarse = false, is_undeclared = false, is_random = false;
     CLI::App app("where the closed loop never comes to rest: devices, ways and hands (9 minutes)");
     app.add_option("--out", out, "Folder for stability_grid.csv, .gp and .png");
     app.add_option("--variant", variants, "These only")->check(CLI::IsMember(names));
-    app.add_flag("--undeclared", is_undeclared, "The device says nothing");
+    app.add_flag("--undeclared", is_undeclared, "The device says only what it gives");
     app.add_flag("--coarse", is_coarse, "Fewer points");
+    app.add_flag("--random", is_random, "Random devices instead of the grid (2 minutes)");
     CLI11_PARSE(app, argc, argv);
     return bonemill::runProgram([&] {
         std::vector<GridRow> rows;
+        const Says says = is_undeclared ? Says::kLittle : Says::kTruth;
         for (const std::string& variant : variants)
-            for (const GridRow& row : pointsOf(is_coarse ? kCoarse : kWhole, variant)) rows.push_back(row);
-        tryAll(rows, !is_undeclared);
-        printSummary(rows);
-        return !out.empty() && !writeGrid(out, rows) ? 1 : 0;
+            for (const GridRow& row :
+                 is_random ? randomDevices(variant) : pointsOf(is_coarse ? kCoarse : kWhole, variant, says))
+                rows.push_back(row);
+        tryAll(rows);
+        is_random ? printRandom(rows) : printSummary(rows);
+        if (out.empty()) return 0;
+        return (is_random ? writeRandom(out, rows) : writeGrid(out, rows)) ? 0 : 1;
     });
 }

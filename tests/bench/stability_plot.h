@@ -14,6 +14,7 @@ struct GridRow {
     std::string variant;
     std::string way;  // of samples and wrenches between device and server
     LoopPoint point;
+    Says says = Says::kTruth;
     LoopVerdict verdict;
 };
 
@@ -21,5 +22,7 @@ std::vector<std::string> variantsOf(const std::vector<GridRow>& rows);
 
 // Writes stability_grid.csv, .gp and .png; the picture needs gnuplot. False: something could not be written.
 bool writeGrid(const std::filesystem::path& folder, const std::vector<GridRow>& rows);
+// The same for random devices: random_devices.csv, .gp and .png.
+bool writeRandom(const std::filesystem::path& folder, const std::vector<GridRow>& rows);
 
 }  // namespace bonemill::test

@@ -62,20 +62,36 @@ int64_t Stepper::write(const Wrench& wrench_hand_W) noexcept {
     return 0;
 }
 
+DeviceCapabilities declaredLittle(const LoopConfig& config) {
+    DeviceCapabilities says{};
+    says.abilities = kAbilityForce | kAbilityOrientation | (config.has_torque ? kAbilityTorque : 0);
+    says.max_force = config.most_force > 0 ? config.most_force : kPlentyOfForce;
+    says.max_torque = config.has_torque ? kPlentyOfTorque : 0;
+    return says;
+}
+
 DeviceCapabilities declared(const LoopConfig& config, double dt) {
     const DevicePlant& device = config.device;
-    DeviceCapabilities says{};
-    says.abilities = kAbilityForce | kAbilityTorque | kAbilityOrientation;
-    says.max_force = config.most_force > 0 ? config.most_force : kPlentyOfForce;
-    says.max_torque = kPlentyOfTorque;
+    DeviceCapabilities says = declaredLittle(config);
     says.handle = {.mass = device.mass,
                    .damping = device.damping,
                    .inertia = device.inertia,
                    .angular_damping = device.angular_damping,
                    .amplifier_time = 1 / (2 * M_PI * device.amplifier_hz),
-                   .delay = (config.delay_ticks + config.jitter_ticks / 2) * dt,
+                   .delay = (config.delay_ticks + config.late_ticks + config.jitter_ticks / 2) * dt,
                    .encoder_step = device.encoder_step,
                    .encoder_angle = device.encoder_angle};
+    return says;
+}
+
+DeviceCapabilities declaredWrongly(const LoopConfig& config, double dt, double share, uint32_t seed) {
+    DeviceCapabilities says = declared(config, dt);
+    std::minstd_rand random(seed);
+    HandleDynamics& handle = says.handle;
+    for (double* figure :
+         {&handle.mass, &handle.damping, &handle.inertia, &handle.angular_damping, &handle.amplifier_time,
+          &handle.delay, &handle.encoder_step, &handle.encoder_angle})
+        *figure *= random() % 2 == 0 ? 1 + share : 1 - share;
     return says;
 }
 
@@ -86,12 +102,12 @@ ClosedLoop::ClosedLoop(const LoopConfig& config, Scene& scene, const Pose& start
       dt(scene.config.dt),
       averaged_ticks(scene.averaged_ticks),
       config_(config),
-      declared_(declared(config, scene.config.dt)),
       start_(start),
       workspace_scale_(scene.config.hand_space.wayAtTool(1.0)),
       on_the_way_(size_t(config.delay_ticks)) {}
 
-void ClosedLoop::declare() {
+void ClosedLoop::declare(const DeviceCapabilities& says) {
+    declared_ = says;
     stepper.plugIn(&declared_);
 }
 
@@ -104,6 +120,7 @@ Pose ClosedLoop::toolPose() const noexcept {
 void ClosedLoop::actuate(double time) {
     Wrench given = held_;
     if (config_.most_force > 0) limitLength(given.force, config_.most_force);
+    if (!config_.has_torque) given.torque.setZero();
     plant.advance(time, given);
 }
 
@@ -111,7 +128,8 @@ void ClosedLoop::step(uint32_t buttons) {
     if (config_.lost_share > 0 && random() < config_.lost_share) return dropTick();
     stepper.step(toolPose(), buttons);
     on_the_way_.push_back(stepper.wrenchOnHand());
-    const double late = config_.jitter_ticks > 0 ? std::min(1.0, config_.jitter_ticks * random()) : 0;
+    const double jitter = config_.jitter_ticks > 0 ? config_.jitter_ticks * random() : 0;
+    const double late = std::min(1.0, config_.late_ticks + jitter);
     if (late > 0) actuate(late * dt);
     held_ = on_the_way_.front();
     on_the_way_.pop_front();

@@ -55,13 +55,19 @@ struct LoopConfig {
     int delay_ticks = 1;  // a wrench computed from sample k acts from sample k + delay on
     DevicePlant device;
     HandPlant hand;
+    double late_ticks = 0;    // beside whole ticks, below 1
     double jitter_ticks = 0;  // the delay varies by up to so much, evenly
     double lost_share = 0;    // of the periods, in which the controller hears nothing
     double most_force = 0;    // N that the motors give; 0: all
+    bool has_torque = true;   // of its motors
 };
 
 // What such a device says of itself.
 DeviceCapabilities declared(const LoopConfig& config, double dt);
+// What it says of itself with figures that are wrong by up to this share, each to either side by the seed.
+DeviceCapabilities declaredWrongly(const LoopConfig& config, double dt, double share, uint32_t seed);
+// It says only what it gives, as a bridge does that knows no more.
+DeviceCapabilities declaredLittle(const LoopConfig& config);
 
 class ClosedLoop {
   public:
@@ -74,7 +80,8 @@ class ClosedLoop {
     void dropTick();
     void run(double seconds);
     // The device says what it is like, from the next step on.
-    void declare();
+    void declare() { declare(declared(config_, dt)); }
+    void declare(const DeviceCapabilities& says);
 
     Plant plant;
     Stepper stepper;

@@ -53,8 +53,8 @@ const NamedPoint kShakes[] = {
 };
 class Shakes : public testing::TestWithParam<NamedPoint> {};
 TEST_P(Shakes, UntilTheDeviceSaysWhatItIsLike) {
-    EXPECT_FALSE(tryLoop(GetParam().point, balanced(), false).isQuiet());
-    const LoopVerdict verdict = tryLoop(GetParam().point, balanced(), true);
+    EXPECT_FALSE(tryLoop(GetParam().point, balanced(), Says::kNobody).isQuiet());
+    const LoopVerdict verdict = tryLoop(GetParam().point, balanced(), Says::kTruth);
     if (GetParam().point.friction == 0) {
         // It may swing on by a step of its encoders: whether it does, depends on how it lies to them.
         EXPECT_LE(verdict.force_rms, 2 * kFeltForce);
@@ -94,8 +94,8 @@ const NamedPoint kHeld[] = {
 };
 class Held : public testing::TestWithParam<NamedPoint> {};
 TEST_P(Held, KeepsTheWall) {
-    const LoopVerdict today = tryLoop(GetParam().point, balanced(), false);
-    const LoopVerdict verdict = tryLoop(GetParam().point, balanced(), true);
+    const LoopVerdict today = tryLoop(GetParam().point, balanced(), Says::kNobody);
+    const LoopVerdict verdict = tryLoop(GetParam().point, balanced(), Says::kTruth);
     EXPECT_TRUE(verdict.isQuiet()) << verdict.force_rms << " N";
     EXPECT_GE(verdict.wall, 0.9 * today.wall);
 }
