@@ -9,7 +9,7 @@ constexpr double kDt = 1e-3;
 constexpr double kInertiaPerMass = 2e-4, kAngularPerLinear = 2e-3, kAngularFriction = 5e-3;
 constexpr double kAnglePerStep = 35;          // rad/m: 0.01° at 5 µm
 constexpr double kPush = 1, kTwist = 2.5e-4;  // N, N·m
-constexpr int kMaxWindows = 8;
+constexpr int kMaxWindows = 12;
 constexpr double kWindow = 0.5;  // s
 
 // A hole that the tool cannot drift out of along its axis, for there is nothing that would brake it.
@@ -131,11 +131,18 @@ LoopVerdict tryLoop(const LoopPoint& point, const Variant& variant, Says says) {
     loop.run(kWindow);
     Residual r = residual(loop, kWindow);
     double swing = r.rms + r.torque_rms;
+    const auto shares = [&] {
+        const TickRecord& record = loop.stepper.record();
+        return record.coupling_share + record.rotation_share;
+    };
+    double share_before = shares();
     for (int n = 2; n < kMaxWindows && r.is_finite && !isQuiet(r); ++n) {
         r = residual(loop, kWindow);
         const double now = r.rms + r.torque_rms;
-        if (now > 0.9 * swing && n > 3) break;
+        const bool goes_on_as_before = now > 0.9 * swing && shares() == share_before;
+        if (goes_on_as_before && n > 4) break;
         swing = now;
+        share_before = shares();
     }
     const bool has_flown_off = loop.stepper.record().faults & kFaultBadDevicePose;
     const double share = loop.stepper.record().coupling_share;

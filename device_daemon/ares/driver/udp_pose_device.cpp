@@ -31,6 +31,17 @@ Pose poseOf(const wire::PoseState& state) noexcept {
     return {Eigen::Map<const Eigen::Vector3d>(state.p_DT), Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
 }
 
+HandleDynamics handleOf(const wire::Handle& h) noexcept {
+    return {.mass = h.mass,
+            .damping = h.damping,
+            .inertia = h.inertia,
+            .angular_damping = h.angular_damping,
+            .amplifier_time = h.amplifier_time,
+            .delay = h.delay,
+            .encoder_step = h.encoder_step,
+            .encoder_angle = h.encoder_angle};
+}
+
 DeviceCapabilities capabilitiesOf(const wire::Describe& d) noexcept {
     DeviceCapabilities capabilities{};
     static_assert(sizeof(capabilities.name) == sizeof(d.name));
@@ -95,6 +106,8 @@ void PoseDifferentiator::take(const Pose& X_DT, int64_t stamp_ns) noexcept {
 
 DeviceCapabilities UdpPoseDevice::capabilities() const noexcept {
     DeviceCapabilities device = capabilitiesOf(device_.session().description());
+    device.handle = handleOf(device_.session().handle());
+    if (!isPlausible(device)) device.handle = {};  // what no handle can have is no word of it
     // Who says of himself that he is simulated would be spared the enabling switch.
     device.abilities &= ~uint32_t(kAbilitySimulated);
     return device;

@@ -22,8 +22,8 @@ bool isArmed(DriveState state) noexcept {
 }  // namespace
 
 template <class Packets>
-ControllerSession<Packets>::ControllerSession(const Describe& description) noexcept
-    : description_(description), own_watchdog_us_(description.watchdog_us) {}
+ControllerSession<Packets>::ControllerSession(const Describe& description, const Handle& handle) noexcept
+    : description_(description), handle_(handle), own_watchdog_us_(description.watchdog_us) {}
 
 template <class Packets>
 Taken ControllerSession<Packets>::take(std::span<const std::byte> bytes, const Endpoint& source,
@@ -62,6 +62,7 @@ void ControllerSession<Packets>::adopt(const DescribeRequest& request, const End
     has_host_ = true;
     host_ = source;
     session_ = request.header.session;
+    understands_ = request.understands;
     heard_ns_ = now_ns;
     has_command_ = false;
     command_ = {};
@@ -84,7 +85,8 @@ Taken ControllerSession<Packets>::takeCommand(std::span<const std::byte> bytes, 
         flow_.reject(is_from_host);
         return Taken::kNothing;
     }
-    if (!flow_.accept(command->header.sequence, command->reflected_sequence, sequence_, now_ns)) {
+    if (!flow_.accept(command->header.sequence, command->reflected_sequence, sequence_,
+                      int64_t(command->host_ns), now_ns)) {
         return Taken::kNothing;
     }
     command_ = *command;
@@ -130,9 +132,15 @@ auto ControllerSession<Packets>::commandInForce(int64_t now_ns) const noexcept -
 }
 
 template <class Packets>
-const Describe& ControllerSession<Packets>::sealDescription() noexcept {
+std::span<const std::byte> ControllerSession<Packets>::sealDescription() noexcept {
+    if (understands_ & kUnderstandsHandle) {
+        long_description_ = {.describe = description_, .handle = handle_, .reserved0 = 0, .crc = 0};
+        long_description_.describe.crc = 0;
+        wire::seal(long_description_, session_, ++sequence_);
+        return bytesOf(long_description_);
+    }
     wire::seal(description_, session_, ++sequence_);
-    return description_;
+    return bytesOf(description_);
 }
 
 template <class Packets>
@@ -158,11 +166,12 @@ bool ControllerLink<Packets>::poll(int64_t now_ns) noexcept {
     for (int i = 0; i < kDatagramsAtOnce; ++i) {
         std::array<std::byte, kMaxPacket> buffer;
         Endpoint source;
-        const auto bytes = socket_.receive(buffer, source);
+        int64_t waited_ns = 0;
+        const auto bytes = socket_.receive(buffer, source, &waited_ns);
         if (bytes.empty()) break;
         if (only_host_ && source != *only_host_) continue;  // it came before the kernel knew
-        const Taken taken = session_.take(bytes, source, now_ns);
-        if (taken == Taken::kRequest) socket_.send(bytesOf(session_.sealDescription()), session_.host());
+        const Taken taken = session_.take(bytes, source, now_ns - waited_ns);
+        if (taken == Taken::kRequest) socket_.send(session_.sealDescription(), session_.host());
         has_command |= taken == Taken::kCommand;
     }
     keepStrangersOut();

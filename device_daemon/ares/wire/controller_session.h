@@ -33,7 +33,8 @@ class ControllerSession {
     using Command = typename Packets::Command;
 
     // `description` says what the controller is; its watchdog is in force unless a host wants another one.
-    explicit ControllerSession(const Describe& description) noexcept;
+    // A host that understands a handle is told of it, too.
+    explicit ControllerSession(const Describe& description, const Handle& handle = {}) noexcept;
 
     Taken take(std::span<const std::byte> bytes, const Endpoint& source, int64_t now_ns) noexcept;
 
@@ -48,7 +49,7 @@ class ControllerSession {
     const Command& newestCommand() const noexcept { return command_; }
 
     // Complete packets for sending. The caller has filled in a state's inputs, mode and measurements.
-    const Describe& sealDescription() noexcept;
+    std::span<const std::byte> sealDescription() noexcept;  // good until the next call
     void seal(State& state, int64_t now_ns) noexcept;
 
     bool hasHost() const noexcept { return has_host_; }
@@ -65,6 +66,9 @@ class ControllerSession {
     uint32_t linkFaults(int64_t now_ns) const noexcept;
 
     Describe description_;
+    Handle handle_;
+    Description long_description_{};
+    uint32_t understands_ = 0;  // the host, in this session
     uint32_t own_watchdog_us_;
     uint32_t sequence_ = 0;  // of the newest packet sent; it goes on from session to session
     bool has_host_ = false;
@@ -92,8 +96,8 @@ class ControllerLink {
 
     // With `only_host`, no other sender is ever listened to.
     ControllerLink(const Describe& description, const Endpoint& local,
-                   const std::optional<Endpoint>& only_host = {})
-        : socket_(local), session_(description), only_host_(only_host) {
+                   const std::optional<Endpoint>& only_host = {}, const Handle& handle = {})
+        : socket_(local), session_(description, handle), only_host_(only_host) {
         keepStrangersOut();
     }
 

@@ -51,10 +51,19 @@ const char* implausibleFigure(const Describe& d) noexcept {
     return figureOfAnotherKind<Packets>(d);
 }
 
-bool saysTheSame(Describe a, Describe b) noexcept {
-    a.header = b.header = {};
-    a.crc = b.crc = 0;
-    return std::memcmp(&a, &b, sizeof(Describe)) == 0;
+// A controller that knows nothing of its handle, or of this, answers with the short one.
+std::optional<Description> openDescription(std::span<const std::byte> bytes) noexcept {
+    if (const auto known = open<Description>(bytes)) return known;
+    const auto describe = open<Describe>(bytes);
+    return describe ? std::optional<Description>({.describe = *describe}) : std::nullopt;
+}
+
+bool saysTheSame(Description a, Description b) noexcept {
+    for (Description* const d : {&a, &b}) {
+        d->describe.header = {};
+        d->describe.crc = d->reserved0 = d->crc = 0;
+    }
+    return std::memcmp(&a, &b, sizeof(Description)) == 0;
 }
 
 }  // namespace
@@ -91,7 +100,9 @@ bool HostSession<Packets>::takeState(std::span<const std::byte> bytes, int64_t n
         flow_.reject(true);
         return false;
     }
-    if (!flow_.accept(state->header.sequence, state->reflected_sequence, sequence_, now_ns)) return false;
+    if (!flow_.accept(state->header.sequence, state->reflected_sequence, sequence_,
+                      int64_t(state->controller_ns), now_ns))
+        return false;
     state_ = *state;
     has_state_ = true;
     return true;
@@ -99,27 +110,29 @@ bool HostSession<Packets>::takeState(std::span<const std::byte> bytes, int64_t n
 
 template <class Packets>
 void HostSession<Packets>::takeDescription(std::span<const std::byte> bytes, int64_t now_ns) noexcept {
-    const auto description = open<Describe>(bytes);
+    const auto description = openDescription(bytes);
     const bool was_asked = request_.header.session == session_;
-    if (!description || !was_asked || description->header.session != session_) {
+    if (!description || !was_asked || description->describe.header.session != session_) {
         flow_.reject(is_described_);
         return;
     }
     if (is_described_) {
-        const bool is_new = flow_.skip(description->header.sequence);
+        const bool is_new = flow_.skip(description->describe.header.sequence);
+        const Description known{.describe = description_, .handle = handle_};
         // The same again answers a question that was asked twice; another one is another device's.
-        if (is_new && !saysTheSame(*description, description_)) beginToAsk();
+        if (is_new && !saysTheSame(*description, known)) beginToAsk();
         return;
     }
-    refused_figure_ = implausibleFigure<Packets>(*description);
+    refused_figure_ = implausibleFigure<Packets>(description->describe);
     if (refused_figure_) {
         flow_.reject(false);
         return;
     }
-    description_ = *description;
+    description_ = description->describe;
+    handle_ = description->handle;
     ++description_count_;
     is_described_ = true;
-    flow_.begin(description->header.sequence, request_sequence_, kNsPerSecond / description->rate_hz, now_ns);
+    flow_.begin(description_.header.sequence, request_sequence_, kNsPerSecond / description_.rate_hz, now_ns);
 }
 
 template <class Packets>
@@ -130,6 +143,7 @@ const DescribeRequest* HostSession<Packets>::requestDue(int64_t now_ns) noexcept
     request_ = {};
     request_.host_ns = uint64_t(now_ns);
     request_.watchdog_us = config_.watchdog_us;
+    request_.understands = kUnderstandsHandle;
     wire::seal(request_, session_, ++sequence_);
     return &request_;
 }
@@ -196,9 +210,10 @@ bool HostLink<Packets>::poll(int64_t now_ns) noexcept {
     for (int i = 0; i < kDatagramsAtOnce; ++i) {
         std::array<std::byte, kMaxPacket> buffer;
         Endpoint source;
-        const auto bytes = socket_.receive(buffer, source);
+        int64_t waited_ns = 0;
+        const auto bytes = socket_.receive(buffer, source, &waited_ns);
         if (bytes.empty()) break;
-        has_new |= session_.take(bytes, source, now_ns);
+        has_new |= session_.take(bytes, source, now_ns - waited_ns);
     }
     if (const DescribeRequest* request = session_.requestDue(now_ns)) {
         socket_.send(bytesOf(*request), session_.controller());

@@ -63,6 +63,8 @@ class HostSession {
     // So many states of its own were whole, but their numbers were none: who sends such is not to be
     // believed.
     uint32_t nonsenseCount() const noexcept { return nonsense_count_; }
+    // It came with that description; zero where the controller did not say.
+    const Handle& handle() const noexcept { return handle_; }
     // True if a state has come in this session.
     bool hasState() const noexcept { return has_state_; }
 
@@ -88,6 +90,7 @@ class HostSession {
     uint32_t description_count_ = 0;
     uint32_t nonsense_count_ = 0;
     Describe description_{};
+    Handle handle_{};
     State state_{};
     PacketFlow flow_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/rt/clock.h"
 #include "device_daemon/ares/wire/packets.h"
 
 namespace bonemill::wire {
@@ -18,7 +19,7 @@ void PacketFlow::begin(uint32_t sequence, uint32_t own_sequence, int64_t period_
     reflected_ = own_sequence;
 }
 
-bool PacketFlow::accept(uint32_t sequence, uint32_t reflected, uint32_t own_sequence,
+bool PacketFlow::accept(uint32_t sequence, uint32_t reflected, uint32_t own_sequence, int64_t sent_ns,
                         int64_t now_ns) noexcept {
     if (!isNewer(sequence, newest_)) {
         ++statistics_.old;
@@ -33,7 +34,7 @@ bool PacketFlow::accept(uint32_t sequence, uint32_t reflected, uint32_t own_sequ
     const uint32_t lost = sequence - newest_ - 1;
     statistics_.lost += lost;
     ++statistics_.accepted;
-    countTime(now_ns);
+    countTime(lost, sent_ns, now_ns);
     growRow(lost, reflected);
     newest_ = sequence;
     newest_ns_ = now_ns;
@@ -55,9 +56,18 @@ void PacketFlow::reject(bool breaks_row) noexcept {
     if (breaks_row) breakRow(reflected_);
 }
 
-void PacketFlow::countTime(int64_t now_ns) noexcept {
-    const bool is_late = double(now_ns - newest_ns_) > kLatePeriods * double(period_ns_);
+// A sender whose PC is busy pauses, and says so by its stamps: no other wire would mend that. The watchdog
+// bounds how long it may. What the wire has lost is no pause.
+void PacketFlow::countTime(uint32_t lost, int64_t sent_ns, int64_t now_ns) noexcept {
+    const double most_ns = kLatePeriods * double(period_ns_);
+    const bool has_paused =
+        has_sent_ && double(nsBetween(newest_sent_ns_, sent_ns)) > most_ns * (double(lost) + 1);
+    const bool came_late = double(now_ns - newest_ns_) > most_ns;
+    const bool is_late = came_late && !has_paused;
+    newest_sent_ns_ = sent_ns;
+    has_sent_ = true;
     statistics_.late += is_late;
+    statistics_.paused += came_late && has_paused;
     bucket_ = std::clamp(bucket_ + (is_late ? kLateDrops : -1), 0, kLateBucket);
     if (bucket_ == kLateBucket) too_many_late_ = true;
     if (bucket_ == 0) too_many_late_ = false;

@@ -20,6 +20,8 @@ constexpr PacketType kTypeOf<DescribeRequest> = PacketType::kDescribeRequest;
 template <>
 constexpr PacketType kTypeOf<Describe> = PacketType::kDescribe;
 template <>
+constexpr PacketType kTypeOf<Description> = PacketType::kDescribe;
+template <>
 constexpr PacketType kTypeOf<PoseState> = PacketType::kPoseState;
 template <>
 constexpr PacketType kTypeOf<PoseCommand> = PacketType::kPoseCommand;
@@ -54,8 +56,23 @@ bool isSound(const Describe& d) noexcept {
     return text_ends && areFinite(figures);
 }
 
+bool isSound(const Description& d) noexcept {
+    const Handle& h = d.handle;
+    const double figures[] = {h.mass,           h.damping, h.inertia,      h.angular_damping,
+                              h.amplifier_time, h.delay,   h.encoder_step, h.encoder_angle};
+    return isSound(d.describe) && areFinite(figures);
+}
+
 bool isSound(const PoseCommand& command) noexcept {
     return areFinite(command.wrench);
+}
+
+Header& headerOf(Description& packet) noexcept {
+    return packet.describe.header;
+}
+template <class Packet>
+Header& headerOf(Packet& packet) noexcept {
+    return packet.header;
 }
 
 }  // namespace
@@ -73,12 +90,12 @@ bool isSound(const PoseState& s) noexcept {
 
 template <class Packet>
 void seal(Packet& packet, uint32_t session, uint32_t sequence) noexcept {
-    packet.header = {.magic = kMagic,
-                     .version = kVersion,
-                     .type = uint8_t(kTypeOf<Packet>),
-                     .length = uint16_t(sizeof(Packet)),
-                     .session = session,
-                     .sequence = sequence};
+    headerOf(packet) = {.magic = kMagic,
+                        .version = kVersion,
+                        .type = uint8_t(kTypeOf<Packet>),
+                        .length = uint16_t(sizeof(Packet)),
+                        .session = session,
+                        .sequence = sequence};
     packet.crc = crcOf(bytesOf(packet).first(offsetof(Packet, crc)));
 }
 
@@ -87,7 +104,7 @@ std::optional<Packet> openWhole(std::span<const std::byte> bytes) noexcept {
     if (bytes.size() != sizeof(Packet) || claimedType(bytes) != kTypeOf<Packet>) return std::nullopt;
     Packet packet;
     std::memcpy(&packet, bytes.data(), sizeof(Packet));
-    if (packet.header.length != sizeof(Packet)) return std::nullopt;
+    if (headerOf(packet).length != sizeof(Packet)) return std::nullopt;
     if (packet.crc != crcOf(bytes.first(offsetof(Packet, crc)))) return std::nullopt;
     return packet;
 }
@@ -110,6 +127,7 @@ template void seal(JointState&, uint32_t, uint32_t) noexcept;
 template void seal(JointCommand&, uint32_t, uint32_t) noexcept;
 template void seal(DescribeRequest&, uint32_t, uint32_t) noexcept;
 template void seal(Describe&, uint32_t, uint32_t) noexcept;
+template void seal(Description&, uint32_t, uint32_t) noexcept;
 template void seal(PoseState&, uint32_t, uint32_t) noexcept;
 template void seal(PoseCommand&, uint32_t, uint32_t) noexcept;
 template std::optional<JointState> openWhole(std::span<const std::byte>) noexcept;
@@ -118,6 +136,7 @@ template std::optional<JointState> open(std::span<const std::byte>) noexcept;
 template std::optional<JointCommand> open(std::span<const std::byte>) noexcept;
 template std::optional<DescribeRequest> open(std::span<const std::byte>) noexcept;
 template std::optional<Describe> open(std::span<const std::byte>) noexcept;
+template std::optional<Description> open(std::span<const std::byte>) noexcept;
 template std::optional<PoseState> open(std::span<const std::byte>) noexcept;
 template std::optional<PoseCommand> open(std::span<const std::byte>) noexcept;
 

@@ -121,11 +121,16 @@ struct JointCommand {
     uint32_t crc;
 };
 
+// What the host can take beside what every host can.
+enum Understands : uint32_t {
+    kUnderstandsHandle = 1u << 0,  // a Description in place of a Describe
+};
+
 struct DescribeRequest {
     Header header;
     uint64_t host_ns;
     uint32_t watchdog_us;  // that the host wants; 0: the controller's own
-    uint32_t reserved0;
+    uint32_t understands;  // Understands bits
     uint32_t reserved1;
     uint32_t crc;
 };
@@ -147,6 +152,27 @@ struct Describe {
     uint32_t watchdog_us;           // in force
     uint32_t rate_hz;               // of the states
     uint32_t kind;                  // DeviceKind
+    uint32_t crc;
+};
+
+// What moves with the handle and how late it is; 0: not known. Without a mass the rest of translation is not
+// known, but for delay and encoder step; without an inertia that of rotation.
+struct Handle {
+    double mass;             // kg
+    double damping;          // N·s/m, viscous
+    double inertia;          // kg·m² about T's origin
+    double angular_damping;  // N·m·s/rad
+    double amplifier_time;   // s: time constant of the force
+    double delay;            // s: from the reading of the pose until the force that answers it begins
+    double encoder_step;     // m
+    double encoder_angle;    // rad
+};
+
+// A Describe that goes on: the same bytes up to `kind`. Only a host that says so gets it.
+struct Description {
+    Describe describe;  // its crc is 0 here
+    Handle handle;
+    uint32_t reserved0;
     uint32_t crc;
 };
 
@@ -195,6 +221,8 @@ static_assert(sizeof(JointCommand) == 80 && offsetof(JointCommand, force) == 48 
               offsetof(JointCommand, crc) == 76);
 static_assert(sizeof(DescribeRequest) == 40 && offsetof(DescribeRequest, crc) == 36);
 static_assert(sizeof(Describe) == 160 && offsetof(Describe, name) == 32 && offsetof(Describe, crc) == 156);
+static_assert(sizeof(Handle) == 64 && sizeof(Description) == 232 && offsetof(Description, handle) == 160 &&
+              offsetof(Description, crc) == 228);
 static_assert(sizeof(PoseState) == 168 && offsetof(PoseState, p_DT) == 48 && offsetof(PoseState, crc) == 164);
 static_assert(sizeof(PoseCommand) == 80 && offsetof(PoseCommand, wrench) == 48 &&
               offsetof(PoseCommand, crc) == 76);

@@ -31,6 +31,18 @@ Endpoint endpointOf(const sockaddr_in& address) noexcept {
     return {ntohl(address.sin_addr.s_addr), ntohs(address.sin_port)};
 }
 
+// The kernel stamps with the clock that people set, so that a stamp may be of any time.
+int64_t waitedNs(const msghdr& message) noexcept {
+    constexpr int64_t kLongestNs = 50 * kNsPerMillisecond;
+    const cmsghdr* header = CMSG_FIRSTHDR(&message);
+    if (!header || header->cmsg_level != SOL_SOCKET || header->cmsg_type != SCM_TIMESTAMPNS) return 0;
+    timespec came{}, now{};
+    std::memcpy(&came, CMSG_DATA(header), sizeof(came));
+    clock_gettime(CLOCK_REALTIME, &now);
+    const int64_t waited_ns = int64_t(now.tv_sec - came.tv_sec) * kNsPerSecond + now.tv_nsec - came.tv_nsec;
+    return waited_ns > 0 && waited_ns <= kLongestNs ? waited_ns : 0;
+}
+
 }  // namespace
 
 Endpoint endpointOf(const std::string& address, uint16_t port) {
@@ -58,6 +70,8 @@ UdpSocket::UdpSocket(const Endpoint& local)
         bind(descriptor_, reinterpret_cast<const sockaddr*>(&wanted), sizeof(wanted)) == 0 &&
         getsockname(descriptor_, reinterpret_cast<sockaddr*>(&bound), &size) == 0) {
         local_ = endpointOf(bound);
+        constexpr int kOn = 1;
+        setsockopt(descriptor_, SOL_SOCKET, SO_TIMESTAMPNS, &kOn, sizeof(kOn));
         return;
     }
     const std::string reason = std::strerror(errno);
@@ -79,14 +93,23 @@ UdpSocket::~UdpSocket() {
     if (descriptor_ >= 0) close(descriptor_);
 }
 
-std::span<const std::byte> UdpSocket::receive(std::span<std::byte> buffer, Endpoint& source) noexcept {
+std::span<const std::byte> UdpSocket::receive(std::span<std::byte> buffer, Endpoint& source,
+                                              int64_t* waited_ns) noexcept {
     sockaddr_in from{};
-    socklen_t size = sizeof(from);
-    const ssize_t length =
-        recvfrom(descriptor_, buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr*>(&from), &size);
+    iovec place{buffer.data(), buffer.size()};
+    alignas(cmsghdr) std::byte control[CMSG_SPACE(sizeof(timespec))];
+    msghdr message{};
+    message.msg_name = &from;
+    message.msg_namelen = sizeof(from);
+    message.msg_iov = &place;
+    message.msg_iovlen = 1;
+    message.msg_control = control;
+    message.msg_controllen = sizeof(control);
+    const ssize_t length = recvmsg(descriptor_, &message, 0);
     if (length <= 0) return {};
     source = endpointOf(from);
-    return buffer.first(size_t(length));
+    if (waited_ns) *waited_ns = waitedNs(message);
+    return buffer.first(std::min(size_t(length), buffer.size()));
 }
 
 bool UdpSocket::send(std::span<const std::byte> bytes, const Endpoint& to) noexcept {

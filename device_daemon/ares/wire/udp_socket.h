@@ -45,7 +45,10 @@ class UdpSocket {
     Endpoint local() const noexcept { return local_; }
 
     // Takes the next datagram, cut to the buffer's size, and says who sent it; empty when there is none.
-    std::span<const std::byte> receive(std::span<std::byte> buffer, Endpoint& source) noexcept;
+    // `waited_ns`, if asked for, is how long it lay in the kernel before this program came for it; 0 where
+    // nobody knows.
+    std::span<const std::byte> receive(std::span<std::byte> buffer, Endpoint& source,
+                                       int64_t* waited_ns = nullptr) noexcept;
     // False says that the network took nothing; the packet is then lost as any other may be.
     bool send(std::span<const std::byte> bytes, const Endpoint& to) noexcept;
     // Lets the kernel drop what any host but `source` sends, so that a flood of it cannot fill the queue;

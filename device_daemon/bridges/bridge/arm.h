@@ -28,6 +28,7 @@ struct ArmDescription {
     double max_torque = 0;        // N·m; 0 without torque
     double max_stiffness = 0;     // N/m; 0: not known
     double workspace_radius = 0;  // m around D's origin
+    HandleDynamics handle = {};   // what is known of it
 };
 
 struct ArmReading {

@@ -32,6 +32,18 @@ wire::Describe packetOf(const ArmDescription& arm) noexcept {
     return packet;
 }
 
+wire::Handle handleOf(const ArmDescription& arm) noexcept {
+    const HandleDynamics& handle = arm.handle;
+    return {.mass = handle.mass,
+            .damping = handle.damping,
+            .inertia = handle.inertia,
+            .angular_damping = handle.angular_damping,
+            .amplifier_time = handle.amplifier_time,
+            .delay = handle.delay,
+            .encoder_step = handle.encoder_step,
+            .encoder_angle = handle.encoder_angle};
+}
+
 uint32_t inputsOf(const ArmReading& reading, bool is_leaving) noexcept {
     return wire::kInputChainClosed | (reading.is_enabled ? wire::kInputEnabled : 0u) |
            (reading.is_homed ? wire::kInputHomed : 0u) | (is_leaving ? wire::kInputLeaving : 0u) |
@@ -51,7 +63,7 @@ void fillVelocity(wire::PoseState& state, const ArmReading& reading) noexcept {
 
 BridgeLink::BridgeLink(const ArmDescription& arm, const wire::Endpoint& local,
                        const std::optional<wire::Endpoint>& only_host)
-    : link_(packetOf(arm), local, only_host), gate_({arm.max_force, arm.max_torque}) {}
+    : link_(packetOf(arm), local, only_host, handleOf(arm)), gate_({arm.max_force, arm.max_torque}) {}
 
 ArmOrder BridgeLink::step(const ArmReading& reading, int64_t now_ns) noexcept {
     last_step_ns_ = now_ns;

@@ -36,6 +36,14 @@ void addOptions(CLI::App& app, BridgeOptions& options) {
     app.add_option("--device", options.device, "Number or name of the arm; default: the first");
     app.add_option("--max-force-n", options.max_force, "Give no more than this; default: what the arm can")
         ->check(within(1e-3, 1e3));
+    app.add_option("--handle-mass-kg", options.mass, "What moves with the handle weighs this")
+        ->check(within(1e-3, 10));
+    app.add_option("--handle-damping-ns-per-m", options.damping, "The arm's viscous damping")
+        ->check(within(0, 100));
+    app.add_option("--delay-ms", options.delay_ms, "From the reading of the pose until its force begins")
+        ->check(within(0, 50));
+    app.add_option("--encoder-step-um", options.encoder_step_um, "Positions come in steps of this")
+        ->check(within(1e-3, 1e3));
     app.add_flag("--probe", options.probe,
                  "Load the library, open the arm, say what there is and leave; gives no force");
     CLI::Option* self_test = app.add_flag("--self-test", options.self_test,
@@ -48,6 +56,13 @@ void addOptions(CLI::App& app, BridgeOptions& options) {
         ->capture_default_str();
     addRealtimeOptions(app, "the arm's loop", options.is_strict_realtime, options.core);
     addParentOption(app, options.parent);
+}
+
+void tellOfHandle(const BridgeOptions& options, HandleDynamics& handle) noexcept {
+    handle.mass = options.mass.value_or(handle.mass);
+    handle.damping = options.damping.value_or(handle.damping);
+    if (options.delay_ms) handle.delay = *options.delay_ms * kMillisecond;
+    if (options.encoder_step_um) handle.encoder_step = *options.encoder_step_um * kMicrometre;
 }
 
 // Returns nothing after --help, which is already printed. Throws UserError.
@@ -169,6 +184,7 @@ int BridgeRun::run() {
     const Tell tell = options_.probe ? print : say;
     description_ = arm_.open(tell);
     if (options_.max_force) description_.max_force = std::min(description_.max_force, *options_.max_force);
+    tellOfHandle(options_, description_.handle);
     for (const std::string& line : linesOf(description_)) tell(line);
     start_ns_ = monotonicNowNs();
     if (!options_.probe) return options_.self_test ? runSelfTest() : runLink();

@@ -22,6 +22,8 @@ struct BridgeOptions {
     std::string library;              // empty: search
     std::string device;               // number or name; empty: the first
     std::optional<double> max_force;  // N; not given: the arm's own
+    // Of the handle, in the arm's place; not given: what the arm says.
+    std::optional<double> mass, damping, delay_ms, encoder_step_um;  // kg, N·s/m
     bool probe = false;
     bool self_test = false;
     bool ramp = false;

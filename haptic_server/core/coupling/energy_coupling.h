@@ -85,6 +85,8 @@ class RelaxingSpring {
     void forget() noexcept { has_memory_ = false; }
     // The stretch that it follows stays.
     void setCoupling(const EnergyCoupling& coupling) noexcept;
+    // That stretch is so many times as long from now on.
+    void stretch(double times) noexcept { followed_ *= times; }
 
   private:
     Eigen::Vector3d stretchOf(const Pose& X_VT, const Pose& X_VT_device) const noexcept;

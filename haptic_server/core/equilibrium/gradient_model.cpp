@@ -65,6 +65,7 @@ void GradientModel::setTool(const SpoTool& tool) noexcept {
 void GradientModel::setCoupling(const SpoCoupling& coupling) noexcept {
     most_pull_ = coupling.most_pull;
     wished_ = coupling.energy;
+    relaxing_.stretch(coupling.stretched);
     saturate();
 }
 

@@ -49,6 +49,9 @@ struct SpoCoupling {
     EnergyCouplingConfig energy;
     double most_pull =
         std::numeric_limits<double>::infinity();  // N, of `energy`; less if the tool carries less
+    // Of `energy`: the hand's place for the tool is so much farther from the tool than before, as seen from
+    // there, that the pull stays what it was.
+    double stretched = 1;
 };
 
 // A law asks this of the tick around it.

@@ -11,6 +11,7 @@
 #include "haptic_server/core/equilibrium/spo_model.h"
 #include "haptic_server/core/tick/hand_limits.h"
 #include "haptic_server/core/tick/hand_side.h"
+#include "haptic_server/core/tick/unrest_watch.h"
 
 namespace bonemill {
 
@@ -129,7 +130,11 @@ class EnergyTank {
 class HandCoupling {
   public:
     explicit HandCoupling(const TickConfig& config) noexcept
-        : config_(config), side_(handSideOf(config)), wished_(side_.gradient), tank_(config.dt) {}
+        : config_(config),
+          side_(handSideOf(config)),
+          wished_(side_.gradient),
+          tank_(config.dt),
+          watch_(config.dt) {}
 
     // All that the hand gets, as of now.
     const HandSide& side() const noexcept { return side_; }
@@ -140,6 +145,12 @@ class HandCoupling {
     double rotationShare() const noexcept {
         return side_.gradient.rotation_stiffness / config_.gradient.coupling.rotation_stiffness;
     }
+    // The tool is pulled to there.
+    Pose pulledFrom(const Pose& X_VT_device) const noexcept {
+        return {X_VT_device.position + slack_, X_VT_device.rotation};
+    }
+    // With the last change, SpoCoupling::stretched.
+    double stretched() const noexcept { return stretched_; }
     // False where only a hand can keep the device from swinging to and fro.
     bool standsAlone() const noexcept { return stands_alone_; }
 
@@ -147,16 +158,21 @@ class HandCoupling {
     void adaptTo(const DeviceCapabilities& device) noexcept;
     // At the end of a tick of the gradient law, with its wrench before the effects' and the limits'. True:
     // the coupling is another from now on.
-    bool takeAccount(const Pose& X_VT_device, const SpoStep& step) noexcept;
+    bool takeAccount(const Pose& X_VT_device, const SpoStep& step, bool is_milling) noexcept;
     // Call it instead in a tick whose energies say nothing: another law, tool, bone, or no device.
     bool passOver() noexcept {
         tank_.fill();
+        watch_.begin();
+        stretched_ = 1;
         return goOnFitting();
     }
 
   private:
     bool goOnFitting() noexcept;
     void give(bool turns) noexcept;
+    bool calm(const PortStep& port, bool is_touching, bool is_milling) noexcept;
+    bool stiffen() noexcept;
+    void soften(const Pose& X_VT_device, const Pose& X_VT) noexcept;
     void use() noexcept;
 
     const TickConfig& config_;
@@ -168,7 +184,13 @@ class HandCoupling {
     bool has_device_ = false, is_fitted_ = true;
     EnergyTank tank_;
     int given_ = 0, given_turns_ = 0;  // so many steps of translation and of rotation were given up
-    double in_air_for_ = 0;            // s
+    UnrestWatch watch_;
+    double rested_for_ = 0, comes_back_after_ = 0;  // s
+    bool is_stiffening_ = false;
+    double calmed_ = 1, calmed_turns_ = 1;             // of the stiffnesses, so that the hand is at rest
+    Eigen::Vector3d slack_ = Eigen::Vector3d::Zero();  // m in V, between the hand and where it pulls from
+    double stretched_ = 1;
+    double in_air_for_ = 0;  // s
 };
 
 }  // namespace bonemill

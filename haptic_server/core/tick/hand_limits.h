@@ -16,9 +16,10 @@
 // 3. The rate, when what the hand feels has changed at one stroke. A larger burr may find bone where the
 //    smaller one had room, restored bone may be where the tool is, another device may be held more stiffly,
 //    an equilibrium may be found again after ticks without one, bone may give way when the pedal goes down,
-//    the hand may be elsewhere than where it was last heard of. The wrench then goes from the old one to the
-//    new one at kForceRate and kTorqueRate. This is for such events only: a limit on every tick's force would
-//    hold back what the bone gives, and make loops unstable.
+//    the hand may be elsewhere than where it was last heard of, the last of a wall may go under the burr:
+//    what is milled away in a tick is worth no more force than the rate. The wrench then goes from the old
+//    one to the new one at kForceRate and kTorqueRate. This is for such events only: a limit on every tick's
+//    force would hold back what the bone gives, and make loops unstable.
 // 4. The factor of the stale ramp, 0 to 1. It comes last, so that no other limit can undo it: at 0 nothing is
 //    sent, whatever was computed. The rate does not see it, for it would take the ramp for a change of the
 //    wrench.
@@ -53,6 +54,7 @@ struct FeltStep {
     bool is_solved = true;  // false: there is no equilibrium, and the wrench says nothing
     Pose X_VT_device = {};
     double stale_factor = 1;
+    bool is_milled = false;   // bone was taken away since the last step
     bool has_jumped = false;  // what X_VT_device has gone since the last step is no motion of the hand
 };
 
@@ -114,6 +116,7 @@ class HandLimits {
         leaveOut(wrench);
         was_limited_ =
             limitLength(wrench.force, config_.max_force) | limitLength(wrench.torque, config_.max_torque);
+        if (step.is_milled && fallsAtOnce(wrench, step)) beginSuddenChange();
         if (!isChangeOver()) slowDown(wrench, step.has_jumped ? X_VT_device_ : step.X_VT_device);
         faded_for_ = 0;
         before_fading_ = wrench;
@@ -123,6 +126,11 @@ class HandLimits {
     void leaveOut(Wrench& wrench) const noexcept {
         if (config_.max_force == 0) wrench.force.setZero();
         if (config_.max_torque == 0) wrench.torque.setZero();
+    }
+
+    bool fallsAtOnce(const Wrench& wrench, const FeltStep& step) const noexcept {
+        const double moved = spring_.stiffness * (step.X_VT_device.position - X_VT_device_.position).norm();
+        return last_.force.norm() - wrench.force.norm() > kForceRate * dt_ + moved;
     }
 
     void slowDown(Wrench& wrench, const Pose& X_VT_device) noexcept {

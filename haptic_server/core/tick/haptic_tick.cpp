@@ -113,7 +113,7 @@ void HapticTick::adaptTo(const DeviceCapabilities& device) noexcept {
 
 void HapticTick::useCoupling() noexcept {
     const HandSide& side = hand_coupling_.side();
-    const SpoCoupling coupling{side.thesis, side.gradient, side.most_pull};
+    const SpoCoupling coupling{side.thesis, side.gradient, side.most_pull, hand_coupling_.stretched()};
     models_.forEach([&](SpoModel& model) { model.setCoupling(coupling); });
     hand_limits_.setDevice(side.limits, side.spring);
 }
@@ -123,7 +123,8 @@ void HapticTick::keepAccount(const SpoStep& step, const DeviceInput& input) noex
     const bool is_felt = !place_.isLost() && !input.is_stale && input.device.isEngaged();
     const bool says_something = is_felt && model_->traits().has_energy && !step.is_tool_growing &&
                                 !std::exchange(has_changed_suddenly_, false);
-    if (says_something ? hand_coupling_.takeAccount(X_VT_device_, step) : hand_coupling_.passOver())
+    if (says_something ? hand_coupling_.takeAccount(X_VT_device_, step, was_pedal_down_ || was_add_wanted_)
+                       : hand_coupling_.passOver())
         useCoupling();
 }
 
@@ -171,6 +172,7 @@ const TickRecord* HapticTick::tick(TickIo& io) noexcept {
     const EffectRecord& effects = finishEffects(input, io);
     chooseSettings(step, faults);
     TickRecord& record = record_ = makeRecord(input, step);
+    was_bone_taken_ = !milled.changed.isEmpty() && !was_add_wanted_;
     record.removed_voxels = milled.removed_voxels;
     record.added_voxels = milled.added_voxels;
     record.removed = milled.removed_voxels * bone_.volume.voxelVolume();
@@ -301,7 +303,7 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
 }
 
 SpoStep HapticTick::moveAndFeel(const DeviceInput& input, uint32_t& faults) noexcept {
-    SpoStep step = model_->advance(X_VT_, X_VT_device_);
+    SpoStep step = model_->advance(X_VT_, hand_coupling_.pulledFrom(X_VT_device_));
     X_VT_ = step.X_VT;
     if (!step.is_solved) faults |= kFaultSolve;
     if (step.is_motion_clamped) faults |= kFaultMotionClamped;
@@ -314,7 +316,7 @@ SpoStep HapticTick::moveAndFeel(const DeviceInput& input, uint32_t& faults) noex
     step.wrench_hand_V.torque = config_.hand_space.torqueAtHand(step.wrench_hand_V.torque);
     const bool is_felt = step.is_solved && !place_.isLost();
     step.wrench_hand_V = hand_limits_.limit(
-        {step.wrench_hand_V, is_felt, X_VT_device_, input.stale_factor, place_.hasJumped()});
+        {step.wrench_hand_V, is_felt, X_VT_device_, input.stale_factor, was_bone_taken_, place_.hasJumped()});
     if (hand_limits_.wasLimited()) faults |= kFaultForceClamped;
     return step;
 }

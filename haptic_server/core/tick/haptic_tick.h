@@ -101,6 +101,7 @@ class HapticTick {
     uint32_t placements_ = 0;                               // of the hand, that were followed
     bool may_mill_ = false;                                 // in this tick
     bool was_pedal_down_ = false, was_add_wanted_ = false;  // in the last tick
+    bool was_bone_taken_ = false;                           // likewise
     int unmilled_periods_ = 0;          // since the bone was last milled, where that was put off or refused
     Pose X_VT_milled_;                  // then
     bool waits_for_release_ = false;    // the bone was put back: it is not milled by a pedal that was down

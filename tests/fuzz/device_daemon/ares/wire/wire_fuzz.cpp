@@ -41,6 +41,13 @@ Datagram datagramOf(const Packet& packet) {
     return datagram;
 }
 
+Datagram datagramOf(std::span<const std::byte> bytes) {
+    Datagram datagram;
+    datagram.size = bytes.size();
+    std::copy(bytes.begin(), bytes.end(), datagram.bytes.begin());
+    return datagram;
+}
+
 // The oracle: it reads bytes at the offsets that docs/lab/ares_link.md names, and knows nothing of the codec.
 template <class T>
 T at(std::span<const std::byte> bytes, size_t offset) {
@@ -253,7 +260,7 @@ struct PoseSide {
     }()};
     PoseSide() {
         controller.take(bytesOf(*host.requestDue(1)), kHostPlace, 1);
-        host.take(bytesOf(controller.sealDescription()), kControllerPlace, 1);
+        host.take(controller.sealDescription(), kControllerPlace, 1);
     }
 };
 

@@ -48,7 +48,7 @@ struct Session {
         }
         if (const auto* request = host.requestDue(now_ns)) {
             session.take(wire::bytesOf(*request), kHost, now_ns);
-            host.take(wire::bytesOf(session.sealDescription()), kController, now_ns);
+            host.take(session.sealDescription(), kController, now_ns);
         }
         if (host_lives) command();
     }

@@ -324,7 +324,7 @@ TEST(Sessions, LatePacketsFillTheBucketAndPunctualOnesEmptyIt) {
     const auto come = [&](int packets, int64_t after_ns) {
         for (int i = 0; i < packets; ++i) {
             ++n;
-            flow.accept(n, n, n, now_ns += after_ns);
+            flow.accept(n, n, n, n * kPeriodNs, now_ns += after_ns);
         }
     };
     come(1000, kPeriodNs * 14 / 10);
@@ -342,6 +342,20 @@ TEST(Sessions, LatePacketsFillTheBucketAndPunctualOnesEmptyIt) {
     EXPECT_TRUE(flow.tooManyLate());
     come(1, kPeriodNs);
     EXPECT_FALSE(flow.tooManyLate());
+}
+
+// A host whose PC is busy sends in bursts, and its stamps say so: no other wire would help it.
+TEST(Sessions, WhatWasSentLateIsNotTheWiresFault) {
+    PacketFlow flow;
+    flow.begin(0, 0, kPeriodNs, 0);
+    int64_t now_ns = 0;
+    for (uint32_t n = 1; n <= 200; ++n) {
+        now_ns += 3 * kPeriodNs;
+        flow.accept(n, n, n, now_ns + 77, now_ns);
+    }
+    EXPECT_FALSE(flow.tooManyLate());
+    EXPECT_LE(flow.statistics().late, 1u) << "of the first one's sender nothing is known";
+    EXPECT_EQ(flow.statistics().paused, 199u);
 }
 
 TEST(Sessions, LateCommandsAreAFault) {

@@ -85,7 +85,7 @@ struct Pair {
 
     void deliverToController(const Bytes& bytes, const Endpoint& from = kHostPlace) {
         if (controller.take(bytes, from, now_ns) == Taken::kRequest) {
-            host.take(copyOf(controller.sealDescription()), kControllerPlace, now_ns);
+            host.take(controller.sealDescription(), kControllerPlace, now_ns);
         }
     }
 
