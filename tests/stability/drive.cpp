@@ -64,7 +64,8 @@ int64_t Stepper::write(const Wrench& wrench_hand_W) noexcept {
 
 DeviceCapabilities declaredLittle(const LoopConfig& config) {
     DeviceCapabilities says{};
-    says.abilities = kAbilityForce | kAbilityOrientation | (config.has_torque ? kAbilityTorque : 0);
+    says.abilities =
+        kAbilityForce | kAbilityOrientation | (config.has_torque ? uint32_t(kAbilityTorque) : 0u);
     says.max_force = config.most_force > 0 ? config.most_force : kPlentyOfForce;
     says.max_torque = config.has_torque ? kPlentyOfTorque : 0;
     return says;

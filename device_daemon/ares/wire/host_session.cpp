@@ -55,7 +55,7 @@ const char* implausibleFigure(const Describe& d) noexcept {
 std::optional<Description> openDescription(std::span<const std::byte> bytes) noexcept {
     if (const auto known = open<Description>(bytes)) return known;
     const auto describe = open<Describe>(bytes);
-    return describe ? std::optional<Description>({.describe = *describe}) : std::nullopt;
+    return describe ? std::optional(Description{*describe, {}, 0, 0}) : std::nullopt;
 }
 
 bool saysTheSame(Description a, Description b) noexcept {

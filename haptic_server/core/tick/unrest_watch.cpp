@@ -13,11 +13,10 @@ constexpr int kLeastCrossings = 2;  // of the mean in a window: 5 Hz
 // What shakes the hand is not waited for so long as what only dances on the steps of the encoders: that may
 // yet come to rest.
 constexpr double kMuch = 20;                                 // times what no hand feels
-constexpr int kWait[] = {2, 3, 5}, kLongWait[] = {2, 4, 7};  // windows
+constexpr int kWait[] = {2, 3, 4}, kLongWait[] = {2, 4, 5};  // windows
 constexpr double kShrinks = 0.6;                             // over them at most, of a swing that dies
 constexpr double kLeastTouching = 0.1;                       // of a window
 constexpr double kMostWay = 0.3e-3, kMostWayOfSwing = 0.5;   // m from window to window: the handle stays
-constexpr double kLeastStep = 1e-9;                          // m
 
 }  // namespace
 
@@ -35,9 +34,8 @@ void Alternation::add(const Vector3d& value, double share_of_mean) noexcept {
 
 double Alternation::judge(Patience patience) noexcept {
     last_rms_ = count_ > 0 ? std::sqrt(sum_ / count_) : 0;
-    last_crossings_ = crossings_;
     const int wait = (last_rms_ > kMuch * least_ ? kWait : kLongWait)[int(patience)];
-    const bool goes_on = last_rms_ > least_ && last_crossings_ >= kLeastCrossings && windows_ >= wait &&
+    const bool goes_on = last_rms_ > least_ && crossings_ >= kLeastCrossings && windows_ >= wait &&
                          last_rms_ > kShrinks * rms_[size_t(wait - 1)];
     std::copy_backward(rms_.begin(), rms_.end() - 1, rms_.end());
     rms_[0] = last_rms_;
@@ -57,15 +55,13 @@ void Alternation::forget(bool with_mean) noexcept {
 }
 
 UnrestWatch::UnrestWatch(double dt) noexcept
-    : dt_(dt),
-      ticks_in_window_(std::max(1, int(std::lround(kWindow / dt)))),
+    : ticks_in_window_(std::max(1, int(std::lround(kWindow / dt)))),
       share_of_mean_(std::min(1.0, dt / kMeanTime)) {}
 
 void UnrestWatch::begin() noexcept {
     force_.forget(true);
     torque_.forget(true);
     is_known_ = false;
-    has_last_ = false;
     beginWindow();
 }
 
@@ -79,7 +75,6 @@ void UnrestWatch::settle() noexcept {
 void UnrestWatch::expectOtherDevice(bool has_told) noexcept {
     begin();
     has_told_ = has_told;
-    step_ = std::numeric_limits<double>::infinity();
 }
 
 void UnrestWatch::beginWindow() noexcept {
@@ -93,10 +88,6 @@ void UnrestWatch::beginWindow() noexcept {
 Unrest UnrestWatch::add(const Pose& X_VT_device, const Wrench& wrench_hand_V, bool is_touching) noexcept {
     const Vector3d& place = X_VT_device.position;
     if (ticks_ == 0) p_V_first_ = place;
-    const double moved = has_last_ ? (place - p_V_last_).norm() : 0;
-    if (moved > kLeastStep) step_ = std::min(step_, moved);
-    p_V_last_ = place;
-    has_last_ = true;
     place_sum_ += place - p_V_first_;
     place_squares_ += (place - p_V_first_).squaredNorm();
     force_.add(wrench_hand_V.force, share_of_mean_);
@@ -110,21 +101,19 @@ Unrest UnrestWatch::add(const Pose& X_VT_device, const Wrench& wrench_hand_V, bo
 
 Unrest UnrestWatch::judge() noexcept {
     const Vector3d mean = place_sum_ / ticks_;
-    Unrest unrest;
-    unrest.swing = std::sqrt(std::max(0.0, place_squares_ / ticks_ - mean.squaredNorm()));
+    const double swing = std::sqrt(std::max(0.0, place_squares_ / ticks_ - mean.squaredNorm()));
     const double way = (p_V_first_ + mean - p_V_mean_before_).norm();
     p_V_mean_before_ = p_V_first_ + mean;
-    if (touching_ < kLeastTouching * ticks_ || way > kMostWay + kMostWayOfSwing * unrest.swing) {
+    if (touching_ < kLeastTouching * ticks_ || way > kMostWay + kMostWayOfSwing * swing) {
         force_.forget(false);
         torque_.forget(false);
         return {};
     }
+    Unrest unrest;
     const Patience patience = is_known_ ? Patience::kNone : has_told_ ? Patience::kGreat : Patience::kUsual;
     unrest.force_rms = force_.judge(patience);
     unrest.torque_rms = torque_.judge(patience);
     if (force_.isQuiet() && torque_.isQuiet()) is_known_ = false;
-    const Alternation& which = unrest.force_rms > 0 ? force_ : torque_;
-    unrest.hertz = which.crossings() / (2 * kWindow);
     return unrest;
 }
 

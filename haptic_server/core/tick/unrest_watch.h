@@ -9,7 +9,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 
 #include "common/geometry/pose.h"
 
@@ -32,19 +31,18 @@ class Alternation {
     // Ends a window. Returns its RMS if it goes on, else 0.
     double judge(Patience patience) noexcept;
     bool isQuiet() const noexcept { return last_rms_ <= least_; }  // in the window before
-    int crossings() const noexcept { return last_crossings_; }
     void beginWindow() noexcept;
     // What was seen says nothing of what comes. The mean stays, unless it is of something else.
     void forget(bool with_mean) noexcept;
 
   private:
-    static constexpr int kRemembered = 7;  // windows
+    static constexpr int kRemembered = 5;  // windows
 
     double least_;
     Eigen::Vector3d mean_ = Eigen::Vector3d::Zero(), side_ = Eigen::Vector3d::Zero();
     bool has_mean_ = false;
     double sum_ = 0;
-    int count_ = 0, crossings_ = 0, last_crossings_ = 0;
+    int count_ = 0, crossings_ = 0;
     double last_rms_ = 0;
     std::array<double, kRemembered> rms_{};  // of the windows before, the newest first
     int windows_ = 0;
@@ -52,8 +50,6 @@ class Alternation {
 
 struct Unrest {
     double force_rms = 0, torque_rms = 0;  // N, N·m; 0 where that is at rest, or comes to rest
-    double hertz = 0;
-    double swing = 0;  // m RMS of the handle
     bool isAny() const noexcept { return force_rms > 0 || torque_rms > 0; }
 };
 
@@ -70,8 +66,6 @@ class UnrestWatch {
     void settle() noexcept;
     // Takes a tick, and returns what goes on at the end of a window, else nothing.
     Unrest add(const Pose& X_VT_device, const Wrench& wrench_hand_V, bool is_touching) noexcept;
-    // The smallest way between two readings that was seen, m: a step of the encoders.
-    double step() const noexcept { return step_; }
     // Another device is there. Whether it has told of itself says how long to wait for it to come to rest.
     void expectOtherDevice(bool has_told) noexcept;
 
@@ -79,18 +73,15 @@ class UnrestWatch {
     Unrest judge() noexcept;
     void beginWindow() noexcept;
 
-    double dt_;
     int ticks_in_window_;
     double share_of_mean_;
     Alternation force_{kLeastForce}, torque_{kLeastTorque};
     bool is_known_ = false, has_told_ = false;
     Eigen::Vector3d p_V_first_ = Eigen::Vector3d::Zero();  // the window's first place, where it counts from
-    Eigen::Vector3d p_V_last_ = Eigen::Vector3d::Zero(), p_V_mean_before_ = Eigen::Vector3d::Zero();
+    Eigen::Vector3d p_V_mean_before_ = Eigen::Vector3d::Zero();
     Eigen::Vector3d place_sum_ = Eigen::Vector3d::Zero();
     double place_squares_ = 0;
     int ticks_ = 0, touching_ = 0;
-    bool has_last_ = false;
-    double step_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace bonemill
