@@ -358,6 +358,36 @@ TEST(Sessions, WhatWasSentLateIsNotTheWiresFault) {
     EXPECT_EQ(flow.statistics().paused, 199u);
 }
 
+// A host of before asks with no bit set, and a controller of before answers with a Describe whatever is
+// asked.
+TEST(Sessions, WhatIsKnownOfTheHandleIsToldToWhoUnderstands) {
+    Describe describe{};
+    describe.watchdog_us = kDefaultWatchdogUs;
+    describe.rate_hz = 1000;
+    ControllerSession<PosePackets> controller(describe, {.mass = 0.13, .delay = 2e-3});
+    HostSession<PosePackets> host({.controller = test::kControllerPlace, .seed = 3});
+    const DescribeRequest asked = *host.requestDue(1);
+    controller.take(bytesOf(asked), test::kHostPlace, 1);
+    const auto said = controller.sealDescription();
+    ASSERT_TRUE(open<Description>(said));
+    host.take(said, test::kControllerPlace, 1);
+    EXPECT_TRUE(host.isDescribed());
+    EXPECT_EQ(host.handle().mass, 0.13);
+    EXPECT_EQ(host.handle().delay, 2e-3);
+
+    HostSession<PosePackets> other({.controller = test::kControllerPlace, .seed = 4});
+    DescribeRequest old = *other.requestDue(1);
+    old.understands = 0;
+    seal(old, old.header.session, old.header.sequence);
+    ControllerSession<PosePackets> anew(describe, {.mass = 0.13});
+    anew.take(bytesOf(old), test::kHostPlace, 1);
+    const auto short_one = anew.sealDescription();
+    ASSERT_TRUE(open<Describe>(short_one));
+    other.take(short_one, test::kControllerPlace, 1);
+    EXPECT_TRUE(other.isDescribed());
+    EXPECT_EQ(other.handle().mass, 0);
+}
+
 TEST(Sessions, LateCommandsAreAFault) {
     Pair pair;
     pair.run(20);

@@ -69,6 +69,7 @@ TEST(Specification, NamesTheFieldsOfEveryPacketWithTheirPlaces) {
          std::map<std::string, size_t>{{"Header, ", sizeof(Header)},
                                        {"DescribeRequest: type 3, host to controller, 40 bytes", 40},
                                        {"Describe: type 4, controller to host, 160 bytes", 160},
+                                       {"Description: type 4, controller to host, 232 bytes", 232},
                                        {"JointState: type 1, controller to host, 216 bytes", 216},
                                        {"JointCommand: type 2, host to controller, 80 bytes", 80},
                                        {"PoseState: type 5, bridge to host, 168 bytes", 168},
@@ -85,6 +86,11 @@ TEST(Specification, NamesTheFieldsOfEveryPacketWithTheirPlaces) {
     EXPECT_FIELD(describe, Describe, name);
     EXPECT_FIELD(describe, Describe, stroke);
     EXPECT_FIELD(describe, Describe, kind);
+    auto description = fieldsOf("Description:");
+    EXPECT_EQ(description["mass"].offset, offsetof(Description, handle) + offsetof(Handle, mass));
+    EXPECT_EQ(description["delay"].offset, offsetof(Description, handle) + offsetof(Handle, delay));
+    EXPECT_EQ(description["encoder_angle"].offset,
+              offsetof(Description, handle) + offsetof(Handle, encoder_angle));
     auto joints = fieldsOf("JointState");
     EXPECT_FIELD(joints, JointState, statusword);
     EXPECT_FIELD(joints, JointState, lost_commands);
