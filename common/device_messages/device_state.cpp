@@ -27,7 +27,7 @@ constexpr CauseWords kCauses[kStopCauseCount] = {
     {"motor too hot", "Let the motors cool down, then reset."},
     {"emergency stop", "Unlock the emergency stop, then reset."},
     {"device fault", "Look up the device's own fault number in its manual, then reset."},
-    {"packets come late", "Give the device a network of its own and check real time, then reset."},
+    {"packets come late", "The wire keeps packets back: give the device a network of its own, then reset."},
 };
 static_assert(kCauses[kStopCauseCount - 1].name && kStates[kSafetyStateCount - 1]);
 

@@ -29,7 +29,7 @@ const kCauses: [string, string][] = [
   ['motor too hot', 'Let the motors cool down, then reset.'],
   ['emergency stop', 'Unlock the emergency stop, then reset.'],
   ['device fault', "Look up the device's own fault number in its manual, then reset."],
-  ['packets come late', 'Give the device a network of its own and check real time, then reset.'],
+  ['packets come late', 'The wire keeps packets back: give the device a network of its own, then reset.'],
 ];
 const kStopped = [0, 6, 7, 8];
 
