@@ -36,7 +36,7 @@ struct RigConfig {
     double shaft_radius = 0;  // m, along the tool's axis, behind a cylinder with flat ends; 0: none
     double shaft_end = 8e-3;  // m from the tool's origin
     Burr burr{.radius = 1e-3, .speed = 40 * kKrpm};
-    double edge_radius = 0;  // m, of a cylindrical burr
+    double edge_radius = 0;                                        // m, of a cylindrical burr
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  // of the tool
     EnergyRemovalConfig removal = kEnergyRemoval;
     Preset preset = Preset::kBalanced;

@@ -44,8 +44,8 @@ class Process {
 
 Finished run(const std::vector<std::string>& arguments);
 
-// Returns the process that does the work of a program which looks after it (common/process/supervisor.h); 0: there
-// is none at the moment.
+// Returns the process that does the work of a program which looks after it (common/process/supervisor.h); 0:
+// there is none at the moment.
 int workOf(const Process& program);
 
 void writeFile(const std::string& path, const std::string& content);

@@ -127,8 +127,7 @@ void Emulator::deliverCommands(int64_t now_ns) noexcept {
         const wire::Taken taken = session.take(datagram.content(), datagram.other, now_ns);
         if (taken == wire::Taken::kCommand) controller_.obey(now_ns);
         if (taken != wire::Taken::kRequest) continue;
-        to_host_.put(session.sealDescription(), session.host(),
-                     controller_.engagedSeconds(now_ns), now_ns);
+        to_host_.put(session.sealDescription(), session.host(), controller_.engagedSeconds(now_ns), now_ns);
     }
 }
 

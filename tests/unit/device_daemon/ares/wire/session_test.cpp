@@ -1,13 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "tests/unit/device_daemon/ares/wire/wire_test_tools.h"
 
 namespace bonemill::wire {
 namespace {
 
 using test::Bytes;
+using test::changed;
 using test::kPeriodNs;
 using test::Pair;
 
@@ -16,15 +15,6 @@ std::vector<Bytes> nothing(const Bytes&) {
 }
 std::vector<Bytes> twice(const Bytes& bytes) {
     return {bytes, bytes};
-}
-
-// Changes a sealed packet and seals it again with the same numbers.
-template <class Packet>
-Bytes changed(const Bytes& bytes, const std::function<void(Packet&)>& change) {
-    Packet packet = *open<Packet>(bytes);
-    change(packet);
-    seal(packet, packet.header.session, packet.header.sequence);
-    return test::copyOf(packet);
 }
 
 TEST(Sessions, AreTrustedAfterTenGoodPacketsInBothDirections) {
@@ -268,52 +258,6 @@ TEST(Sessions, AHostThatLosesItsControllerAsksUntilItIsBack) {
     EXPECT_GT(pair.host.descriptionCount(), 1u);
     EXPECT_NE(pair.host.state().header.session, session);
     EXPECT_TRUE(pair.hasForce());
-}
-
-TEST(Sessions, NumbersThatAreNoneAreCountedApart) {
-    Pair pair;
-    pair.run(20);
-    const Pair::Wire straight = pair.on_state;
-    pair.on_state = [](const Bytes& bytes) {
-        return std::vector<Bytes>{changed<JointState>(bytes, [](auto& s) { s.q[2] = std::nan(""); })};
-    };
-    pair.period();
-    EXPECT_EQ(pair.host.nonsenseCount(), 1u);
-    EXPECT_TRUE(std::isfinite(pair.host.state().q[2]));
-    pair.on_state = straight;
-    pair.run(5);
-    EXPECT_EQ(pair.host.nonsenseCount(), 1u);
-    EXPECT_FALSE(pair.host.isLost(pair.now_ns));
-}
-
-// A bridge that was started anew, or has changed its arm, in the middle of a session.
-TEST(Sessions, AreOverWhenTheControllerDescribesItselfAsAnother) {
-    Pair pair;
-    pair.run(20);
-    const uint32_t session = pair.host.state().header.session;
-    const auto describe = [&](double max_force) {
-        Describe d = pair.host.description();
-        d.max_force = max_force;
-        seal(d, session, pair.host.state().header.sequence + 1000);
-        pair.host.take(test::copyOf(d), test::kControllerPlace, pair.now_ns);
-    };
-    const double before = pair.host.description().max_force;
-    describe(before);
-    EXPECT_TRUE(pair.host.isTrusted()) << "the same again changes nothing";
-    pair.run(1);
-    Describe other = pair.host.description();
-    other.max_force = before / 2;
-    seal(other, session, pair.host.state().header.sequence + 2000);
-    pair.host.take(test::copyOf(other), {kLoopback, 5555}, pair.now_ns);
-    EXPECT_TRUE(pair.host.isTrusted()) << "a stranger";
-    seal(other, session + 1, pair.host.state().header.sequence + 2000);
-    pair.host.take(test::copyOf(other), test::kControllerPlace, pair.now_ns);
-    EXPECT_TRUE(pair.host.isTrusted()) << "another session's";
-    seal(other, session, pair.host.state().header.sequence + 2000);
-    pair.host.take(test::copyOf(other), test::kControllerPlace, pair.now_ns);
-    EXPECT_FALSE(pair.host.isTrusted());
-    EXPECT_TRUE(pair.host.isLost(pair.now_ns));
-    EXPECT_FALSE(pair.host.hasState());
 }
 
 TEST(Sessions, LatePacketsFillTheBucketAndPunctualOnesEmptyIt) {

@@ -19,6 +19,15 @@ Bytes copyOf(const Packet& packet) {
     return {bytes.begin(), bytes.end()};
 }
 
+// Changes a sealed packet and seals it again with the same numbers.
+template <class Packet>
+Bytes changed(const Bytes& bytes, const std::function<void(Packet&)>& change) {
+    Packet packet = *open<Packet>(bytes);
+    change(packet);
+    seal(packet, packet.header.session, packet.header.sequence);
+    return test::copyOf(packet);
+}
+
 inline constexpr Endpoint kControllerPlace{kLoopback, 4040};
 inline constexpr Endpoint kHostPlace{kLoopback, 4041};
 inline constexpr int64_t kPeriodNs = 1'000'000;
