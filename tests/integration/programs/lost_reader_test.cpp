@@ -50,7 +50,7 @@ TEST(LostReader, ACommandThatCannotPrintFailsAndSaysSo) {
         {"haptic_server", "simulate", "--scene", scene, "--trajectory", folder / "path.csv"},
         {"haptic_server", "--list-scenes", "--scene", scene},
         {"device_daemon", "--describe", "--scene", scene},
-        {"study", "plan"},
+        {"study", "plan", "--groups", "12", "12"},
         {"bonemill_lab", "session", "--help"},
         {"make_phantom", "--version"},
         {"ares_emulator", "--version"},
