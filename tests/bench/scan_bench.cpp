@@ -16,6 +16,7 @@
 #include <functional>
 #include <sstream>
 
+#include "common/base/user_error.h"
 #include "common/cli/command_line.h"
 #include "common/config/scene_file.h"
 #include "common/log/log.h"
