@@ -10,8 +10,8 @@ namespace bonemill::test {
 namespace {
 
 // N per tick: the rate of a sudden change, beside what the hand's own motion explains.
-constexpr double kMostAtOnce = 0.12;
-constexpr double kSlab = 0.6e-3, kPush = 3;
+constexpr double kMostAtOnce = 0.15;
+constexpr double kSlab = 0.6e-3, kHandForce = 3;
 
 // Returns the largest fall of the force in a tick beyond what the handle's motion makes of it.
 double largestFall(void (*remove)(FixedTickConfig&)) {
@@ -23,9 +23,10 @@ double largestFall(void (*remove)(FixedTickConfig&)) {
     config.hand = loopHands()[1].plant;  // soft
     const Pose start = abovePlane(0.1e-3);
     ClosedLoop loop(config, scene, start);
-    loop.plant.setTarget(start.incremented({0, 0, -kPush / config.hand.stiffness}, Eigen::Vector3d::Zero()));
+    loop.plant.setTarget(
+        start.incremented({0, 0, -kHandForce / config.hand.stiffness}, Eigen::Vector3d::Zero()));
     loop.run(0.5);
-    EXPECT_GT(loop.stepper.wrenchOnHand().force.z(), kPush / 2);
+    EXPECT_GT(loop.stepper.wrenchOnHand().force.z(), kHandForce / 2);
     double worst = 0;
     for (int n = 0; n < 4000 && loop.stepper.spo().position.z() > kMiddle.z() - 3 * kSlab; ++n) {
         const double before = loop.stepper.wrenchOnHand().force.norm();

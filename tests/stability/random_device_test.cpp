@@ -7,7 +7,7 @@
 namespace bonemill::test {
 namespace {
 
-const Variant& balanced() {
+const Variant& onBalanced() {
     return allVariants()[2];
 }
 
@@ -20,7 +20,7 @@ TEST(RandomDevice, ComesToRestWhateverItSays) {
     constexpr int kEvery = 11;
     for (int n = 0; n < kRandomDevices; n += kEvery)
         for (const Says says : {Says::kTruth, Says::kWrong, Says::kLittle}) {
-            const LoopVerdict verdict = tryLoop(randomDevice(n), balanced(), says);
+            const LoopVerdict verdict = tryLoop(randomDevice(n), onBalanced(), says);
             EXPECT_TRUE(verdict.isQuiet()) << n << ' ' << nameOf(says) << ": " << wordsOf(verdict);
         }
 }
@@ -41,14 +41,14 @@ LoopPoint lightArm(double delay_ticks, int hand) {
 TEST(LightArm, ThatSaysLittleComesToRestAtEveryDelay) {
     for (const double delay : {1.0, 1.5, 2.0, 2.5, 3.0})
         for (const int hand : {0, 1}) {
-            const LoopVerdict verdict = tryLoop(lightArm(delay, hand), balanced(), Says::kLittle);
+            const LoopVerdict verdict = tryLoop(lightArm(delay, hand), onBalanced(), Says::kLittle);
             EXPECT_TRUE(verdict.isQuiet()) << delay << " ticks, hand " << hand << ": " << wordsOf(verdict);
         }
 }
 
 TEST(LightArm, KeepsItsStiffnessWhereItIsQuiet) {
     for (const double delay : {1.0, 1.5})
-        EXPECT_GE(tryLoop(lightArm(delay, 0), balanced(), Says::kLittle).share, 0.9) << delay;
+        EXPECT_GE(tryLoop(lightArm(delay, 0), onBalanced(), Says::kLittle).share, 0.9) << delay;
 }
 
 }  // namespace

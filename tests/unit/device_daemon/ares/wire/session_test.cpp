@@ -182,7 +182,8 @@ TEST(Sessions, SurviveTheWrappingOfSequenceNumbers) {
     PacketFlow flow;
     flow.begin(0xfffffff0, 0xfffffff5, kPeriodNs, 0);
     for (uint32_t i = 1; i < 40; ++i) {
-        EXPECT_TRUE(flow.accept(0xfffffff0 + i, 0xfffffff5 + i, 0xfffffff5 + i, i * kPeriodNs)) << i;
+        EXPECT_TRUE(flow.accept(0xfffffff0 + i, 0xfffffff5 + i, 0xfffffff5 + i, i * kPeriodNs, i * kPeriodNs))
+            << i;
     }
     EXPECT_TRUE(flow.isTrusted());
     EXPECT_EQ(flow.statistics().lost, 0u);
