@@ -15,7 +15,7 @@ using test::MillingRig;
 using test::RigConfig;
 
 constexpr double kDepth = 6e-3;  // m
-const Eigen::Quaterniond kUpright(Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitX()));
+const Eigen::Quaterniond kBoringDown(Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitX()));
 constexpr double kForces[] = {3, 0.5, 1, 1.5, 4, 9};  // N, of a pull
 
 struct Drill {
@@ -35,7 +35,7 @@ RigConfig rigOf(const Drill& drill) {
     config.edge_radius = kEdgeRadius;
     config.shaft_radius = drill.shaft;
     config.shaft_end = 14e-3;
-    config.rotation = kUpright;
+    config.rotation = kBoringDown;
     config.preset = drill.preset;
     config.hand_stiffness = 1000;
     config.has_budget = true;
@@ -99,7 +99,7 @@ double deepestLeft(const MillingRig& rig) {
                 for (size_t tick = 0; tick < rig.records.size(); tick += kEvery) {
                     const Vector3d r =
                         Vector3d(b.x[n], b.y[n], b.z[n]) - Eigen::Map<const Vector3d>(rig.records[tick].p_WT);
-                    deepest = std::max(deepest, -rig.config.burr.signedDistance(kUpright.conjugate() * r));
+                    deepest = std::max(deepest, -rig.config.burr.signedDistance(kBoringDown.conjugate() * r));
                 }
         });
     return deepest;
