@@ -187,18 +187,22 @@ SurfaceShift::Span SurfaceShift::touchedIn(size_t row, int low, int high) const 
 // Of the bone inside the burr, which is little: as much as the burr is pressed in.
 void SurfaceShift::leaveOutRestInsideBurr(const VoxelVolume& volume) noexcept {
     const double reach = burr_.reach();
+    const Vector3d step = volume.spacing(), middle = X_VT_.position;
     const Pose X_TV = X_VT_.inverse();
     for (int k = touched_.min.z(); k <= touched_.max.z(); ++k)
         for (int j = touched_.min.y(); j <= touched_.max.y(); ++j) {
+            const double y = step.y() * j, z = step.z() * k;
+            const double beside =
+                reach * reach - (y - middle.y()) * (y - middle.y()) - (z - middle.z()) * (z - middle.z());
+            if (!(beside > 0)) continue;
             const size_t first_word = row(j, k);
             for (int word = 0; word < row_words_; ++word)
                 forEachBit(word, asked_[first_word + size_t(word)], [&](int i) {
-                    const Vector3i voxel(first_.x() + i, j, k);
-                    const Vector3d p_V = volume.spacing().cwiseProduct(voxel.cast<double>());
-                    if ((p_V - X_VT_.position).squaredNorm() >= reach * reach) return;
-                    if (volume.at(voxel.x(), voxel.y(), voxel.z()) < volume.iso()) return;
-                    float& weight = weights_[index(voxel)];
-                    if (burr_.signedDistance(X_TV * p_V) < 0) weight = -weight;
+                    const double x = step.x() * (first_.x() + i);
+                    if ((x - middle.x()) * (x - middle.x()) >= beside) return;
+                    if (volume.at(first_.x() + i, j, k) < volume.iso()) return;
+                    float& weight = weights_[index({first_.x() + i, j, k})];
+                    if (burr_.signedDistance(X_TV * Vector3d(x, y, z)) < 0) weight = -weight;
                 });
         }
 }
