@@ -8,8 +8,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMeanTime = 0.06;  // s: what changes more slowly is the hand's
-constexpr int kLeastCrossings = 2;  // of the mean in a window: 5 Hz
+constexpr double kMeanTime = 0.1;   // s: what changes more slowly is the hand's
+constexpr int kLeastCrossings = 1;  // of the mean in a window: 2.5 Hz
 // What shakes the hand is not waited for so long as what only dances on the steps of the encoders: that may
 // yet come to rest.
 constexpr double kMuch = 20;                                 // times what no hand feels

@@ -309,7 +309,9 @@ TEST(Sessions, WhatIsKnownOfTheHandleIsToldToWhoUnderstands) {
     Describe describe{};
     describe.watchdog_us = kDefaultWatchdogUs;
     describe.rate_hz = 1000;
-    ControllerSession<PosePackets> controller(describe, {.mass = 0.13, .delay = 2e-3});
+    Handle handle{};
+    handle.mass = 0.13, handle.delay = 2e-3;
+    ControllerSession<PosePackets> controller(describe, handle);
     HostSession<PosePackets> host({.controller = test::kControllerPlace, .seed = 3});
     const DescribeRequest asked = *host.requestDue(1);
     controller.take(bytesOf(asked), test::kHostPlace, 1);
@@ -324,7 +326,7 @@ TEST(Sessions, WhatIsKnownOfTheHandleIsToldToWhoUnderstands) {
     DescribeRequest old = *other.requestDue(1);
     old.understands = 0;
     seal(old, old.header.session, old.header.sequence);
-    ControllerSession<PosePackets> anew(describe, {.mass = 0.13});
+    ControllerSession<PosePackets> anew(describe, handle);
     anew.take(bytesOf(old), test::kHostPlace, 1);
     const auto short_one = anew.sealDescription();
     ASSERT_TRUE(open<Describe>(short_one));

@@ -98,7 +98,7 @@ TEST(TableWriter, AJudgedAttemptHasItsFilesBeforeItsLine) {
     EXPECT_FALSE(written.verdict->passed());
     EXPECT_EQ(written.verdict->results(), "20231114T221320Z_P07_3");
     const std::string table = test::readFile(path);
-    EXPECT_TRUE(table.ends_with(",no,\"The nerve is whole\",47,\"20231114T221320Z_P07_3\"\n")) << table;
+    EXPECT_TRUE(table.ends_with(",no,\"The nerve is whole\",47,\"20231114T221320Z_P07_3\",\n")) << table;
     for (const char* file : {"20231114T221320Z_P07_3.json", "20231114T221320Z_P07_3.html", "xapi.jsonl"})
         EXPECT_TRUE(std::filesystem::exists(folder / ("results/" + std::string(file)))) << file;
     EXPECT_NE(test::readFile(folder / "results/20231114T221320Z_P07_3.json").find("0000000000000abc"),
