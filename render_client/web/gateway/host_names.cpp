@@ -42,7 +42,7 @@ std::string withoutDefaultPort(std::string_view host) {
 
 }  // namespace
 
-HostNames::HostNames(const GatewayCertificate& certificate, std::vector<std::string> others) {
+HostNames::HostNames(const GatewayCertificate& certificate, const std::vector<std::string>& others) {
     for (const std::string& name : others) others_.push_back(nameOf(name));
     if (!certificate.is_self_made) certificate_.push_back(Certificate::read(certificate.certificate));
 }

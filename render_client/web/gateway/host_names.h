@@ -14,7 +14,7 @@ class HostNames {
   public:
     // Those of the certificate, and `others`. A certificate of the gateway's own making says nothing about
     // the names that a laboratory's network has for this PC: then every name is taken for one of them.
-    HostNames(const GatewayCertificate& certificate, std::vector<std::string> others);
+    HostNames(const GatewayCertificate& certificate, const std::vector<std::string>& others);
 
     // `host` is as a request has it: "lab-pc", "lab-pc:8443", "[::1]:8443". Addresses and localhost are
     // always its own: no page of elsewhere can be reached by them.
