@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <random>
 #include <type_traits>
 
@@ -63,7 +62,7 @@ bool saysTheSame(Description a, Description b) noexcept {
         d->describe.header = {};
         d->describe.crc = d->reserved0 = d->crc = 0;
     }
-    return std::memcmp(&a, &b, sizeof(Description)) == 0;
+    return std::ranges::equal(bytesOf(a), bytesOf(b));
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 // A drill comes out of the hole that it made, however thick its shaft behind the burr.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -115,7 +114,7 @@ TEST_P(OwnHoleOf, LetsTheDrillOutAtAnyForce) {
     BoringHand hand(above, rig.config.hand_stiffness);
     while (!hand.isDone()) rig.run(0.1, above, [&](double, const Vector3d& p) { return hand(p); });
     ASSERT_TRUE(hand.hasBored());
-    EXPECT_THAT(hand.jammedAt(), testing::IsEmpty());
+    EXPECT_TRUE(hand.jammedAt().empty()) << testing::PrintToString(hand.jammedAt());
     uint32_t faults = 0;
     for (const TickRecord& record : rig.records) faults |= record.faults;
     EXPECT_FALSE(faults & (kFaultContactOverflow | kFaultCoarserShell)) << faultNames(faults);
