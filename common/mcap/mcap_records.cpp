@@ -31,7 +31,7 @@ bool KnownRecords::hasRoomFor(const FoundRecords& found, const Index& known) {
 void KnownRecords::keep(FoundRecords& found, Index& index) {
     for (const std::string_view record : found.schemas) index.addSchema(record);
     for (const std::string_view record : found.channels) index.addChannel(record);
-    for (const uint16_t id : found.new_schemas) schemas_[id] = true;
+    schemas_.insert(found.new_schemas.begin(), found.new_schemas.end());
     for (Channel& channel : found.new_channels) channels_[channel.id] = std::move(channel);
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,7 +52,7 @@ class KnownRecords {
 
     Repeats repeats_;
     std::map<uint16_t, Channel> channels_;
-    std::map<uint16_t, bool> schemas_;
+    std::set<uint16_t> schemas_;
 };
 
 }  // namespace bonemill::mcap

@@ -77,9 +77,9 @@ std::string loadText(const ReportData& data) {
 
 // The error at the best and at the worst of the places.
 std::string placesCell(const SettingFigures& f) {
-    if (f.force_vector_by_place.empty()) return " – |";
-    const auto [least, most] = std::ranges::minmax_element(f.force_vector_by_place);
-    return format(" %.3g .. %.3g |", 100 * *least, 100 * *most);
+    if (!f.best_and_worst_place) return " – |";
+    return format(" %.3g .. %.3g |", 100 * f.best_and_worst_place->first,
+                  100 * f.best_and_worst_place->second);
 }
 
 std::string cell(double value) {

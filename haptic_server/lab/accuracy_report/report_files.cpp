@@ -61,10 +61,9 @@ Columns figuresOf(const SettingFigures& f, bool is_on_front) {
     row["force_magnitude_error_percent"] = 100 * f.errors.force;
     row["force_error_percent"] = 100 * f.errors.force_vector;
     row["force_error_worst_percent"] = 100 * f.errors.worst;
-    const auto [least, most] = std::ranges::minmax_element(f.force_vector_by_place);
-    const bool has_places = !f.force_vector_by_place.empty();
-    row["force_error_best_place_percent"] = has_places ? Columns(100 * *least) : Columns();
-    row["force_error_worst_place_percent"] = has_places ? Columns(100 * *most) : Columns();
+    const auto& places = f.best_and_worst_place;
+    row["force_error_best_place_percent"] = places ? Columns(100 * places->first) : Columns();
+    row["force_error_worst_place_percent"] = places ? Columns(100 * places->second) : Columns();
     row["torque_error_percent"] = 100 * f.errors.torque;
     row["direction_error_deg"] = f.errors.direction / kDegree;
     row["position_error_um"] = kPerMicrometre * f.errors.position;

@@ -102,6 +102,7 @@ struct Durations {
 void probe(const SweepInput& input, const FixedTickConfig& tick, BoneModel& bone, SettingFigures& figures,
            Durations& durations) {
     ErrorSum errors;
+    std::vector<double> by_place;
     NoiseSum noise;
     figures.closed_energy = INFINITY;
     for (size_t n = 0; n < input.strokes.size(); ++n) {
@@ -110,7 +111,7 @@ void probe(const SweepInput& input, const FixedTickConfig& tick, BoneModel& bone
         errors.add(answers, input.truth[n].answers);
         ErrorSum here;
         here.add(answers, input.truth[n].answers);
-        if (here.errors().ticks > 0) figures.force_vector_by_place.push_back(here.errors().force_vector);
+        if (here.errors().ticks > 0) by_place.push_back(here.errors().force_vector);
         noise.add(answers);
         const PathEnergy energy = energyOf(answers, input.strokes[n].device);
         figures.closed_energy = std::min(figures.closed_energy, energy.at_end);
@@ -122,6 +123,8 @@ void probe(const SweepInput& input, const FixedTickConfig& tick, BoneModel& bone
         durations.add(run);
     }
     figures.errors = errors.errors();
+    const auto [best, worst] = std::ranges::minmax_element(by_place);
+    if (!by_place.empty()) figures.best_and_worst_place = {*best, *worst};
     figures.noise = noise.noise();
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "haptic_server/core/accuracy/accuracy_settings.h"
@@ -20,12 +21,13 @@ struct SettingFigures {
     std::string name;          // settingsName()
     bool is_in_force = false;  // the scene's own
     Errors errors;             // along the probing path; for other laws differences, not errors
-    std::vector<double> force_vector_by_place;  // the same of each stroke; only of those with truth
-    double max_penetration = 0;                 // m
-    double noise = 0;                           // N
-    double closed_energy = 0;                   // J: least that any closed stroke took from the hand
-    double lowest_energy = 0;                   // J: anywhere on the strokes
-    PlaneErrors plane;                          // burr on a plane, closed form
+    // errors.force_vector at the best and at the worst of the places; none without truth at any.
+    std::optional<std::pair<double, double>> best_and_worst_place;
+    double max_penetration = 0;  // m
+    double noise = 0;            // N
+    double closed_energy = 0;    // J: least that any closed stroke took from the hand
+    double lowest_energy = 0;    // J: anywhere on the strokes
+    PlaneErrors plane;           // burr on a plane, closed form
     struct Removal {
         double removed = 0, swept = 0, wanted = 0;  // m³, as in MillingRun
         double error() const { return swept > 0 ? removed / swept - 1 : 0; }

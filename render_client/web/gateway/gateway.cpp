@@ -76,10 +76,7 @@ bool Gateway::findPlaceFor(const GuestOrigin& comer) {
         crowd.add(guest->origin());
         unknown.push_back(guest.get());
     }
-    if (crowd.hasPlace(kMaxUnknown)) return true;
-    const auto leaver = crowd.whoMakesRoom(kMaxUnknown);
-    if (leaver) unknown[*leaver]->makeRoom();
-    return leaver.has_value();
+    return crowd.findPlace(kMaxUnknown, [&](size_t n) { unknown[n]->makeRoom(); });
 }
 
 Guest* Gateway::come(const GuestOrigin& origin, Clock::time_point now) {

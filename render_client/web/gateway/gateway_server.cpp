@@ -143,10 +143,7 @@ bool GatewayServer::Port::findPlaceFor(const GuestOrigin& comer) {
         crowd.add(connection->origin());
         there.push_back(connection.get());
     }
-    if (crowd.hasPlace(kMaxConnections)) return true;
-    const auto leaver = crowd.whoMakesRoom(kMaxConnections);
-    if (leaver) there[*leaver]->end();
-    return leaver.has_value();
+    return crowd.findPlace(kMaxConnections, [&](size_t n) { there[n]->end(); });
 }
 
 void GatewayServer::Port::forgetEnded() {

@@ -55,6 +55,14 @@ class Crowd {
         if (most == counts.end() || most->second <= countOfComer()) return std::nullopt;
         return size_t(std::ranges::find(there_, most->first) - there_.begin());
     }
+    // True: there is a place, if need be once send_away(n) has made it.
+    template <class SendAway>
+    bool findPlace(const CrowdBounds& bounds, SendAway&& send_away) const {
+        if (hasPlace(bounds)) return true;
+        const auto leaver = whoMakesRoom(bounds);
+        if (leaver) send_away(*leaver);
+        return leaver.has_value();
+    }
 
   private:
     size_t countOfComer() const { return size_t(std::ranges::count(there_, comer_)); }

@@ -121,7 +121,7 @@ TEST(Conclusions, SayThatTimesOfALoadedMachineAreBounds) {
 TEST(AccuracyCsv, HasTheWorstTickAndTheSpreadOverPlaces) {
     ReportData data = smallReport();
     data.settings[0].errors.worst = 0.9;
-    data.settings[0].force_vector_by_place = {0.2, 0.1, 0.4};
+    data.settings[0].best_and_worst_place = {0.1, 0.4};
     const auto rows = cellsOf(accuracyCsv(data));
     EXPECT_EQ(cellAt(rows, 1, "force_error_worst_percent"), "90");
     EXPECT_EQ(cellAt(rows, 1, "force_error_best_place_percent"), "10");

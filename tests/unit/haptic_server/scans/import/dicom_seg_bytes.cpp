@@ -1,7 +1,6 @@
 #include "tests/unit/haptic_server/scans/import/dicom_seg_bytes.h"
 
-#include <zlib.h>
-
+#include "tests/unit/haptic_server/scans/import/deflated_bytes.h"
 #include "tests/unit/haptic_server/scans/import/dicom_elements.h"
 #include "tests/unit/haptic_server/scans/import/volume_files.h"
 
@@ -59,22 +58,6 @@ std::string framePixels(const DicomSegmentation& file, int bits) {
     return bytes;
 }
 
-// As PS3.5 A.5 asks: without zlib's head.
-std::string deflatedData(const std::string& data) {
-    z_stream stream{};
-    constexpr int kNoHead = -15;
-    deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kNoHead, 8, Z_DEFAULT_STRATEGY);
-    std::string out(deflateBound(&stream, uLong(data.size())), '\0');
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data.data()));
-    stream.avail_in = uInt(data.size());
-    stream.next_out = reinterpret_cast<Bytef*>(out.data());
-    stream.avail_out = uInt(out.size());
-    deflate(&stream, Z_FINISH);
-    out.resize(stream.total_out);
-    deflateEnd(&stream);
-    return out;
-}
-
 }  // namespace
 
 std::string dicomSegBytes(const DicomSegmentation& file) {
@@ -97,7 +80,8 @@ std::string dicomSegBytes(const DicomSegmentation& file) {
         (file.has_pixels ? element(0x7fe00010, "OB", framePixels(file, bits)) : "");
     const bool is_deflated = file.transfer_syntax == "1.2.840.10008.1.2.1.99";
     return metaHeader(file.sop_class, "1.2.3.4.9", file.transfer_syntax) +
-           (is_deflated ? deflatedData(data) : data);
+           // As PS3.5 A.5 asks: without zlib's head.
+           (is_deflated ? deflated(data, DeflateHead::kNone) : data);
 }
 
 void writeDicomSeg(const std::filesystem::path& path, const DicomSegmentation& file) {

@@ -2,7 +2,6 @@
 // of bytes, packing and scale; and what a library would change for a display is read as stored, or refused
 // for its true reason.
 #include <gtest/gtest.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 
 #include "haptic_server/scans/import/import_volume.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/unit/haptic_server/scans/import/deflated_bytes.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"
 #include "tests/unit/haptic_server/scans/import/picture_files.h"
 #include "tests/unit/haptic_server/scans/import/tiff_bytes.h"
@@ -100,7 +100,7 @@ TEST_F(PlainValues, ofNrrdComeBack) {
         for (const bool is_big_endian : {false, true})
             for (const char* encoding : {"raw", "gzip"}) {
                 std::string bytes = asBytes(type, rampOf(type), is_big_endian);
-                if (encoding[0] == 'g') bytes = gzipped(bytes);
+                if (encoding[0] == 'g') bytes = deflated(bytes, DeflateHead::kGzip);
                 writeBytes(folder_ / "a.nrrd", nrrdOf(type, bytes, is_big_endian, encoding));
                 expectRamp(folder_ / "a.nrrd", rampOf(type), type.nrrd + std::string(encoding));
             }
@@ -121,7 +121,7 @@ TEST_F(PlainValues, ofMetaImageComeBack) {
         for (const bool is_big_endian : {false, true})
             for (const bool is_packed : {false, true}) {
                 std::string bytes = asBytes(type, rampOf(type), is_big_endian);
-                if (is_packed) bytes = deflatedBytes(bytes);
+                if (is_packed) bytes = deflated(bytes, DeflateHead::kZlib);
                 writeBytes(folder_ / "a.mha", metaOf(type, bytes, is_big_endian, is_packed));
                 expectRamp(folder_ / "a.mha", rampOf(type), type.meta);
             }
@@ -167,7 +167,7 @@ TEST_F(PlainValues, ofNiftiComeBack) {
                     const std::string bytes =
                         niftiOf(type, asBytes(type, ramp, is_big_endian), scale, is_big_endian);
                     const auto path = folder_ / (is_packed ? "a.nii.gz" : "a.nii");
-                    writeBytes(path, is_packed ? gzipped(bytes) : bytes);
+                    writeBytes(path, is_packed ? deflated(bytes, DeflateHead::kGzip) : bytes);
                     for (double& value : ramp)
                         if (scale.applies) value = scale.slope * value + scale.intercept;
                     expectRamp(path, ramp, type.nrrd + std::string(" slope ") + std::to_string(scale.slope));
@@ -234,8 +234,8 @@ std::string pngOf(int bits, const std::vector<double>& values, char colour = 0,
     }
     const std::string head =
         bigEndian(kColumns, 4) + bigEndian(kRows, 4) + char(bits) + colour + std::string(3, '\0');
-    return "\x89PNG\r\n\x1a\n" + pngChunk("IHDR", head) + chunks + pngChunk("IDAT", deflatedBytes(rows)) +
-           pngChunk("IEND", "");
+    return "\x89PNG\r\n\x1a\n" + pngChunk("IHDR", head) + chunks +
+           pngChunk("IDAT", deflated(rows, DeflateHead::kZlib)) + pngChunk("IEND", "");
 }
 
 // Gamma, significant bits and a background are for displays.

@@ -1,35 +1,15 @@
 // Writes TIFF pictures of every kind byte by byte.
 #pragma once
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <string>
 #include <vector>
 
-namespace bonemill {
+#include "tests/unit/haptic_server/scans/import/deflated_bytes.h"
 
-inline std::string packedBytes(const std::string& bytes, int window) {
-    z_stream stream{};
-    deflateInit2(&stream, 6, Z_DEFLATED, window, 8, Z_DEFAULT_STRATEGY);
-    std::string out(bytes.size() + 1024, '\0');
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-    stream.avail_in = uInt(bytes.size());
-    stream.next_out = reinterpret_cast<Bytef*>(out.data());
-    stream.avail_out = uInt(out.size());
-    deflate(&stream, Z_FINISH);
-    out.resize(stream.total_out);
-    deflateEnd(&stream);
-    return out;
-}
-inline std::string gzipped(const std::string& bytes) {
-    return packedBytes(bytes, 15 + 16);
-}
-inline std::string deflatedBytes(const std::string& bytes) {
-    return packedBytes(bytes, 15);
-}
+namespace bonemill {
 
 struct TiffKind {
     int photometric = 1;  // 0: 0 is shown white
@@ -82,7 +62,7 @@ class TiffWriter {
                 addPart(region(column, row, kTile, kTile));
     }
     void addPart(const std::string& plain) {
-        std::string part = kind_.is_packed ? deflatedBytes(plain) : plain;
+        std::string part = kind_.is_packed ? deflated(plain, DeflateHead::kZlib) : plain;
         part.resize(part.size() - size_t(kind_.missing_bytes));
         offsets_.push_back(uint32_t(file_.size()));
         counts_.push_back(uint32_t(part.size()));

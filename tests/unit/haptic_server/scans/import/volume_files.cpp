@@ -2,7 +2,6 @@
 
 #include <archive.h>
 #include <archive_entry.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,8 @@
 #include <fstream>
 #include <set>
 #include <stdexcept>
+
+#include "tests/unit/haptic_server/scans/import/deflated_bytes.h"
 
 namespace bonemill {
 namespace {
@@ -24,23 +25,6 @@ std::string samplesAsBytes(const std::vector<int16_t>& values, bool is_big_endia
     }
     return bytes;
 }
-
-std::string deflated(const std::string& bytes, int window) {
-    z_stream stream{};
-    deflateInit2(&stream, 6, Z_DEFLATED, window, 8, Z_DEFAULT_STRATEGY);
-    std::string out(bytes.size() + 1024, '\0');
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-    stream.avail_in = uInt(bytes.size());
-    stream.next_out = reinterpret_cast<Bytef*>(out.data());
-    stream.avail_out = uInt(out.size());
-    deflate(&stream, Z_FINISH);
-    out.resize(stream.total_out);
-    deflateEnd(&stream);
-    return out;
-}
-
-constexpr int kGzipWindow = 15 + 16;
-constexpr int kZlibWindow = 15;
 
 std::string vectorText(const Eigen::Vector3d& v, const char* format) {
     char text[128];
@@ -89,7 +73,7 @@ void expectSamePlaces(const RawVolume& raw, const SampleVolume& sample, double t
 void writeNrrdFile(const std::filesystem::path& path, const SampleVolume& sample, const Storage& storage,
                    const std::string& space) {
     std::string bytes = samplesAsBytes(sample.values(), storage.is_big_endian);
-    if (storage.is_compressed) bytes = deflated(bytes, kGzipWindow);
+    if (storage.is_compressed) bytes = deflated(bytes, DeflateHead::kGzip);
     std::string header = "NRRD0004\n# made by a test\ntype: short\ndimension: 3\nspace: " + space +
                          "\nsizes: " + dimsText(sample.dims) + "\nspace directions:";
     for (int a = 0; a < 3; ++a)
@@ -131,13 +115,13 @@ void writeNiftiFile(const std::filesystem::path& path, const SampleVolume& sampl
     }
     std::memcpy(header.data() + 344, "n+1", 4);
     const std::string bytes = header + samplesAsBytes(sample.values(), storage.is_big_endian);
-    writeBytes(path, storage.is_compressed ? deflated(bytes, kGzipWindow) : bytes);
+    writeBytes(path, storage.is_compressed ? deflated(bytes, DeflateHead::kGzip) : bytes);
 }
 
 void writeMetaImageFile(const std::filesystem::path& path, const SampleVolume& sample,
                         const Storage& storage) {
     std::string bytes = samplesAsBytes(sample.values(), storage.is_big_endian);
-    if (storage.is_compressed) bytes = deflated(bytes, kZlibWindow);
+    if (storage.is_compressed) bytes = deflated(bytes, DeflateHead::kZlib);
     std::string header = "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = ";
     header += storage.is_big_endian ? "True" : "False";
     if (storage.is_compressed)
