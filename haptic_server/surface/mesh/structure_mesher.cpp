@@ -47,9 +47,9 @@ std::array<IndexBox, kMaxMaterials + 1> boxesOf(const BoneProperties& properties
 }
 
 // Finds the surface between samples, each of a cube of voxels, of one material and all others.
-class StructureSurface {
+class MaterialSurface {
   public:
-    StructureSurface(const BoneProperties& properties, MaterialId material, const IndexBox& box,
+    MaterialSurface(const BoneProperties& properties, MaterialId material, const IndexBox& box,
                      const Eigen::Vector3d& spacing, int least_stride, float label_edge)
         : stride_(strideOf(box, least_stride)),
           first_(box.min.array() - stride_),
@@ -235,7 +235,7 @@ std::vector<NodeMesh> meshStructures(const BoneProperties& properties, const Mat
     std::vector<NodeMesh> meshes;
     for (size_t id = 1; id < materials.size(); ++id) {
         if (!materials[id].is_protected || boxes[id].isEmpty()) continue;
-        StructureSurface samples(properties, MaterialId(id), boxes[id], spacing, stride, float(label_edge));
+        MaterialSurface samples(properties, MaterialId(id), boxes[id], spacing, stride, float(label_edge));
         Surface surface = samples.make();
         if (surface.indices.empty()) continue;
         smooth(surface, samples.step(), samples.grain());
