@@ -55,7 +55,7 @@ class LineFile {
         if (before > 0 && read(before - 1, 1) != "\n") text = "\n" + text;
         size_t done = 0;
         while (done < text.size()) {
-            const ssize_t got = write(file_, text.data() + done, text.size() - done);
+            const ssize_t got = ::write(file_, text.data() + done, text.size() - done);
             if (got < 0 && errno == EINTR) continue;
             if (got <= 0) undo(before, got < 0 ? errno : ENOSPC);
             done += size_t(got);

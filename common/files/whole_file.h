@@ -89,7 +89,7 @@ inline void writePrivateFile(const std::filesystem::path& path, std::string_view
     const int opened = open(file.part().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, S_IRUSR | S_IWUSR);
     bool is_written = opened >= 0 && fchmod(opened, S_IRUSR | S_IWUSR) == 0;
     while (is_written && !content.empty()) {
-        const ssize_t count = write(opened, content.data(), content.size());
+        const ssize_t count = ::write(opened, content.data(), content.size());
         is_written = count > 0;
         if (is_written) content.remove_prefix(size_t(count));
     }

@@ -36,14 +36,13 @@ class ForeignReader {
     bool takeNext() {
         if (records_.left() == 0)
             fail("the end is missing: whoever wrote it was stopped");
-        else if (!records_.takeHead())
+        else if (!records_.takeHead() || (isRead(records_.op()) && !isTooLarge() && !records_.takeContent()))
             fail("the file is torn");
-        else if (isRead(records_.op()) && records_.length() > kMaxPacked)
+        else if (isRead(records_.op()) && isTooLarge())
             refuse("a record is larger than " + std::to_string(kMaxPacked >> 20) + " MiB");
-        else if (isRead(records_.op()) && !records_.takeContent())
-            fail("the file is torn");
         return out_.problem.empty();
     }
+    bool isTooLarge() const { return records_.length() > kMaxPacked; }
     static bool isRead(uint8_t op) {
         return op == kSchema || op == kChannel || op == kMessage || op == kChunk || op == kDataEnd ||
                op == kFooter;

@@ -178,7 +178,7 @@ std::vector<AccuracySettings> settingsNamed(const std::vector<std::string>& name
                                             const AccuracySettings& of_scene) {
     if (names.empty()) return all;
     std::string known;
-    for (const AccuracySettings& settings : all) known += "\n  " + settingsName(settings);
+    for (const AccuracySettings& settings : all) known.append("\n  ").append(settingsName(settings));
     Choices chosen;
     for (const std::string& name : names) {
         const auto isNamed = [&](const AccuracySettings& settings) {
