@@ -161,6 +161,12 @@ SettingFigures measure(const SweepInput& input, const AccuracySettings& settings
     return figures;
 }
 
+[[noreturn]] void refuseSetting(const std::string& name, const std::vector<AccuracySettings>& all) {
+    std::string known;
+    for (const AccuracySettings& settings : all) known.append("\n  ").append(settingsName(settings));
+    throw UserError("--setting " + name + ": there is no such setting; there are" + known);
+}
+
 }  // namespace
 
 std::vector<AccuracySettings> sweepSettings(const AccuracySettings& of_scene, bool has_shapes) {
@@ -177,16 +183,13 @@ std::vector<AccuracySettings> settingsNamed(const std::vector<std::string>& name
                                             const std::vector<AccuracySettings>& all,
                                             const AccuracySettings& of_scene) {
     if (names.empty()) return all;
-    std::string known;
-    for (const AccuracySettings& settings : all) known.append("\n  ").append(settingsName(settings));
     Choices chosen;
     for (const std::string& name : names) {
         const auto isNamed = [&](const AccuracySettings& settings) {
             return strcasecmp(settingsName(settings).c_str(), name.c_str()) == 0;
         };
         const auto found = std::ranges::find_if(all, isNamed);
-        if (found == all.end())
-            throw UserError("--setting " + name + ": there is no such setting; there are" + known);
+        if (found == all.end()) refuseSetting(name, all);
         chosen.add(*found);
     }
     chosen.add(of_scene);
