@@ -31,13 +31,8 @@ extern "C" const char* __lsan_default_suppressions() {
 namespace bonemill {
 namespace {
 
-// Through the guard each round starts a process. Under a sanitizer nothing caps its memory either, so that
-// GDCM's absurd allocations take their time.
-#ifdef __SANITIZE_ADDRESS__
-constexpr unsigned kDicomShare = 20;
-#else
-constexpr unsigned kDicomShare = 5;
-#endif
+// Through the guard each round starts a process, and GDCM's absurd allocations take their time.
+constexpr unsigned kDicomShare = 15;
 
 // Beyond this address space an allocation for files of a few hundred bytes is absurd and fails as
 // std::bad_alloc. Sanitizers reserve terabytes for themselves and bring a limit of their own.
