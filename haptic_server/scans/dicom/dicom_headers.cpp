@@ -190,12 +190,27 @@ std::string reasonToLeaveOut(const DicomScan& scan) {
            "as .seg.nrrd or NIfTI";
 }
 
+// Here, so that a series is not recommended first and refused when its pixels are read.
+void checkPixelBytes(const std::vector<DicomSlice>& slices, const DicomScan& scan) {
+    if (slices.empty() || !scan.pixel_bytes) return;
+    const DicomSlice& first = slices.front();
+    const uint64_t pixels = uint64_t(first.columns) * uint64_t(first.rows) * slices.size();
+    const uint64_t needed = (pixels * scan.bits_allocated + 7) / 8;
+    if (*scan.pixel_bytes < needed)
+        throw UserError(first.path.string() + ": its Pixel Data has " + std::to_string(*scan.pixel_bytes) +
+                        " bytes, Rows x Columns x frames need " + std::to_string(needed) +
+                        "; export it anew");
+}
+
 std::vector<DicomSlice> slicesOfScanned(const std::filesystem::path& path, const DicomScan& scan,
                                         LeftOut& left_out) {
     if (scan.kind == DicomKind::kCutShort)
         throw UserError(path.string() + ": the DICOM file is cut short or damaged: " + scan.problem);
-    if (scan.kind == DicomKind::kImage && scan.drawing == DicomDrawing::kNone)
-        return readHeader(path, left_out);
+    if (scan.kind == DicomKind::kImage && scan.drawing == DicomDrawing::kNone) {
+        std::vector<DicomSlice> slices = readHeader(path, left_out);
+        checkPixelBytes(slices, scan);
+        return slices;
+    }
     left_out.add(reasonToLeaveOut(scan), path);
     return {};
 }

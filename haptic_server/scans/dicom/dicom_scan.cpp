@@ -21,6 +21,7 @@ constexpr uint32_t kMediaClassUid = 0x00020002;
 constexpr uint32_t kTransferSyntaxUid = 0x00020010;
 constexpr uint32_t kSopClassUid = 0x00080016;
 constexpr uint32_t kSeriesUid = 0x0020000e;
+constexpr uint32_t kBitsOfPixel = 0x00280100;
 constexpr uint32_t kItem = 0xfffee000;
 constexpr uint32_t kItemEnd = 0xfffee00d;
 constexpr uint32_t kSequenceEnd = 0xfffee0dd;
@@ -67,7 +68,7 @@ class Scanner {
             return {DicomKind::kImage, {}, media_class_, drawing_, series_uid_};
         }
         const DicomKind kind = has_pixels_ ? DicomKind::kImage : DicomKind::kNoImage;
-        return {kind, {}, media_class_, drawing_, series_uid_};
+        return {kind, {}, media_class_, drawing_, series_uid_, pixel_bytes_, bits_allocated_};
     }
 
   private:
@@ -171,6 +172,17 @@ class Scanner {
                                static_cast<long long>(size_ - position_))};
     }
 
+    // Of an element that stands in the file as a whole.
+    void takeFact(const Element& element) {
+        if (element.tag == kSeriesUid) series_uid_ = text(element.length);
+        if (element.tag == kPixelData && element.length != kUndefinedLength) pixel_bytes_ = element.length;
+        if (element.tag != kBitsOfPixel || element.length != 2) return;
+        std::array<unsigned char, 2> bits{};
+        read(bits.data(), 2);
+        position_ -= 2;
+        bits_allocated_ = number(bits.data(), 2);
+    }
+
     void skipElement(int depth) {
         const Element element = readElementHead();
         if (depth == 0 &&
@@ -179,7 +191,7 @@ class Scanner {
         if (depth == 0 && element.tag == kSopClassUid) drawing_ = drawingOf(text(element.length));
         if (element.tag == kItemEnd || element.tag == kSequenceEnd) throw Unclear{};
         checkFits(element);
-        if (depth == 0 && element.tag == kSeriesUid) series_uid_ = text(element.length);
+        if (depth == 0) takeFact(element);
         if (element.length != kUndefinedLength)
             position_ += element.length;  // items of a sequence of known length lie inside it
         else if (element.holds_items)
@@ -224,6 +236,8 @@ class Scanner {
     bool has_pixels_ = false;
     std::string media_class_, series_uid_;
     DicomDrawing drawing_ = DicomDrawing::kNone;
+    std::optional<uint64_t> pixel_bytes_;
+    unsigned bits_allocated_ = 0;
 };
 
 }  // namespace

@@ -4,7 +4,9 @@
 // of a study also holds files that are no images. This scan reads tags and lengths only.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace bonemill {
@@ -28,7 +30,9 @@ struct DicomScan {
     std::string problem;      // for people, with kCutShort
     std::string media_class;  // UID of what the file is, where its first lines say it
     DicomDrawing drawing = DicomDrawing::kNone;
-    std::string series_uid;  // empty: nothing before the file's end or its damage says it
+    std::string series_uid;                    // empty: nothing before the file's end or its damage says it
+    std::optional<uint64_t> pixel_bytes = {};  // of Pixel Data that is not compressed
+    unsigned bits_allocated = 0;               // of a pixel
 };
 
 // Throws UserError when the file cannot be opened.

@@ -222,6 +222,13 @@ TEST_F(ListSeries, ADamagedFileOfAnotherSeriesIsLeftOutWithAWord) {
     expectWords(expectTaken("1.2.1"), {"3_0", "Pixel Spacing"});
 }
 
+TEST_F(ListSeries, ASeriesThatLacksPixelsIsNotRecommended) {
+    writeStack("1.2.1", 6, 1, [](DicomImage&) {});
+    writeStack("1.2.2", 9, 1,
+               [](DicomImage& image) { image.pixels.resize(image.sop_uid.ends_with("3") ? 10 : 20); });
+    expectWords(expectTaken("1.2.1"), {"2_3: its Pixel Data has 20 bytes, Rows x Columns x frames need 40"});
+}
+
 TEST_F(ListSeries, ADamagedFileOfTheSeriesIsNotLeftOut) {
     writeStack("1.2.1", 6, 1, [](DicomImage&) {});
     writeBytes(folder_ / "1_6", readBytes(folder_ / "1_5"));
