@@ -18,6 +18,9 @@ struct DicomPixelLayout {
     size_t frames = 1;
     int samples_per_pixel = 1;
     StoredBits bits;
+
+    uint64_t frameBytes() const { return uint64_t(columns) * uint64_t(rows) * bits.allocated / 8; }
+    uint64_t neededBytes() const { return frameBytes() * frames; }
 };
 
 // It is for start-up only, each object for one thread. Throws UserError that names the file when it cannot be

@@ -11,6 +11,7 @@
 #include "haptic_server/scans/confined/import_limits.h"
 #include "haptic_server/scans/dicom/dicom_file.h"
 #include "haptic_server/scans/dicom/dicom_groups.h"
+#include "haptic_server/scans/dicom/dicom_pixels.h"
 #include "haptic_server/scans/dicom/dicom_scan.h"
 #include "haptic_server/scans/dicom/dicom_slice.h"
 #include "haptic_server/scans/pixels/dicom_rescale.h"
@@ -154,7 +155,8 @@ std::string whyNotGrey(const DicomFile& image) {
 }
 
 // Reads the slices of one file, or none and the reason: the file cannot belong to a volume.
-std::vector<DicomSlice> readHeader(const std::filesystem::path& path, LeftOut& left_out) {
+std::vector<DicomSlice> readHeader(const std::filesystem::path& path, const DicomScan& scan,
+                                   LeftOut& left_out) {
     const DicomFile image(path);
     const size_t frames = image.layout().frames;
     if (const std::string reason = whyNotGrey(image); !reason.empty()) {
@@ -166,6 +168,7 @@ std::vector<DicomSlice> readHeader(const std::filesystem::path& path, LeftOut& l
         return {};
     }
     DicomSlice slice = headerOf(image, path);
+    checkPixels(image, scan.pixel_bytes);
     if (frames == 1) {
         static_cast<DicomPlace&>(slice) = placeFromTexts(
             {image.dicomTag("0020|0032"), image.dicomTag("0020|0037"), image.dicomTag("0028|0030")},
@@ -190,27 +193,12 @@ std::string reasonToLeaveOut(const DicomScan& scan) {
            "as .seg.nrrd or NIfTI";
 }
 
-// Here, so that a series is not recommended first and refused when its pixels are read.
-void checkPixelBytes(const std::vector<DicomSlice>& slices, const DicomScan& scan) {
-    if (slices.empty() || !scan.pixel_bytes) return;
-    const DicomSlice& first = slices.front();
-    const uint64_t pixels = uint64_t(first.columns) * uint64_t(first.rows) * slices.size();
-    const uint64_t needed = (pixels * scan.bits_allocated + 7) / 8;
-    if (*scan.pixel_bytes < needed)
-        throw UserError(first.path.string() + ": its Pixel Data has " + std::to_string(*scan.pixel_bytes) +
-                        " bytes, Rows x Columns x frames need " + std::to_string(needed) +
-                        "; export it anew");
-}
-
 std::vector<DicomSlice> slicesOfScanned(const std::filesystem::path& path, const DicomScan& scan,
                                         LeftOut& left_out) {
     if (scan.kind == DicomKind::kCutShort)
         throw UserError(path.string() + ": the DICOM file is cut short or damaged: " + scan.problem);
-    if (scan.kind == DicomKind::kImage && scan.drawing == DicomDrawing::kNone) {
-        std::vector<DicomSlice> slices = readHeader(path, left_out);
-        checkPixelBytes(slices, scan);
-        return slices;
-    }
+    if (scan.kind == DicomKind::kImage && scan.drawing == DicomDrawing::kNone)
+        return readHeader(path, scan, left_out);
     left_out.add(reasonToLeaveOut(scan), path);
     return {};
 }

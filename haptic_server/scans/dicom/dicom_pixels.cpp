@@ -59,14 +59,29 @@ const gdcm::DataElement& pixelsOf(const gdcm::DataSet& data, const std::string& 
     return data.GetDataElement(kFramesElement);
 }
 
+void requireBytes(const DicomPixelLayout& layout, uint64_t stored, const std::string& file) {
+    if (stored < layout.neededBytes())
+        throw UserError(file + ": Pixel Data has " + std::to_string(stored) +
+                        " bytes, Rows x Columns x frames (" + std::to_string(layout.rows) + " x " +
+                        std::to_string(layout.columns) + " x " + std::to_string(layout.frames) + ") need " +
+                        std::to_string(layout.neededBytes()) + "; export it anew");
+}
+
 }  // namespace
+
+void checkPixels(const DicomFile& file, const std::optional<uint64_t>& stored_bytes) {
+    checkLayout(file);
+    paddingOf(file);
+    if (stored_bytes && !file.syntax().IsEncapsulated())
+        requireBytes(file.layout(), *stored_bytes, file.name());
+}
 
 DicomPixels::DicomPixels(const std::filesystem::path& path) : name_(path.string()) {
     const DicomFile file(path);
     checkLayout(file);
     layout_ = file.layout();
     padding_ = paddingOf(file);
-    const MemoryCap cap(mostMemoryToRead(path, 2 * neededBytes()));
+    const MemoryCap cap(mostMemoryToRead(path, 2 * layout_.neededBytes()));
     reader_ = std::make_unique<gdcm::Reader>();
     reader_->SetFileName(path.c_str());
     if (!reader_->Read()) throw UserError(name_ + ": cannot be read; the DICOM file is damaged");
@@ -79,8 +94,8 @@ DicomPixels::DicomPixels(const std::filesystem::path& path) : name_(path.string(
 void DicomPixels::takeNative(const gdcm::TransferSyntax& syntax) {
     const gdcm::DataElement& pixels = pixelsOf(reader_->GetFile().GetDataSet(), name_);
     const gdcm::ByteValue* const stored = pixels.GetByteValue();
-    checkCount(stored ? uint64_t(stored->GetLength()) : 0);
-    bytes_ = {const_cast<char*>(stored->GetPointer()), size_t(neededBytes())};
+    takeCount(stored ? uint64_t(stored->GetLength()) : 0);
+    bytes_ = {const_cast<char*>(stored->GetPointer()), size_t(layout_.neededBytes())};
     if (syntax.GetSwapCode() == gdcm::SwapCode::BigEndian && layout_.bits.allocated == 32)
         throw UserError(name_ +
                         ": its pixels have 32 bit in big-endian order, which is not read; convert it");
@@ -113,27 +128,23 @@ void DicomPixels::unpack(const gdcm::TransferSyntax& syntax) {
         gdcm::PixelFormat(1, uint16_t(bits.allocated), used, uint16_t(used - 1), bits.is_signed));
     image.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
     image.SetDataElement(pixels);
-    checkCount(image.GetBufferLength());
+    takeCount(image.GetBufferLength());
     unpacked_.resize(size_t(image.GetBufferLength()));
     if (!image.GetBuffer(unpacked_.data()))
         throw UserError(name_ + ": its compressed pixels cannot be unpacked (transfer syntax " +
                         syntax.GetString() + "); the file is damaged, or of a kind that is not read");
     reader_.reset();
-    bytes_ = std::span(unpacked_).first(size_t(neededBytes()));
+    bytes_ = std::span(unpacked_).first(size_t(layout_.neededBytes()));
 }
 
-void DicomPixels::checkCount(uint64_t stored) {
-    if (stored < neededBytes())
-        throw UserError(name_ + ": Pixel Data has " + std::to_string(stored) +
-                        " bytes, Rows x Columns x frames (" + std::to_string(layout_.rows) + " x " +
-                        std::to_string(layout_.columns) + " x " + std::to_string(layout_.frames) + ") need " +
-                        std::to_string(neededBytes()) + "; export it anew");
-    const uint64_t even = neededBytes() + neededBytes() % 2;
+void DicomPixels::takeCount(uint64_t stored) {
+    requireBytes(layout_, stored, name_);
+    const uint64_t needed = layout_.neededBytes(), even = needed + needed % 2;
     surplus_ = stored > even ? stored - even : 0;
 }
 
 FrameValues DicomPixels::takeFrame(size_t n, const DicomRescale& rescale) {
-    const auto size = size_t(frameBytes());
+    const auto size = size_t(layout_.frameBytes());
     const std::span<char> bytes = bytes_.subspan(n * size, size);
     FrameValues values = valuesOf(bytes, layout_.bits, padding_, rescale);
     forget(bytes);

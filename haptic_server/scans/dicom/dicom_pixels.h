@@ -16,6 +16,10 @@
 
 namespace bonemill {
 
+// Throws as DicomPixels does for all that a file's header tells, so that no series is recommended that is
+// then refused. `stored_bytes` are those of its pixels; nothing: they are compressed.
+void checkPixels(const DicomFile& file, const std::optional<uint64_t>& stored_bytes);
+
 // It is for start-up only, each object for one thread. Throws UserError that names the file and says why:
 // fewer bytes than its frames need, values that are to go through a table, bits that cannot be, damaged
 // pixels.
@@ -34,9 +38,7 @@ class DicomPixels {
   private:
     void takeNative(const gdcm::TransferSyntax& syntax);
     void unpack(const gdcm::TransferSyntax& syntax);
-    void checkCount(uint64_t stored);
-    uint64_t frameBytes() const { return frameSize() * layout_.bits.allocated / 8; }
-    uint64_t neededBytes() const { return frameBytes() * layout_.frames; }
+    void takeCount(uint64_t stored);
 
     std::string name_;
     DicomPixelLayout layout_;

@@ -21,7 +21,6 @@ constexpr uint32_t kMediaClassUid = 0x00020002;
 constexpr uint32_t kTransferSyntaxUid = 0x00020010;
 constexpr uint32_t kSopClassUid = 0x00080016;
 constexpr uint32_t kSeriesUid = 0x0020000e;
-constexpr uint32_t kBitsOfPixel = 0x00280100;
 constexpr uint32_t kItem = 0xfffee000;
 constexpr uint32_t kItemEnd = 0xfffee00d;
 constexpr uint32_t kSequenceEnd = 0xfffee0dd;
@@ -68,7 +67,7 @@ class Scanner {
             return {DicomKind::kImage, {}, media_class_, drawing_, series_uid_};
         }
         const DicomKind kind = has_pixels_ ? DicomKind::kImage : DicomKind::kNoImage;
-        return {kind, {}, media_class_, drawing_, series_uid_, pixel_bytes_, bits_allocated_};
+        return {kind, {}, media_class_, drawing_, series_uid_, pixel_bytes_};
     }
 
   private:
@@ -176,11 +175,6 @@ class Scanner {
     void takeFact(const Element& element) {
         if (element.tag == kSeriesUid) series_uid_ = text(element.length);
         if (element.tag == kPixelData && element.length != kUndefinedLength) pixel_bytes_ = element.length;
-        if (element.tag != kBitsOfPixel || element.length != 2) return;
-        std::array<unsigned char, 2> bits{};
-        read(bits.data(), 2);
-        position_ -= 2;
-        bits_allocated_ = number(bits.data(), 2);
     }
 
     void skipElement(int depth) {
@@ -237,7 +231,6 @@ class Scanner {
     std::string media_class_, series_uid_;
     DicomDrawing drawing_ = DicomDrawing::kNone;
     std::optional<uint64_t> pixel_bytes_;
-    unsigned bits_allocated_ = 0;
 };
 
 }  // namespace

@@ -32,7 +32,6 @@ struct DicomScan {
     DicomDrawing drawing = DicomDrawing::kNone;
     std::string series_uid;                    // empty: nothing before the file's end or its damage says it
     std::optional<uint64_t> pixel_bytes = {};  // of Pixel Data that is not compressed
-    unsigned bits_allocated = 0;               // of a pixel
 };
 
 // Throws UserError when the file cannot be opened.

@@ -192,10 +192,12 @@ void checkPly(std::string_view bytes, const std::string& name) {
     constexpr size_t kLongestHeader = 1 << 16;
     constexpr std::string_view kEnd = "\nend_header";
     const size_t end = bytes.substr(0, kLongestHeader).find(kEnd);
-    if (!bytes.starts_with("ply") || end == std::string_view::npos)
+    const bool is_line = end != std::string_view::npos && end + kEnd.size() < bytes.size() &&
+                         std::string_view("\r\n").find(bytes[end + kEnd.size()]) != std::string_view::npos;
+    if (!bytes.starts_with("ply") || !is_line)
         throw UserError(name +
                         ": not a PLY file, or cut short: its header does not start with \"ply\" and end "
-                        "with \"end_header\"; export it again");
+                        "with the line \"end_header\"; export it again");
     std::istringstream lines{std::string(bytes.substr(0, end))};
     const auto left = double(bytes.size() - end - kEnd.size());
     double elements = 0;

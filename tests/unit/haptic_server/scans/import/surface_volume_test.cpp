@@ -164,6 +164,10 @@ TEST_F(SurfaceVolume, thatIsNoSolidIsRefused) {
         },
         {"the bone is 3000 mm large"});
     expectUserError([&] { imported("a.ply", "ply\nformat ascii 1."); }, {"a.ply", "cut short"});
+    // The library would look for the end of that line for ever.
+    std::string joined = textPly(box, "");
+    joined.replace(joined.find("end_header\n"), 11, "end_header ");
+    expectUserError([&] { imported("a.ply", joined); }, {"a.ply", "the line \"end_header\""});
     std::string many = textPly(box, "");
     many.replace(many.find("vertex 36"), 9, "vertex 36000000");
     expectUserError([&] { imported("a.ply", many); }, {"a.ply", "announces more"});
