@@ -50,7 +50,7 @@ std::array<IndexBox, kMaxMaterials + 1> boxesOf(const BoneProperties& properties
 class MaterialSurface {
   public:
     MaterialSurface(const BoneProperties& properties, MaterialId material, const IndexBox& box,
-                     const Eigen::Vector3d& spacing, int least_stride, float label_edge)
+                    const Eigen::Vector3d& spacing, int least_stride, float label_edge)
         : stride_(strideOf(box, least_stride)),
           first_(box.min.array() - stride_),
           size_((box.max - box.min) / stride_ + Eigen::Vector3i::Constant(4)),
