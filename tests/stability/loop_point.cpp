@@ -9,7 +9,7 @@ constexpr double kDt = 1e-3;
 constexpr double kInertiaPerMass = 2e-4, kAngularPerLinear = 2e-3, kAngularFriction = 5e-3;
 constexpr double kAnglePerStep = 35;          // rad/m: 0.01° at 5 µm
 constexpr double kPush = 1, kTwist = 2.5e-4;  // N, N·m
-constexpr int kMaxWindows = 12;
+constexpr int kMaxWindows = 14, kMostAsBefore = 3;
 constexpr double kWindow = 0.5;  // s
 
 // A hole that the tool cannot drift out of along its axis, for there is nothing that would brake it.
@@ -136,11 +136,13 @@ LoopVerdict tryLoop(const LoopPoint& point, const Variant& variant, Says says) {
         return record.coupling_share + record.rotation_share;
     };
     double share_before = shares();
+    int as_before = 0;
     for (int n = 2; n < kMaxWindows && r.is_finite && !isQuiet(r); ++n) {
         r = residual(loop, kWindow);
         const double now = r.rms + r.torque_rms;
         const bool goes_on_as_before = now > 0.9 * swing && shares() == share_before;
-        if (goes_on_as_before && n > 4) break;
+        as_before = goes_on_as_before ? as_before + 1 : 0;
+        if (as_before == kMostAsBefore) break;
         swing = now;
         share_before = shares();
     }

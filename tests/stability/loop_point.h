@@ -60,7 +60,7 @@ enum class Says {
 inline constexpr double kWrongBy = 0.3;
 const char* nameOf(Says says);
 
-// Lets the loop swing for as long as its swing becomes smaller or its coupling another, 6 s at most.
+// Lets the loop swing for as long as its swing becomes smaller or its coupling another, 7 s at most.
 LoopVerdict tryLoop(const LoopPoint& point, const Variant& variant, Says says);
 
 // The n-th of the random devices: as light and as heavy, as slow, as smooth and as rough as arms are, held or

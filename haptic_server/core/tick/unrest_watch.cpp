@@ -28,8 +28,10 @@ void Alternation::add(const Vector3d& value, double share_of_mean) noexcept {
     sum_ += off.squaredNorm();
     ++count_;
     if (off.squaredNorm() < least_ * least_ / 16) return;
-    crossings_ += side_.dot(off) < 0;
-    side_ = off;
+    // What goes round in a circle changes sides, too.
+    const double along = side_.dot(off);
+    crossings_ += along < 0;
+    if (along <= 0) side_ = off;
 }
 
 double Alternation::judge(Patience patience) noexcept {
