@@ -9,14 +9,14 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kMeanTime = 0.1;   // s: what changes more slowly is the hand's
-constexpr int kLeastCrossings = 1;  // of the mean in a window: 2.5 Hz
+constexpr int kLeastCrossings = 2;  // of the mean in a window: 5 Hz, or 2.5 Hz in a circle
 // What shakes the hand is not waited for so long as what only dances on the steps of the encoders: that may
 // yet come to rest.
 constexpr double kMuch = 20;                                 // times what no hand feels
 constexpr int kWait[] = {2, 3, 4}, kLongWait[] = {2, 4, 5};  // windows
 constexpr double kShrinks = 0.6;                             // over them at most, of a swing that dies
 constexpr double kLeastTouching = 0.1;                       // of a window
-constexpr double kMostWay = 0.3e-3, kMostWayOfSwing = 0.5;   // m from window to window: the handle stays
+constexpr double kMostWay = 0.1e-3, kMostWayOfSwing = 0.5;   // m from window to window: the handle stays
 
 }  // namespace
 
