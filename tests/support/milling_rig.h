@@ -38,7 +38,7 @@ struct RigConfig {
     Burr burr{.radius = 1e-3, .speed = 40 * kKrpm};
     double edge_radius = 0;                                        // m, of a cylindrical burr
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  // of the tool
-    EnergyRemovalConfig removal = kEnergyRemoval;
+    EnergyRemovalConfig removal = kSharpRemoval;
     Preset preset = Preset::kBalanced;
     int shell_factor = 1;
     size_t most_milled_cells = TickConfig{}.most_milled_cells;

@@ -8,11 +8,25 @@
 namespace bonemill::test {
 
 inline constexpr SpindleConfig kSpindle{.inertia = 5e-7, .max_torque = 0.02, .droop = 4.8e-5, .drag = 1.9e-7};
-inline constexpr EnergyRemovalConfig kEnergyRemoval{.specific_energy = 0.5e9,
+inline constexpr EnergyRemovalConfig kEnergyRemoval{.specific_energy = 0.4e9,
                                                     .reference_density = kMaxDensity,
                                                     .density_exponent = 0,
                                                     .threshold_pressure = 0,
-                                                    .diamond_energy_factor = 2.5};
+                                                    .diamond_energy_factor = 2,
+                                                    .drill_energy_factor = 0.25,
+                                                    .diamond_edge = 0.3e6,
+                                                    .fluted_edge = 3e3,
+                                                    .drill_edge = 15e3};
+// All force cuts: for the closed forms of what is cut.
+inline constexpr EnergyRemovalConfig kSharpRemoval{.specific_energy = 0.5e9,
+                                                   .reference_density = kMaxDensity,
+                                                   .density_exponent = 0,
+                                                   .threshold_pressure = 0,
+                                                   .diamond_energy_factor = 2.5,
+                                                   .drill_energy_factor = 1,
+                                                   .diamond_edge = 0,
+                                                   .fluted_edge = 0,
+                                                   .drill_edge = 0};
 inline constexpr CuttingForceConfig kCuttingForce{.slow_speed = 0.01, .smoothing_time = 2e-3};
 inline constexpr SurfaceFrictionConfig kSurfaceFriction{.coefficient = 0.2, .presliding_stiffness = 5e4};
 inline constexpr BurrVibrationConfig kBurrVibration{
@@ -32,7 +46,8 @@ inline constexpr HeatConfig kHeat{.cell = 0.5e-3,
                                   .dry_transfer = 10,
                                   .necrosis_temperature = 47,
                                   .necrosis_time = 0};
-inline constexpr ThermalConfig kThermal{.heat_share = 0.1, .irrigation_radius = 10e-3, .heat = kHeat};
+inline constexpr ThermalConfig kThermal{
+    .heat_share = 0.1, .rubbing_heat_share = 0.2, .irrigation_radius = 10e-3, .heat = kHeat};
 inline constexpr ProtectedStructuresConfig kProtectedStructures{.warning_distance = 2e-3};
 
 }  // namespace bonemill::test

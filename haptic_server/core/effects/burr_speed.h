@@ -22,6 +22,12 @@ inline double rubbingRadius(const Eigen::Vector3d& r, const Eigen::Vector3d& axi
     return std::sqrt(axis.cross(r).squaredNorm() + patchSpread(area));
 }
 
+// Tangential per normal force of the burr as a whole.
+inline double frictionOf(const EffectTick& tick) noexcept {
+    const Burr& burr = tick.tool->burr;
+    return burr.rubbing_friction + tick.cut_share * (burr.friction - burr.rubbing_friction);
+}
+
 // How much of the burr's friction is that of a turning burr, 0 .. 1; the rest is that of one that stands.
 inline double spinShare(double spin_speed, const Burr& burr) noexcept {
     constexpr double kSlowRim = 10e-3;  // m/s: what is slower rather sticks

@@ -20,6 +20,7 @@ void EffectHost::restart(Restart why) noexcept {
     tick_.contacts = {};
     tick_.is_on_burr = {};
     tick_.burr_load = {};
+    tick_.cut_share = 1;
 }
 
 void EffectHost::begin(const EffectStart& start) noexcept {
@@ -85,8 +86,7 @@ const EffectRecord& EffectHost::finish(bool has_time) noexcept {
     if (any(HapticEffect::kReadsContacts)) {
         const BurrLoad& load = tick_.burr_load;
         tick_.record.burr_force = float(load.force);
-        tick_.record.cutting_power =
-            float(tick_.tool->burr.friction * load.moment * std::abs(tick_.spin_speed));
+        tick_.record.cutting_power = float(frictionOf(tick_) * load.moment * std::abs(tick_.spin_speed));
     }
     for (const auto& effect : effects_) effect->finish(tick_);
     return tick_.record;

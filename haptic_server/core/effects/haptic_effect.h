@@ -22,7 +22,7 @@ namespace bonemill {
 // This is what presses on the burr.
 struct BurrLoad {
     double force = 0;   // N: Σ F
-    double moment = 0;  // N·m: Σ F ρ; times μ_c against the spin, times μ_c |Ω| the power
+    double moment = 0;  // N·m: Σ F ρ; times frictionOf() against the spin, and times |Ω| the power
     size_t contacts = 0;
 };
 
@@ -59,6 +59,7 @@ struct EffectTick : EffectStart {
     std::span<const uint8_t> is_on_burr;       // per contact
     std::span<const float> place_area;         // per candidate: what it stands for, m²
     BurrLoad burr_load;                        // of the contacts on the burr
+    double cut_share = 1;                      // of the burr's moment, that cuts; the rest rubs
     const Candidates* candidates = nullptr;    // of the last gathering
 
     bool has_time = true;  // at the end of the tick: else what nobody feels waits for the next one

@@ -11,16 +11,17 @@
 namespace bonemill {
 
 enum class BurrKind : uint8_t { kBall, kCylinder, kCone };
-enum class BurrGrit : uint8_t { kFluted, kDiamond };
+enum class BurrGrit : uint8_t { kFluted, kDiamond, kDrill };
 
 struct Burr {
     BurrKind kind = BurrKind::kBall;
     BurrGrit grit = BurrGrit::kFluted;
-    double radius = 1e-3;   // m; a cone's is at its end towards the hand
-    double length = 0;      // m, of a cylinder or cone, centred on T's origin
-    double tip_radius = 0;  // m, of a cone's far end
-    double friction = 0.5;  // μ_c: tangential force per normal force while it cuts
-    double speed = 0;       // rad/s about T's +y, of a full pedal; negative: reversed
+    double radius = 1e-3;            // m; a cone's is at its end towards the hand
+    double length = 0;               // m, of a cylinder or cone, centred on T's origin
+    double tip_radius = 0;           // m, of a cone's far end
+    double friction = 0.5;           // μ_c: tangential per normal force of what cuts
+    double rubbing_friction = 0.35;  // μ_e: of what its edges carry without cutting
+    double speed = 0;                // rad/s about T's +y, of a full pedal; negative: reversed
 
     // The farthest point of the burr is so far from T's origin, in m.
     double reach() const noexcept {

@@ -123,6 +123,7 @@ Burr burrOf(const scene::Tool& tool) {
     burr.length = tool.burr_length_mm() * kMillimetre;
     burr.tip_radius = tool.burr_tip_radius_mm() * kMillimetre;
     burr.friction = tool.burr_friction();
+    burr.rubbing_friction = tool.burr_rubbing_friction();
     burr.speed = tool.speed_rpm() * kRpm;
     return burr;
 }

@@ -1,7 +1,7 @@
 // The turning burr shakes the hand with A sin φ along T's x axis, which is at right angles to the spin. Teeth
 // pass at some kHz, which a loop of 1000 Hz cannot render; the rotation is felt, at a frequency that it can:
 //   dφ/dt = 2π f,   f = |Ω|/2π within 50 .. 400 Hz and at most 0.4/dt,
-//   A → min(max_amplitude, amplitude_per_force · μ_c Σ F) with a time constant of 10 ms,
+//   A → min(max_amplitude, amplitude_per_force · μ Σ F) with a time constant of 10 ms,
 // less below 50 turns/s in proportion, and a diamond burr less by its factor. In the air it is
 // exactly nothing. It acts on the hand only: the simulated tool does not shake. It is RT-safe, for
 // the tick thread only.
@@ -10,6 +10,7 @@
 
 #include "common/base/units.h"
 #include "common/math/pinned_math.h"
+#include "haptic_server/core/effects/burr_speed.h"
 #include "haptic_server/core/effects/effect_configs.h"
 #include "haptic_server/core/effects/haptic_effect.h"
 
@@ -43,7 +44,7 @@ class BurrVibration final : public HapticEffect {
         const Burr& burr = tick.tool->burr;
         const double slow = std::min(1.0, std::abs(tick.spin_speed) / (kTurn * BurrVibrationConfig::kLowest));
         const double grit = burr.grit == BurrGrit::kDiamond ? config_.diamond_factor : 1;
-        const double by_load = config_.amplitude_per_force * burr.friction * tick.burr_load.force;
+        const double by_load = config_.amplitude_per_force * frictionOf(tick) * tick.burr_load.force;
         return slow * grit * std::min(config_.max_amplitude, by_load);
     }
 

@@ -1,8 +1,8 @@
 // This is the tangential force with which bone holds on to the turning burr, and its torque about the burr's
 // axis: the sixth degree of freedom. Each contact on the burr, of normal force F, rubs at the speed v_s = Ω a
 // × r + v (v the tool's own motion there, tangential parts) and pulls with
-//   F_t = −s μ_c F v_s / √(|v_s|² + v_ε²),   |v_s| the mean over its patch (burr_speed.h),
-// so that about the axis M Ω = μ_c Σ F v_c · v_c / √(v_c² + v_ε²), v_c = |Ω| ρ. s fades from 1 to 0 as
+//   F_t = −s μ F v_s / √(|v_s|² + v_ε²),   |v_s| the mean over its patch (burr_speed.h),
+// so that about the axis M Ω = μ Σ F v_c · v_c / √(v_c² + v_ε²), v_c = |Ω| ρ. s fades from 1 to 0 as
 // the burr comes to rest. What stands still sticks, and is surface_friction's; but a burr that a spindle
 // cannot turn passes the motor's torque on, by forces in the direction of the spin in proportion to F:
 //   F_t = −(1 − s) (L/Σ F ρ) F (a × r)/ρ,   L the spindle's axis_load.
@@ -92,11 +92,12 @@ class CuttingForce final : public HapticEffect {
     };
     Pull pullOf(const EffectTick& tick) const noexcept {
         Pull pull;
-        const Burr& burr = tick.tool->burr;
-        const double spin = tick.spin_speed, share = spinShare(spin, burr), moment = tick.burr_load.moment;
+        const double spin = tick.spin_speed, share = spinShare(spin, tick.tool->burr);
+        const double moment = tick.burr_load.moment;
         const double held_per_moment = moment > 0 ? (1 - share) * tick.axis_load / moment : 0;
         if (share == 0 && held_per_moment == 0) return pull;
         const Vector3d axis = tick.axis();
+        const double friction = frictionOf(tick);
         TangentialDampers dampers;
         forEachBurrContact(tick, [&](const SurfaceContact& contact, const Vector3d& r, double rho) {
             const double spread = patchSpread(double(tick.place_area[contact.candidate]));
@@ -105,7 +106,7 @@ class CuttingForce final : public HapticEffect {
             const Vector3d by_turn = tangential * axis.cross(r), v_spin = spin * by_turn;
             const Vector3d v_tool = tangential * (tick.velocity_V + tick.angular_velocity_V.cross(r));
             const double mean_square = (v_spin + v_tool).squaredNorm() + spin * spin * spread;
-            const double per_speed = share * burr.friction * double(contact.force) /
+            const double per_speed = share * friction * double(contact.force) /
                                      std::sqrt(mean_square + config_.slow_speed * config_.slow_speed);
             const double per_turn = per_speed * spin + held_per_moment * double(contact.force) / rho;
             const Vector3d force = -per_turn * by_turn;

@@ -1,16 +1,21 @@
 // Removes by pressure times cutting speed against the bone's specific energy (ALGORITHMS §4).
 //
 // Per area of the contact between burr and bone, with pressure p, friction μ_c and cutting speed v_c, the
-// power μ_c (p - p_th)₊ v_c goes into bone of specific energy u, whose surface recedes at v_n = μ_c v_c (p -
-// p_th)₊ / u (Archard's law of wear, its rate given by energy).
+// power μ_c (p - p_e)₊ v_c goes into bone of specific energy u, whose surface recedes at v_n = μ_c v_c (p -
+// p_e)₊ / u (Archard's law of wear, its rate given by energy). The rest, p_e at most, is carried by edges,
+// grains and wear flats, which rub with friction μ_e: μ_e min(p, p_e) v_c is heat and load of the motor only.
+//
+// p_e is in proportion to u. Edges that come by with E = z q_e in a turn (z edges, q_e each, N/m) have p_e =
+// E/(2πρ) at ρ from the axis, so that a chip of thickness h = v_n 2π/(Ω z) takes u + u_1/h in all, with u_1 =
+// μ_e q_e: the size effect of cutting. Grains of diamond lie as densely everywhere, p_e is constant.
 //
 // The time constant of that wear against the contact's stiffness κ (N/m³), u/(μ_c κ v_c), is shorter than a
 // tick. The tick therefore takes it implicitly (backward Euler). With c = μ_c v_c / u and the recession s =
 // dt c p in this tick, p = κ (δ - s) makes p = κ δ / (1 + κ c dt): scale() multiplies each point's weight by
 // 1/(1 + κ c dt), so that the solve moves the tool through what the tick will cut. At a steady feed v the
-// pressure is v/c whatever dt and κ. The threshold is not in the weights: below it the burr only rubs, on
-// bone as soft as that, and sinks in by dt c p_th more. (A weight by the depth of the tick before swings: its
-// gain is κ c dt p_th/p.)
+// pressure is v/c whatever dt and κ. p_e is not in the weights: below it the burr only rubs, on
+// bone as soft as that, and sinks in by dt c p_e more. (A weight by the depth of the tick before swings: its
+// gain is κ c dt p_e/p.)
 //
 // v_c = |Ω| ρ with the mean of ρ over the point's patch (burr_speed.h), so that the pole of a burr cuts,
 // if hardly.
@@ -21,9 +26,9 @@
 //
 // The cut surface is the burr's only within some micrometres, which is as much as the contact is deep: on
 // coarse voxels, and with a stiff contact (a short tick), few places carry what many should, at pressures far
-// above the mean. So the pressure that counts against the threshold is the mean over a region of the burr,
+// above the mean. So the pressure that counts against p_e is the mean over a region of the burr,
 // its force over the whole area of the patches that touch, and each contact gives its power times the share
-// of that mean which is above.
+// of that mean which is above. Of the burr's moment Σ F ρ the share that cuts is told to the other effects.
 //
 // mill() then spends the energy of the contacts on the surface (milling/surface_shift.h). What was spent too
 // much or too little is kept in an account and made good within kRepayTime, so that Σ u ΔV = ∫ P dt but for
@@ -33,6 +38,7 @@
 #include <climits>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "common/math/pinned_math.h"
 #include "haptic_server/core/contact/into_tool.h"
@@ -64,6 +70,8 @@ class EnergyRemoval final : public HapticEffect {
                             .materials = all.materials},
                            all.properties, bone.volume.iso()),
           inverse_spacing_(bone.volume.spacing().cwiseInverse()),
+          rubbing_(room.most_contacts),
+          region_of_(room.most_contacts),
           shift_(bone, room.largest_burr_reach, room.most_contacts, room.most_cells),
           most_contacts_(std::max<size_t>(1, room.most_cells / EnergyRemovalConfig::kCellsPerContact)) {}
     void restart(Restart) noexcept override {
@@ -79,6 +87,8 @@ class EnergyRemoval final : public HapticEffect {
     double scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,
                  const ToolField& tool, const Pose& X_VT) noexcept override {
         if (!is_cutting_ || candidates.count == 0) return 1;
+        rubs_ = config_.rubbingPressure(tick.tool->burr, tick.tool->burr.radius) > 0;
+        if (rubs_) std::fill_n(rubbing_.begin(), candidates.count, 0.f);
         constexpr int kBatch = PointBatch<float>::kCapacity;
         const double slack = burrSlack(tool);
         const IntoTool<float> into_tool(X_VT, origin_V);
@@ -107,7 +117,7 @@ class EnergyRemoval final : public HapticEffect {
         if (!is_cutting_ || tick.contacts.empty()) return;
         const double energy = spendContacts(tick, bone);
         if (!(energy > 0)) return;
-        const double factor = energyFactor(tick.tool->burr);
+        const double factor = config_.energyFactor(tick.tool->burr);
         if (turn_ == 0) to_repay_ = account_;
         const double of_turns = energy * double(turns_);
         const double repaid = to_repay_ * (1 - pinned::exp(-tick.milled_dt * double(turns_) / kRepayTime));
@@ -125,22 +135,21 @@ class EnergyRemoval final : public HapticEffect {
     }
 
   private:
-    double energyFactor(const Burr& burr) const noexcept {
-        return burr.grit == BurrGrit::kDiamond ? config_.diamond_energy_factor : 1;
-    }
-    // This is 1/(1 + κ c dt) of a candidate on the burr.
+    // This is 1/(1 + κ c dt) of a candidate on the burr, whose p_e it notes.
     double softness(const EffectTick& tick, const Candidates& candidates, size_t n,
                     const Eigen::Vector3d& origin_V, const Eigen::Vector3d& p_T) noexcept {
         const Burr& burr = tick.tool->burr;
         const double area = double(tick.place_area[n]), stiffness = double(candidates.weight[n]) / area;
         const double rho = std::sqrt(p_T.x() * p_T.x() + p_T.z() * p_T.z() + patchSpread(area));
-        const double u =
-            energyFactor(burr) * specificEnergyAt(origin_V + candidates.position(n).cast<double>());
-        const double c = burr.friction * std::abs(tick.spin_speed) * rho / u;
+        const double of_bone = specificEnergyAt(origin_V + candidates.position(n).cast<double>());
+        if (rubs_)
+            rubbing_[n] = float(config_.rubbingPressure(burr, rho) * (of_bone / config_.specific_energy));
+        const double c =
+            burr.friction * std::abs(tick.spin_speed) * rho / (config_.energyFactor(burr) * of_bone);
         return 1 / (1 + stiffness * c * tick.milled_dt * double(turns_));
     }
     struct Region {
-        double force = 0, area = 0;  // N, m²: of its patches that touch
+        double force = 0, rubbing = 0;  // N: of its patches that touch, and what they carry without cutting
     };
     static constexpr int kRegionsPerAxis = 4;
     // The burr's box is cut into equal boxes along the tool's axes.
@@ -168,16 +177,17 @@ class EnergyRemoval final : public HapticEffect {
             const double times = double(tick.candidates->area[candidate]) / touching;
             for (size_t of_patch = n; of_patch < end; ++of_patch) {
                 if (!tick.is_on_burr[of_patch]) continue;
-                Region& region = regions_[regionOf(tick, tick.contacts[of_patch])];
-                region.force += double(tick.contacts[of_patch].force);
-                region.area += times * placeArea(of_patch);
+                const SurfaceContact& contact = tick.contacts[of_patch];
+                Region& region = regions_[region_of_[of_patch] = uint8_t(regionOf(tick, contact))];
+                region.force += double(contact.force);
+                region.rubbing += times * placeArea(of_patch) * double(rubbing_[contact.candidate]);
             }
         }
     }
-    double shareAboveThreshold(const EffectTick& tick, const SurfaceContact& contact) const noexcept {
-        if (!(config_.threshold_pressure > 0)) return 1;
-        const Region& region = regions_[regionOf(tick, contact)];
-        return std::max(0.0, 1 - config_.threshold_pressure * region.area / region.force);
+    double cuttingShare(size_t contact) const noexcept {
+        if (!rubs_) return 1;
+        const Region& region = regions_[region_of_[contact]];
+        return std::max(0.0, 1 - region.rubbing / region.force);
     }
     // The places of a patch follow each other.
     double specificEnergyAt(const Eigen::Vector3d& p_V) noexcept {
@@ -186,13 +196,13 @@ class EnergyRemoval final : public HapticEffect {
         return last_energy_;
     }
     // Gives the energies of the contacts whose turn it is to the surface. Returns the sum of all, J.
-    double spendContacts(const EffectTick& tick, const BoneModel& bone) noexcept {
+    double spendContacts(EffectTick& tick, const BoneModel& bone) noexcept {
         const Burr& burr = tick.tool->burr;
         const Eigen::Vector3d axis = tick.X_VT.rotation * Eigen::Vector3d::UnitY();
         shift_.begin(bone, burr, tick.X_VT);
-        if (config_.threshold_pressure > 0) weighRegions(tick);
+        if (rubs_) weighRegions(tick);
         if (turns_ > 1 && turn_ == 0) shareLeaves(tick);
-        double energy = 0;
+        double energy = 0, all_cutting = 0;
         LeafId leaf = ~LeafId(0);  // of the contact before
         bool is_its_turn = true;
         for (size_t n = 0; n < tick.contacts.size(); ++n) {
@@ -201,9 +211,10 @@ class EnergyRemoval final : public HapticEffect {
             const double area = double(tick.place_area[contact.candidate]);
             const double speed =
                 std::abs(tick.spin_speed) * rubbingRadius(contact.r_V.cast<double>(), axis, area);
-            const double above = double(contact.force) * shareAboveThreshold(tick, contact);
-            const double of_contact = burr.friction * speed * above * tick.milled_dt;
+            const double cutting = double(contact.force) * speed * cuttingShare(n);
+            const double of_contact = burr.friction * cutting * tick.milled_dt;
             energy += of_contact;
+            all_cutting += cutting;
             const PatchId patch = tick.candidates->patch[contact.candidate];
             if (turns_ > 1 && patch.leaf != leaf)
                 is_its_turn = leaf_turns_.turnOf(patch.leaf, turns_) == turn_;
@@ -212,6 +223,8 @@ class EnergyRemoval final : public HapticEffect {
             shift_.add(bone, patch, of_contact * double(turns_), double(contact.depth));
         }
         removal_power_ = energy / tick.milled_dt;
+        const double all = tick.burr_load.moment * std::abs(tick.spin_speed);
+        tick.cut_share = rubs_ && all > 0 ? std::min(1.0, all_cutting / all) : 1;
         return energy;
     }
     // The number of groups changes only when each has had its turn.
@@ -250,6 +263,9 @@ class EnergyRemoval final : public HapticEffect {
     Eigen::Array3d inverse_spacing_;
     Eigen::Vector3i last_cell_ = Eigen::Vector3i::Constant(INT_MIN);  // and what it takes, J/m³
     double last_energy_ = 0;
+    bool rubs_ = false;               // this burr does, too
+    std::vector<float> rubbing_;      // p_e, Pa: of candidates on the burr
+    std::vector<uint8_t> region_of_;  // of contacts on the burr
     std::array<Region, size_t(kRegionsPerAxis* kRegionsPerAxis* kRegionsPerAxis)> regions_{};
     SurfaceShift shift_;
     size_t most_contacts_;

@@ -1,6 +1,6 @@
 // A motor turns the burr: it runs up when the pedal goes down and brakes when it comes up, droops under load
 // and stalls when that is too much:
-//   J dΩ/dt = clamp(k (Ω₀ − Ω), ±T) − M sgn(Ω) − c Ω,   M = μ_c Σ F ρ over contacts (burr_speed.h),
+//   J dΩ/dt = clamp(k (Ω₀ − Ω), ±T) − M sgn(Ω) − c Ω,   M = μ Σ F ρ over contacts (burr_speed.h),
 // in one implicit Euler step a tick: k may be as stiff as one likes. M is dry friction, from the last tick's
 // contacts: it stops the burr, at exactly 0, and never drives it. A burr that stands under load takes
 // as much of M as the motor gives. Sets EffectTick::spin_speed and axis_load.
@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptic_server/core/effects/burr_speed.h"
 #include "haptic_server/core/effects/effect_configs.h"
 #include "haptic_server/core/effects/haptic_effect.h"
 
@@ -35,9 +36,8 @@ class Spindle final : public HapticEffect {
         stands_for_ = 0;
     }
     void begin(EffectTick& tick) noexcept override {
-        const Burr& burr = tick.tool->burr;
-        const double wanted = tick.is_pedal_down ? burr.speed : 0;
-        const double load = burr.friction * tick.burr_load.moment;
+        const double wanted = tick.is_pedal_down ? tick.tool->burr.speed : 0;
+        const double load = frictionOf(tick) * tick.burr_load.moment;
         speed_ = config_.speedAfter(speed_, wanted, load, tick.dt);
         held_ = speed_ == 0 ? std::clamp(motorTorque(config_, wanted, 0), -load, load)
                             : std::copysign(load, speed_);

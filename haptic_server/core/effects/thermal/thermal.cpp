@@ -1,6 +1,7 @@
-// Cutting heats the bone: a share of the friction power μ_c |Ω| Σ F ρ of the burr's contacts goes into the
-// bone where they touch, spreads (heat_grid.h), and leaves it to irrigation while the pedal is down, to the
-// dry surroundings and to the blood. The rest of the power goes with the chips.
+// Cutting heats the bone: shares of the friction power |Ω| Σ μ F ρ of the burr's contacts, one of what cuts
+// and one of what only rubs, go into the bone where they touch, spread (heat_grid.h), and leave it to
+// irrigation while the pedal is down, to the dry surroundings and to the blood. The rest of the power goes
+// with chips and burr.
 #include <cmath>
 
 #include "haptic_server/core/effects/burr_speed.h"
@@ -38,8 +39,14 @@ class Thermal final : public HapticEffect {
     }
 
   private:
+    // Of μ, with the share of each mechanism that goes into the bone.
+    double heatPerMoment(const EffectTick& tick) const noexcept {
+        const Burr& burr = tick.tool->burr;
+        return tick.cut_share * config_.heat_share * burr.friction +
+               (1 - tick.cut_share) * config_.rubbing_heat_share * burr.rubbing_friction;
+    }
     void putIn(const EffectTick& tick) noexcept {
-        const double per_moment = tick.tool->burr.friction * std::abs(tick.spin_speed);  // W per N·m
+        const double per_moment = heatPerMoment(tick) * std::abs(tick.spin_speed);  // W per N·m
         if (per_moment == 0) return;
         size_t count = 0;
         double chosen = 0;
@@ -50,8 +57,7 @@ class Thermal final : public HapticEffect {
             if (isChosen(count++)) chosen += double(contact.force) * rho;
         });
         if (chosen == 0) return;
-        const double heat_per_moment =
-            config_.heat_share * per_moment * tick.dt * (tick.burr_load.moment / chosen);
+        const double heat_per_moment = per_moment * tick.dt * (tick.burr_load.moment / chosen);
         count = 0;
         forEachBurrContact(tick, [&](const SurfaceContact& contact, const Eigen::Vector3d& r, double rho) {
             if (!isChosen(count++)) return;

@@ -40,6 +40,7 @@ struct ThermalConfig {
         using C = ThermalConfig;
         return std::to_array<EffectParameter<C>>({
             {"heat_share", [](C& c, double v) { c.heat_share = v; }},
+            {"rubbing_heat_share", [](C& c, double v) { c.rubbing_heat_share = v; }},
             {"irrigation_radius_mm", [](C& c, double v) { c.irrigation_radius = v * kMillimetre; }},
             {"cell_mm", [](C& c, double v) { c.heat.cell = v * kMillimetre; }},
             {"conductivity_w_per_m_k", [](C& c, double v) { c.heat.conductivity = v; }},
@@ -56,8 +57,9 @@ struct ThermalConfig {
     }
     std::unique_ptr<HapticEffect> make(const EffectNeeds& needs) const;
 
-    double heat_share;         // of the cutting power
-    double irrigation_radius;  // m
+    double heat_share;          // of the power that cuts
+    double rubbing_heat_share;  // of the power that rubs
+    double irrigation_radius;   // m
     HeatConfig heat;
 };
 

@@ -63,6 +63,10 @@ TEST(SceneEffects, EnergyOfBoneRisesWithItsDensityUnlessTheSceneSaysOtherwise) {
     EXPECT_EQ(removal.reference_density, test::kEnergyRemoval.reference_density);
     EXPECT_EQ(removal.density_exponent, 1.5);
     EXPECT_EQ(removal.diamond_energy_factor, test::kEnergyRemoval.diamond_energy_factor);
+    EXPECT_EQ(removal.drill_energy_factor, test::kEnergyRemoval.drill_energy_factor);
+    EXPECT_DOUBLE_EQ(removal.diamond_edge, test::kEnergyRemoval.diamond_edge);
+    EXPECT_DOUBLE_EQ(removal.fluted_edge, test::kEnergyRemoval.fluted_edge);
+    EXPECT_DOUBLE_EQ(removal.drill_edge, test::kEnergyRemoval.drill_edge);
 }
 
 TEST(SceneEffects, EnergiesThatNoBoneHasAreRefused) {

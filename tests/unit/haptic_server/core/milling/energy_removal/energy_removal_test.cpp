@@ -118,30 +118,67 @@ TEST(EnergyRemoval, DoesNotDependOnTheVoxels) {
 
 // u = 0.3 J/mm³, μ_c = 0.5, v_c = 10 m/s and 6 mm² fed at 10 mm/s make 3.6 N, 60 mm³/s, 18 W and 2.9
 // mN·m. The side of a cylinder has one speed all over. On a wall of 2 x 3 mm it is bent, but ∫ p dA = v/c
-// ∫ cos θ dA.
+// ∫ cos θ dA. What its edges carry, p_e all over the bent area, comes on top of force, power and torque:
+// the energy per volume is u + u_1/h.
 TEST(EnergyRemoval, MeetsTheCheckValue) {
-    RigConfig config;
-    config.size = {5e-3, 5e-3, 3e-3};
-    config.wall = {3e-3, 2e-3};
-    config.rotation = kAlongX;
-    config.burr = {.kind = BurrKind::kCylinder, .radius = 1.61e-3, .length = 4e-3, .friction = 0.5};
-    config.burr.speed = 10 / config.burr.radius;
-    config.removal.specific_energy = 0.3e9;
-    config.hand_stiffness = kLeading;
-    MillingRig rig(config);
-    constexpr double kRunIn = 0.1, kTime = 0.05;
-    const Vector3d velocity(0, 0, -10e-3);
-    rig.feed(kRunIn, onTop(rig), velocity);
-    const double before = rig.removedVolume();
-    rig.feed(kTime, onTop(rig) + kRunIn * velocity, velocity);
-    const double force = rig.mean(kTime, [](const TickRecord& r) { return r.effects.burr_force; });
-    const double power = rig.mean(kTime, [](const TickRecord& r) { return r.effects.removal_power; });
-    const double friction = rig.mean(kTime, [](const TickRecord& r) { return r.effects.cutting_power; });
-    EXPECT_NEAR(force, 3.6, 0.02 * 3.6);
-    EXPECT_NEAR(power, 18, 0.02 * 18);
-    EXPECT_NEAR(friction, power, 1e-4 * power);
-    EXPECT_NEAR((rig.removedVolume() - before) / kTime, 60e-9, 0.02 * 60e-9);
-    EXPECT_NEAR(friction / config.burr.speed, 2.9e-3, 0.02 * 2.9e-3);
+    struct Case {
+        double edge, feed;  // N/m, m/s
+    };
+    for (const Case& c : {Case{0, 10e-3}, Case{3e3, 10e-3}, Case{3e3, 4e-3}, Case{1e4, 16e-3}}) {
+        RigConfig config;
+        config.size = {5e-3, 5e-3, 3e-3};
+        config.wall = {3e-3, 2e-3};
+        config.rotation = kAlongX;
+        config.burr = {.kind = BurrKind::kCylinder, .radius = 1.61e-3, .length = 4e-3, .friction = 0.5};
+        config.burr.speed = 10 / config.burr.radius;
+        config.removal.specific_energy = 0.3e9;
+        config.removal.fluted_edge = c.edge;
+        config.hand_stiffness = kLeading;
+        MillingRig rig(config);
+        const double kRunIn = 1e-3 / c.feed, kTime = 0.05;
+        const Vector3d velocity(0, 0, -c.feed);
+        rig.feed(kRunIn, onTop(rig), velocity);
+        const double before = rig.removedVolume();
+        rig.feed(kTime, onTop(rig) + kRunIn * velocity, velocity);
+        const double force = rig.mean(kTime, [](const TickRecord& r) { return r.effects.burr_force; });
+        const double power = rig.mean(kTime, [](const TickRecord& r) { return r.effects.removal_power; });
+        const double friction = rig.mean(kTime, [](const TickRecord& r) { return r.effects.cutting_power; });
+        const double times = c.feed / 10e-3, bent = 6e-6 * 1.61 * std::asin(1 / 1.61);
+        const double rubbing = c.edge / (2 * M_PI * config.burr.radius) * bent;
+        const double all = 18 * times + config.burr.rubbing_friction * rubbing * 10;
+        EXPECT_NEAR(force / (3.6 * times + rubbing), 1, 0.02) << c.edge << ' ' << c.feed;
+        EXPECT_NEAR(power / (18 * times), 1, 0.02) << c.edge << ' ' << c.feed;
+        EXPECT_NEAR(friction / all, 1, 0.02) << c.edge << ' ' << c.feed;
+        EXPECT_NEAR((rig.removedVolume() - before) / kTime / (60e-9 * times), 1, 0.02) << c.edge;
+        if (c.edge == 0) EXPECT_NEAR(friction, power, 1e-4 * power);
+    }
+}
+
+// The flat end of a drill, f deep per turn: thrust R (E + f u/μ_c), torque R² (μ_e E + f u)/2, whatever the
+// speed.
+TEST(EnergyRemoval, ADrillHasTheThrustAndTorqueOfItsFeedPerTurn) {
+    for (const double feed : {1e-3, 4e-3}) {
+        RigConfig config;
+        config.rotation = kUpright;
+        config.burr = {.kind = BurrKind::kCylinder, .grit = BurrGrit::kDrill, .radius = 1e-3, .length = 4e-3};
+        config.burr.speed = 2 * kKrpm;
+        config.removal = test::kEnergyRemoval;
+        config.hand_stiffness = 1e6;
+        MillingRig rig(config);
+        const Vector3d on_top = onTop(rig) + Vector3d(0, 0, config.burr.length / 2 - config.burr.radius);
+        rig.feed(0.6e-3 / feed, on_top, feed * kDown);
+        const double time = 0.2e-3 / feed, per_turn = 2 * M_PI * feed / config.burr.speed;
+        const double u = config.removal.drill_energy_factor * config.removal.specific_energy;
+        const double thrust = 1e-3 * (config.removal.drill_edge + per_turn * u / config.burr.friction);
+        const double torque =
+            0.5e-6 * (config.burr.rubbing_friction * config.removal.drill_edge + per_turn * u);
+        const auto mean = [&](auto&& figure) { return rig.mean(time, figure); };
+        EXPECT_NEAR(mean([](const TickRecord& r) { return r.f_hand_W[2]; }) / thrust, 1, 0.05) << feed;
+        EXPECT_NEAR(
+            mean([](const TickRecord& r) { return r.effects.cutting_power; }) / config.burr.speed / torque, 1,
+            0.1)
+            << feed;
+    }
 }
 
 // A ball fed along its own axis has p = v cos θ u / (μ Ω ρ), so that ∫ p dA = 2 π ρ_rim v u / (μ Ω).
@@ -307,6 +344,21 @@ TEST(EnergyRemoval, KnowsHardBoneFromSoft) {
         return (rig.records[n].p_WT[2] - rig.records[n + 10].p_WT[2]) / 10e-3;
     };
     EXPECT_LT(speedAt(0.65e-3), 0.6 * speedAt(0.4e-3));
+}
+
+// Edges carry more in proportion in harder bone: a hand that cuts the soft only rubs on the hard below.
+TEST(EnergyRemoval, StopsOnBoneHardEnoughToCarryItsEdges) {
+    RigConfig config = sideways();
+    config.is_hard_below = 0.3e-3;
+    config.removal.fluted_edge = 2e3;
+    MillingRig rig(config);
+    rig.press(0.3, onTop(rig), kDown, 1);
+    const double depth = rig.center().z() + config.burr.radius - rig.position().z();
+    EXPECT_GT(depth, 0.28e-3);
+    EXPECT_LT(depth, 0.4e-3);
+    const double before = rig.removedVolume();
+    rig.press(0.1, rig.position(), kDown, 1);
+    EXPECT_LT(rig.removedVolume() - before, 2e-12);
 }
 
 // The burr is pushed faster than the surface may move in a tick, and through a thin wall: all stays finite,
