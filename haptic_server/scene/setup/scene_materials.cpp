@@ -9,6 +9,7 @@
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/config/field_unit.h"
+#include "common/config/scene_geometry.h"
 #include "common/config/scene_tools.h"
 #include "haptic_server/assessment/measures/meters.h"
 #include "haptic_server/core/effects/effect_figures.h"
@@ -130,6 +131,9 @@ Burr burrOf(const scene::Tool& tool) {
 
 EffectConfigs effectConfigsOf(const scene::Scene& scene) {
     EffectConfigs configs = configsOf(scene.effects());
+    const scene::Irrigation& irrigation = scene.effects().irrigation();
+    if (configs.thermal && irrigation.has_nozzle_mm())
+        configs.thermal->p_TN = metresOf(irrigation.nozzle_mm());
     configs.materials = materialTableOf(scene);
     if (std::ranges::any_of(configs.materials, [](const auto& m) { return m.stiffness_factor != 1; }))
         configs.material_stiffness.emplace();

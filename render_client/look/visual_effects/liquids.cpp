@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/base/units.h"
+#include "common/geometry/coolant_nozzle.h"
 #include "render_client/look/visual_effects/bone_surface.h"
 
 namespace bonemill {
@@ -126,7 +127,7 @@ Eigen::Vector3d Irrigation::nozzle_T() const {
     if (wish_.has_nozzle_mm())
         return kMillimetre *
                Eigen::Vector3d(wish_.nozzle_mm().x(), wish_.nozzle_mm().y(), wish_.nozzle_mm().z());
-    return input_.burr_radius * Eigen::Vector3d(2.2, 7, 0);
+    return usualNozzle(input_.burr_radius);
 }
 
 void Irrigation::pour(double dt) {

@@ -215,9 +215,22 @@ void HeatGrid::reviewDead() noexcept {
     }
 }
 
-void HeatGrid::irrigate(const Eigen::Vector3d& center_V, double radius) noexcept {
+void HeatGrid::irrigate(const Eigen::Vector3d& center_V, double radius,
+                        const Eigen::Vector3d& p_VN) noexcept {
     wet_center_V_ = center_V;
     wet_radius_ = radius;
+    p_VN_ = p_VN;
+}
+
+// Nothing stands between the cube in whose middle p_V lies and the nozzle. The cubes around are the surface
+// itself.
+bool HeatGrid::isReached(const Eigen::Vector3d& p_V) const noexcept {
+    constexpr double kFirst = 1.5;  // cubes
+    const Eigen::Vector3d way = p_VN_ - p_V;
+    const double cubes = way.norm() / config_.cell;
+    for (double n = kFirst; n < cubes; ++n)
+        if (isBone(cellAt(p_V + n / cubes * way))) return false;
+    return true;
 }
 
 void HeatGrid::step(bool has_time) noexcept {
@@ -298,17 +311,18 @@ void HeatGrid::cool(Brick& brick, double elapsed) noexcept {
     }
     const float wet_excess = float(config_.irrigation_temperature - config_.body_temperature);
     const float left_by_blood = float(pinned::exp(-config_.perfusion * elapsed));
-    const Eigen::Vector3d first =
-        (brick.index * kEdge).cast<double>() * config_.cell - bone_.spacing() / 2 - wet_center_V_;
+    const Eigen::Vector3d first = (brick.index * kEdge).cast<double>() * config_.cell - bone_.spacing() / 2;
+    brick.turn = uint8_t((brick.turn + 1) % kTurnsPerLook);
     float& hottest = hottestOf(brick) = brick.coldest = 0;
     for (int n = 0; n < kCells; ++n) {
         if (!brick.is_bone[n]) continue;
         float& excess = brick.excess[n];
         if (const uint8_t faces = brick.open_faces[n]; faces > 0) {
             const Eigen::Array3d cell(n & (kEdge - 1), n >> kShift & (kEdge - 1), n >> (2 * kShift));
-            const Eigen::Vector3d from_center = first + ((cell + 0.5) * config_.cell).matrix();
-            const bool is_wet = from_center.squaredNorm() < wet_radius_ * wet_radius_;
-            if (is_wet)
+            const Eigen::Vector3d p_V = first + ((cell + 0.5) * config_.cell).matrix();
+            const bool is_near = (p_V - wet_center_V_).squaredNorm() < wet_radius_ * wet_radius_;
+            if (is_near && n % kTurnsPerLook == brick.turn) brick.is_reached[n] = isReached(p_V);
+            if (is_near && brick.is_reached[n])
                 excess = wet_excess + (excess - wet_excess) * wet[faces];
             else
                 excess *= dry[faces];

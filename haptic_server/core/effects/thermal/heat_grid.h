@@ -30,8 +30,9 @@ class HeatGrid {
     void noteChangeEverywhere() noexcept;
     // All bone is as warm as the body again, and none is dead. Time and irrigation go on.
     void forget() noexcept;
-    // From now on the bone's surface is irrigated within `radius` (m) of here; 0 means nowhere.
-    void irrigate(const Eigen::Vector3d& center_V, double radius) noexcept;
+    // From now on the bone's surface is irrigated within `radius` (m) of here where no bone stands between it
+    // and the nozzle; 0 means nowhere. A place that comes into the jet is wet within kTurnsPerLook turns.
+    void irrigate(const Eigen::Vector3d& center_V, double radius, const Eigen::Vector3d& p_VN) noexcept;
     // Time goes on by dt. Bricks take their turns, or they wait for the next step.
     void step(bool has_time = true) noexcept;
 
@@ -48,6 +49,7 @@ class HeatGrid {
     static constexpr int kShift = 3, kEdge = 1 << kShift, kCells = kEdge * kEdge * kEdge;
     static constexpr uint32_t kNone = ~uint32_t(0);
     static constexpr int kOutside = -1;
+    static constexpr int kTurnsPerLook = 4;
 
     struct Brick {
         Eigen::Vector3i index = Eigen::Vector3i::Zero();
@@ -58,6 +60,8 @@ class HeatGrid {
         float hot_time[kCells];    // s above necrosis without a break
         uint8_t is_bone[kCells];
         uint8_t open_faces[kCells];  // of bone, towards air
+        uint8_t is_reached[kCells];  // by the jet, when it was looked at last
+        uint8_t turn;                // which of kTurnsPerLook it is
     };
 
     size_t directoryIndex(const Eigen::Vector3i& brick) const noexcept { return placeIn(bricks_, brick); }
@@ -71,6 +75,7 @@ class HeatGrid {
     Eigen::Vector3i cellAt(const Eigen::Vector3d& p_V) const noexcept;
     int voxelAt(int cell, int axis) const noexcept;
     bool isBone(const Eigen::Vector3i& cell) const noexcept;
+    bool isReached(const Eigen::Vector3d& p_V) const noexcept;
     Brick* find(const Eigen::Vector3i& brick) noexcept;
     Brick* findOrOpen(const Eigen::Vector3i& brick) noexcept;
     bool putInto(const Eigen::Vector3i& cell, double heat) noexcept;
@@ -104,7 +109,7 @@ class HeatGrid {
     double turns_due_ = 0;
     size_t next_ = 0;     // of active_
     size_t lookups_ = 0;  // left in this step
-    Eigen::Vector3d wet_center_V_ = Eigen::Vector3d::Zero();
+    Eigen::Vector3d wet_center_V_ = Eigen::Vector3d::Zero(), p_VN_ = Eigen::Vector3d::Zero();
     double wet_radius_ = 0;
 
     std::vector<Brick> pool_;

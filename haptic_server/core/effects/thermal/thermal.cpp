@@ -4,6 +4,7 @@
 // with chips and burr.
 #include <cmath>
 
+#include "common/geometry/coolant_nozzle.h"
 #include "haptic_server/core/effects/burr_speed.h"
 #include "haptic_server/core/effects/effect_configs.h"
 #include "haptic_server/core/effects/effect_host.h"
@@ -29,7 +30,9 @@ class Thermal final : public HapticEffect {
     }
     void finish(EffectTick& tick) noexcept override {
         putIn(tick);
-        heat_.irrigate(tick.X_VT.position, tick.is_pedal_down ? config_.irrigation_radius : 0);
+        const Eigen::Vector3d p_TN = config_.p_TN.value_or(usualNozzle(tick.tool->burr.radius));
+        heat_.irrigate(tick.X_VT.position, tick.is_pedal_down ? config_.irrigation_radius : 0,
+                       tick.X_VT * p_TN);
         heat_.step(tick.has_time);
         EffectRecord& record = tick.record;
         const double hottest = heat_.hottest();

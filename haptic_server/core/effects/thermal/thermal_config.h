@@ -1,6 +1,9 @@
 // Heat of cutting in the bone, as a scene asks for it and as ticks tell of it (thermal.cpp).
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
+
 #include "haptic_server/core/effects/effect_declaration.h"
 
 namespace bonemill {
@@ -57,9 +60,10 @@ struct ThermalConfig {
     }
     std::unique_ptr<HapticEffect> make(const EffectNeeds& needs) const;
 
-    double heat_share;          // of the power that cuts
-    double rubbing_heat_share;  // of the power that rubs
-    double irrigation_radius;   // m
+    double heat_share;                      // of the power that cuts
+    double rubbing_heat_share;              // of the power that rubs
+    double irrigation_radius;               // m
+    std::optional<Eigen::Vector3d> p_TN{};  // m: of the nozzle; nothing: usualNozzle()
     HeatConfig heat;
 };
 

@@ -127,7 +127,7 @@ TEST(HeatGrid, TheResultDoesNotDependOnTheTickRate) {
     for (const double dt : {4e-3, 1e-3, 0.25e-3}) {
         HeatConfig config = test::kHeat;
         HeatGrid heat(config, bone, dt);
-        heat.irrigate(cubeAt(20, 20, 39), 5e-3);
+        heat.irrigate(cubeAt(20, 20, 39), 5e-3, cubeAt(20, 20, 60));
         for (int n = 0; n < int(std::lround(2 / dt)); ++n) {
             heat.addHeat(cubeAt(20, 20, 39), -kUp, 0.3 * dt);
             heat.step();
@@ -159,17 +159,43 @@ TEST(HeatGrid, IrrigatedPlateCoolsTowardsTheWater) {
     for (int i = 0; i < 16; ++i)
         for (int j = 0; j < 16; ++j)
             heat.addHeat(cubeAt(i, j, 0), -kUp, 10 * config.heat_capacity * std::pow(kSpacing, 3));
-    heat.irrigate(cubeAt(8, 8, 0), 1);
+    heat.irrigate(cubeAt(8, 8, 0), 1, cubeAt(8, 8, 20));
     constexpr double kSeconds = 3;
     run(heat, kSeconds);
     const double transfer = 1 / (1 / config.wet_transfer + kSpacing / 2 / config.conductivity);
     const double rate = 2 * transfer / (config.heat_capacity * kSpacing);
     // The middle of the plate is compared: its rim has more surface.
     EXPECT_NEAR(heat.temperatureAt(cubeAt(8, 8, 0)), 30 + 17 * std::exp(-rate * kSeconds), 0.1);
-    heat.irrigate(cubeAt(8, 8, 0), 0);
+    heat.irrigate(cubeAt(8, 8, 0), 0, cubeAt(8, 8, 20));
     const double before = heat.temperatureAt(cubeAt(8, 8, 0));
     run(heat, 1);
     EXPECT_NEAR(heat.temperatureAt(cubeAt(8, 8, 0)), before, 0.05);
+}
+
+// The water comes from above, aslant: the open face gets it, the bottom of a deep slot and the far side do
+// not.
+TEST(HeatGrid, CoolantWetsOnlyWhatItReaches) {
+    VoxelVolume bone = boneOf({40, 40, 20});
+    for (int j = 0; j < 40; ++j)
+        for (int k = 8; k < 20; ++k) bone.set(20, j, k, 0);
+    HeatConfig config = insulated();
+    config.wet_transfer = 3000;
+    HeatGrid heat(config, bone, kDt);
+    const Vector3d places[] = {cubeAt(10, 20, 19), cubeAt(20, 20, 7), cubeAt(20, 20, 0)};
+    const Vector3d inward[] = {-kUp, -kUp, kUp};
+    for (int n = 0; n < 3; ++n) heat.addHeat(places[n], inward[n], 2e-3);
+    double before[3], after[3];
+    for (int n = 0; n < 3; ++n) before[n] = heat.temperatureAt(places[n]);
+    heat.irrigate(cubeAt(20, 20, 10), 20e-3, cubeAt(0, 20, 40));
+    run(heat, 0.3);
+    for (int n = 0; n < 3; ++n) after[n] = heat.temperatureAt(places[n]);
+    EXPECT_GT(before[0], 40);
+    EXPECT_LT(after[0], 35);
+    EXPECT_GT(after[1], kBody + 0.5);
+    EXPECT_GT(after[2], kBody + 0.5);
+    heat.irrigate(cubeAt(20, 20, 10), 20e-3, cubeAt(20, 20, 40));
+    run(heat, 1);
+    EXPECT_LT(heat.temperatureAt(places[1]), 35);
 }
 
 TEST(HeatGrid, WhatIsCutAwayIsNeitherHotNorDeadBone) {
