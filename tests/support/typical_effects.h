@@ -15,7 +15,7 @@ inline constexpr EnergyRemovalConfig kEnergyRemoval{.specific_energy = 0.4e9,
                                                     .diamond_energy_factor = 2,
                                                     .drill_energy_factor = 0.25,
                                                     .diamond_edge = 0.3e6,
-                                                    .fluted_edge = 3e3,
+                                                    .fluted_edge = 2e3,
                                                     .drill_edge = 15e3};
 // All force cuts: for the closed forms of what is cut.
 inline constexpr EnergyRemovalConfig kSharpRemoval{.specific_energy = 0.5e9,
@@ -47,7 +47,7 @@ inline constexpr HeatConfig kHeat{.cell = 0.5e-3,
                                   .necrosis_temperature = 47,
                                   .necrosis_time = 0};
 inline constexpr ThermalConfig kThermal{
-    .heat_share = 0.1, .rubbing_heat_share = 0.2, .irrigation_radius = 10e-3, .heat = kHeat};
+    .heat_share = 0.2, .rubbing_heat_share = 0.15, .irrigation_radius = 10e-3, .heat = kHeat};
 inline constexpr ProtectedStructuresConfig kProtectedStructures{.warning_distance = 2e-3};
 
 }  // namespace bonemill::test

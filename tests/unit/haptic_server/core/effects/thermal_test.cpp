@@ -44,16 +44,16 @@ TEST(Thermal, RubbingHasItsOwnShareOfTheHeat) {
     rubbing.config.effects.energy_removal = test::kSharpRemoval;
     rubbing.config.effects.energy_removal->threshold_pressure = 1e9;
     rubbing.config.tool.burr.rubbing_friction = 0.4;
-    rubbing.config.effects.thermal->rubbing_heat_share = 0.3;
+    rubbing.config.effects.thermal->rubbing_heat_share = 0.6;
     rubbing.config.effects.thermal->heat_share = 0;
     const TickRecord cut = cutting.press(kButtonRemove, 300).back();
     const TickRecord rubbed = rubbing.press(kButtonRemove, 300).back();
     EXPECT_EQ(rubbed.effects.removal_power, 0);
-    const double by_cutting = 0.1 * double(cut.effects.cutting_power),
-                 by_rubbing = 0.3 * double(rubbed.effects.cutting_power);
+    const double by_cutting = 0.2 * double(cut.effects.cutting_power),
+                 by_rubbing = 0.6 * double(rubbed.effects.cutting_power);
     EXPECT_NEAR(by_rubbing / by_cutting, 3 * 0.4 / 0.5, 0.05 * 2.4);
     EXPECT_NEAR(double(rubbed.effects.temperature - 37) / double(cut.effects.temperature - 37),
-                by_rubbing / by_cutting, 0.05 * by_rubbing / by_cutting);
+                by_rubbing / by_cutting, 0.1 * by_rubbing / by_cutting);
 }
 
 TEST(Thermal, WithoutThePedalNothingHeats) {
