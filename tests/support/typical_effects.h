@@ -46,8 +46,11 @@ inline constexpr HeatConfig kHeat{.cell = 0.5e-3,
                                   .dry_transfer = 10,
                                   .necrosis_temperature = 47,
                                   .necrosis_time = 0};
-inline constexpr ThermalConfig kThermal{
-    .heat_share = 0.2, .rubbing_heat_share = 0.15, .irrigation_radius = 10e-3, .heat = kHeat};
+inline constexpr ThermalConfig kThermal{.heat_share = 0.2,
+                                        .rubbing_heat_share = 0.15,
+                                        .diamond_rubbing_heat_share = 0.3,
+                                        .irrigation_radius = 10e-3,
+                                        .heat = kHeat};
 inline constexpr ProtectedStructuresConfig kProtectedStructures{.warning_distance = 2e-3};
 
 }  // namespace bonemill::test

@@ -44,6 +44,7 @@ struct ThermalConfig {
         return std::to_array<EffectParameter<C>>({
             {"heat_share", [](C& c, double v) { c.heat_share = v; }},
             {"rubbing_heat_share", [](C& c, double v) { c.rubbing_heat_share = v; }},
+            {"diamond_rubbing_heat_share", [](C& c, double v) { c.diamond_rubbing_heat_share = v; }},
             {"irrigation_radius_mm", [](C& c, double v) { c.irrigation_radius = v * kMillimetre; }},
             {"cell_mm", [](C& c, double v) { c.heat.cell = v * kMillimetre; }},
             {"conductivity_w_per_m_k", [](C& c, double v) { c.heat.conductivity = v; }},
@@ -61,7 +62,8 @@ struct ThermalConfig {
     std::unique_ptr<HapticEffect> make(const EffectNeeds& needs) const;
 
     double heat_share;                      // of the power that cuts
-    double rubbing_heat_share;              // of the power that rubs
+    double rubbing_heat_share;              // of the power that rubs, of steel
+    double diamond_rubbing_heat_share;      // of the power that rubs, of grains
     double irrigation_radius;               // m
     std::optional<Eigen::Vector3d> p_TN{};  // m: of the nozzle; nothing: usualNozzle()
     HeatConfig heat;

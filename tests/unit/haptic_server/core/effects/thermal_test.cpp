@@ -37,23 +37,30 @@ TEST(Thermal, PowerIsFrictionTimesRubbingSpeed) {
     EXPECT_GT(last.effects.temperature, 40);
 }
 
-// What cannot cut heats by its own friction and share.
+// What cannot cut heats by its own friction, and by the share of steel or of grains.
 TEST(Thermal, RubbingHasItsOwnShareOfTheHeat) {
-    HotBench cutting, rubbing;
-    rubbing.config.effects.time_removal.reset();
-    rubbing.config.effects.energy_removal = test::kSharpRemoval;
-    rubbing.config.effects.energy_removal->threshold_pressure = 1e9;
-    rubbing.config.tool.burr.rubbing_friction = 0.4;
-    rubbing.config.effects.thermal->rubbing_heat_share = 0.6;
-    rubbing.config.effects.thermal->heat_share = 0;
+    HotBench cutting;
     const TickRecord cut = cutting.press(kButtonRemove, 300).back();
-    const TickRecord rubbed = rubbing.press(kButtonRemove, 300).back();
-    EXPECT_EQ(rubbed.effects.removal_power, 0);
-    const double by_cutting = 0.2 * double(cut.effects.cutting_power),
-                 by_rubbing = 0.6 * double(rubbed.effects.cutting_power);
-    EXPECT_NEAR(by_rubbing / by_cutting, 3 * 0.4 / 0.5, 0.05 * 2.4);
-    EXPECT_NEAR(double(rubbed.effects.temperature - 37) / double(cut.effects.temperature - 37),
-                by_rubbing / by_cutting, 0.1 * by_rubbing / by_cutting);
+    const double by_cutting = test::kThermal.heat_share * double(cut.effects.cutting_power);
+    for (const BurrGrit grit : {BurrGrit::kFluted, BurrGrit::kDiamond}) {
+        constexpr double kShare = 0.6;
+        HotBench rubbing;
+        rubbing.config.effects.time_removal.reset();
+        rubbing.config.effects.energy_removal = test::kSharpRemoval;
+        rubbing.config.effects.energy_removal->threshold_pressure = 1e9;
+        rubbing.config.tool.burr.grit = grit;
+        rubbing.config.tool.burr.rubbing_friction = 0.4;
+        ThermalConfig& thermal = *rubbing.config.effects.thermal;
+        thermal.heat_share = thermal.rubbing_heat_share = thermal.diamond_rubbing_heat_share = 0;
+        (grit == BurrGrit::kDiamond ? thermal.diamond_rubbing_heat_share : thermal.rubbing_heat_share) =
+            kShare;
+        const TickRecord rubbed = rubbing.press(kButtonRemove, 300).back();
+        EXPECT_EQ(rubbed.effects.removal_power, 0);
+        const double by_rubbing = kShare * double(rubbed.effects.cutting_power);
+        EXPECT_NEAR(by_rubbing / by_cutting, 3 * 0.4 / 0.5, 0.05 * 2.4);
+        EXPECT_NEAR(double(rubbed.effects.temperature - 37) / double(cut.effects.temperature - 37),
+                    by_rubbing / by_cutting, 0.05 * by_rubbing / by_cutting);
+    }
 }
 
 TEST(Thermal, WithoutThePedalNothingHeats) {
