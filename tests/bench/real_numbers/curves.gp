@@ -50,7 +50,7 @@ set title 'Round burr on dry cortex, 1 mm below the cut; 1 N thin, 1.7 N thick'
 set xlabel 'time, s'
 set ylabel '°C'
 set xrange [0:11]
-set yrange [35:55]
+set yrange [35:60]
 set key bottom right
 plot 'published_burr_at_1_mm.dat' using 1:2 with points pt 7 ps 1.6 lc rgb 'black' title '45,000/min, Singh 2015 (force not stated)', \
   'our_burr_1.7_75000.dat' using 1:2 with lines lw 3 lc rgb second title 'simulated, 75,000/min', \

@@ -66,6 +66,9 @@ class EffectIdentity : public testing::TestWithParam<const char*> {
         // It is slow enough to leave something to the others.
         if (scene_.effects().has_time_removal())
             scene_.mutable_effects()->mutable_time_removal()->set_rate_density_per_s(2500);
+        // And sharp enough to get to the other layer.
+        if (scene_.effects().has_energy_removal())
+            scene_.mutable_effects()->mutable_energy_removal()->set_fluted_edge_n_per_mm(0.2);
     }
     Simulation simulationOf(const scene::Scene& scene) const {
         test::writeScene(folder_ / "scene.textproto", scene);

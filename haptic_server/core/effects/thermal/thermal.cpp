@@ -45,10 +45,8 @@ class Thermal final : public HapticEffect {
     // Of μ, with the share of each mechanism that goes into the bone.
     double heatPerMoment(const EffectTick& tick) const noexcept {
         const Burr& burr = tick.tool->burr;
-        const double of_rubbing =
-            burr.grit == BurrGrit::kDiamond ? config_.diamond_rubbing_heat_share : config_.rubbing_heat_share;
         return tick.cut_share * config_.heat_share * burr.friction +
-               (1 - tick.cut_share) * of_rubbing * burr.rubbing_friction;
+               (1 - tick.cut_share) * config_.rubbingShare(burr.grit) * burr.rubbing_friction;
     }
     void putIn(const EffectTick& tick) noexcept {
         const double per_moment = heatPerMoment(tick) * std::abs(tick.spin_speed);  // W per N·m

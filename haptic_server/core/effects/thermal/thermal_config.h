@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "haptic_server/core/effects/effect_declaration.h"
+#include "haptic_server/core/tool/burr.h"
 
 namespace bonemill {
 
@@ -45,6 +46,7 @@ struct ThermalConfig {
             {"heat_share", [](C& c, double v) { c.heat_share = v; }},
             {"rubbing_heat_share", [](C& c, double v) { c.rubbing_heat_share = v; }},
             {"diamond_rubbing_heat_share", [](C& c, double v) { c.diamond_rubbing_heat_share = v; }},
+            {"drill_rubbing_heat_share", [](C& c, double v) { c.drill_rubbing_heat_share = v; }},
             {"irrigation_radius_mm", [](C& c, double v) { c.irrigation_radius = v * kMillimetre; }},
             {"cell_mm", [](C& c, double v) { c.heat.cell = v * kMillimetre; }},
             {"conductivity_w_per_m_k", [](C& c, double v) { c.heat.conductivity = v; }},
@@ -61,9 +63,16 @@ struct ThermalConfig {
     }
     std::unique_ptr<HapticEffect> make(const EffectNeeds& needs) const;
 
+    // Of the power that rubs, what goes into the bone.
+    double rubbingShare(BurrGrit grit) const noexcept {
+        if (grit == BurrGrit::kDiamond) return diamond_rubbing_heat_share;
+        return grit == BurrGrit::kDrill ? drill_rubbing_heat_share : rubbing_heat_share;
+    }
+
     double heat_share;                      // of the power that cuts
-    double rubbing_heat_share;              // of the power that rubs, of steel
-    double diamond_rubbing_heat_share;      // of the power that rubs, of grains
+    double rubbing_heat_share;              // of the power that rubs, of a burr's edges
+    double diamond_rubbing_heat_share;      // of grains
+    double drill_rubbing_heat_share;        // of a drill in its hole
     double irrigation_radius;               // m
     std::optional<Eigen::Vector3d> p_TN{};  // m: of the nozzle; nothing: usualNozzle()
     HeatConfig heat;

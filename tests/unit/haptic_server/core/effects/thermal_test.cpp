@@ -37,12 +37,12 @@ TEST(Thermal, PowerIsFrictionTimesRubbingSpeed) {
     EXPECT_GT(last.effects.temperature, 40);
 }
 
-// What cannot cut heats by its own friction, and by the share of steel or of grains.
+// What cannot cut heats by its own friction, and by the share of a burr's edges, of grains or of a drill.
 TEST(Thermal, RubbingHasItsOwnShareOfTheHeat) {
     HotBench cutting;
     const TickRecord cut = cutting.press(kButtonRemove, 300).back();
     const double by_cutting = test::kThermal.heat_share * double(cut.effects.cutting_power);
-    for (const BurrGrit grit : {BurrGrit::kFluted, BurrGrit::kDiamond}) {
+    for (const BurrGrit grit : {BurrGrit::kFluted, BurrGrit::kDiamond, BurrGrit::kDrill}) {
         constexpr double kShare = 0.6;
         HotBench rubbing;
         rubbing.config.effects.time_removal.reset();
@@ -51,9 +51,10 @@ TEST(Thermal, RubbingHasItsOwnShareOfTheHeat) {
         rubbing.config.tool.burr.grit = grit;
         rubbing.config.tool.burr.rubbing_friction = 0.4;
         ThermalConfig& thermal = *rubbing.config.effects.thermal;
-        thermal.heat_share = thermal.rubbing_heat_share = thermal.diamond_rubbing_heat_share = 0;
-        (grit == BurrGrit::kDiamond ? thermal.diamond_rubbing_heat_share : thermal.rubbing_heat_share) =
-            kShare;
+        thermal.heat_share = 0;
+        thermal.rubbing_heat_share = grit == BurrGrit::kFluted ? kShare : 0;
+        thermal.diamond_rubbing_heat_share = grit == BurrGrit::kDiamond ? kShare : 0;
+        thermal.drill_rubbing_heat_share = grit == BurrGrit::kDrill ? kShare : 0;
         const TickRecord rubbed = rubbing.press(kButtonRemove, 300).back();
         EXPECT_EQ(rubbed.effects.removal_power, 0);
         const double by_rubbing = kShare * double(rubbed.effects.cutting_power);
