@@ -223,12 +223,12 @@ void HeatGrid::irrigate(const Eigen::Vector3d& center_V, double radius,
 }
 
 // Nothing stands between the cube in whose middle p_V lies and the nozzle. The cubes around are the surface
-// itself.
+// itself, and those far from it are taken for air: that bounds the time.
 bool HeatGrid::isReached(const Eigen::Vector3d& p_V) const noexcept {
-    constexpr double kFirst = 1.5;  // cubes
+    constexpr double kFirst = 1.5, kFarthest = 128;  // cubes
     const Eigen::Vector3d way = p_VN_ - p_V;
     const double cubes = way.norm() / config_.cell;
-    for (double n = kFirst; n < cubes; ++n)
+    for (double n = kFirst; n < std::min(cubes, kFarthest); ++n)
         if (isBone(cellAt(p_V + n / cubes * way))) return false;
     return true;
 }
