@@ -115,7 +115,7 @@ void stageBone(const std::string& scene) {
     Mesher(model.volume, model.lattice).pass([&](NodeMesh&& mesh) { triangles += mesh.indices.size() / 3; });
     const double meshed = watch.lap();
     if (bone.surroundings)
-        meshSurroundings(*bone.surroundings, 0, [&](NodeMesh&& mesh) {
+        meshSurroundings(*bone.surroundings, 0, {}, [&](NodeMesh&& mesh) {
             around += mesh.indices.size() / 3;
             return true;
         });

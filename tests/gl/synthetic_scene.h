@@ -40,7 +40,7 @@ inline std::vector<NodeMesh> meshBody(int voxels, double spacing, const Distance
     if (material)
         properties.emplace(volume,
                            [&](const Eigen::Vector3i& v) { return material(spacing * v.cast<double>()); });
-    LeafMesher mesher(volume, lattice, MeshGrid::kMaxStepsPerCell, properties ? &*properties : nullptr);
+    LeafMesher mesher(volume, lattice, MeshGrid::kMaxStepsPerCell, {properties ? &*properties : nullptr});
     mesher.setPaint(paint);
     std::vector<NodeMesh> nodes;
     for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {

@@ -64,7 +64,7 @@ inline BoneProperties stripedProperties(const VoxelVolume& volume) {
 
 inline std::vector<NodeMesh> meshAll(const VoxelVolume& volume, const LeafLattice& lattice,
                                      const BoneProperties* properties = nullptr) {
-    LeafMesher mesher(volume, lattice, MeshGrid::kMaxStepsPerCell, properties);
+    LeafMesher mesher(volume, lattice, MeshGrid::kMaxStepsPerCell, {properties});
     std::vector<NodeMesh> meshes;
     for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
         NodeMesh mesh = mesher.mesh(leaf).value();

@@ -13,10 +13,10 @@
 #include "common/rt/stop_signals.h"
 #include "common/text/foreign_text.h"
 #include "haptic_server/recording/rerun/verify_journal.h"
-#include "haptic_server/scene/setup/scene_materials.h"
 #include "haptic_server/server/publish/other_server.h"
 #include "haptic_server/server/replay/player.h"
 #include "haptic_server/server/session/show_session.h"
+#include "haptic_server/server/session/shown_shades.h"
 #include "haptic_server/surface/mesh/mesher.h"
 
 namespace bonemill {
@@ -125,9 +125,8 @@ class ReplayServer {
     }
 
     void meshUntil(const std::stop_token& stop) {
-        const bool are_wanted = wantsVertexMaterials(shownSceneOf(scene_.scene, simulation_.segment_colors));
-        MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_,
-                          are_wanted ? simulation_.tick.effects.properties.get() : nullptr);
+        ShownBone shown(scene_.scene, simulation_);
+        MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_, shown.look());
         const auto put = [this](NodeGroup&& group) { outbox_.put(std::move(group), monotonicNowNs()); };
         loop(stop, MeshRounds::kPeriod, [&] {
             for (bool is_more = true; is_more && !stop.stop_requested();) {

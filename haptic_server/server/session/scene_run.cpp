@@ -15,10 +15,10 @@
 #include "haptic_server/recording/statistics/bone_files.h"
 #include "haptic_server/scans/nrrd/nrrd_writer.h"
 #include "haptic_server/scene/setup/coupling_text.h"
-#include "haptic_server/scene/setup/scene_materials.h"
 #include "haptic_server/scene/setup/scene_task.h"
 #include "haptic_server/server/session/result_files.h"
 #include "haptic_server/server/session/shown_effects.h"
+#include "haptic_server/server/session/shown_shades.h"
 #include "haptic_server/surface/mesh/mesher.h"
 
 namespace bonemill {
@@ -241,9 +241,8 @@ void SceneRun::publishRound() {
 }
 
 void SceneRun::meshUntil(const std::stop_token& stop) {
-    const bool are_wanted = wantsVertexMaterials(shownSceneOf(loaded_.scene, simulation_.segment_colors));
-    MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_,
-                      are_wanted ? simulation_.tick.effects.properties.get() : nullptr);
+    ShownBone shown(loaded_.scene, simulation_);
+    MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_, shown.look());
     bool has_cut = false;
     const auto put = [&](NodeGroup&& group) {
         has_cut |= group.oldest_cut_ns != 0;

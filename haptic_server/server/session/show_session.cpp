@@ -12,6 +12,7 @@
 #include "common/rt/clock.h"
 #include "haptic_server/core/telemetry/fault_names.h"
 #include "haptic_server/scene/setup/scene_materials.h"
+#include "haptic_server/server/session/shown_shades.h"
 #include "haptic_server/surface/mesh/structure_mesher.h"
 #include "haptic_server/surface/mesh/surroundings_mesher.h"
 
@@ -101,6 +102,7 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
     fillCamera(scene.camera(), info.mutable_camera());
     describeToViewers(shownSceneOf(scene, simulation.segment_colors), info);
     describeZones(scene, info);
+    describeShades(shadesOf(scene, simulation), info);
     info.set_leaf_count(simulation.bone->lattice.leafCount());
     if (simulation.surroundings)  // their nodes are numbered behind those of the bone
         info.set_leaf_count(info.leaf_count() +
@@ -147,7 +149,8 @@ ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const 
       density_source_(*simulation.bone, history, shownProperties(scene, simulation)),
       density_scale_(scaleOf(simulation.mapping)),
       scene_info_(sceneInfo(scene, simulation)),
-      surroundings_(simulation.surroundings, simulation.bone->lattice.leafCount(), outbox) {
+      surroundings_(simulation.surroundings, simulation.bone->lattice.leafCount(),
+                    shadesOf(scene, simulation).scale, outbox) {
     *scene_info_.mutable_densities() = densityGridOf(density_source_, density_scale_);
 }
 

@@ -106,8 +106,12 @@ std::string deviceText(const DeviceCapabilities& capabilities) {
                 "no torque");
 }
 
+int shownZones(const scene::Scene& scene) {
+    return areEverShown(scene.assessment()) ? scene.assessment().zone_size() : 0;
+}
+
 void describeZones(const scene::Scene& scene, topics::SceneInfo& info) {
-    if (!areEverShown(scene.assessment())) return;
+    if (shownZones(scene) == 0) return;
     for (const scene::Task::Zone& zone : scene.assessment().zone()) {
         scene::Material& shown = *info.add_materials();
         shown.set_name(zone.name());

@@ -29,6 +29,7 @@ std::string deviceText(const DeviceCapabilities& capabilities);
 // materials, and vertices their numbers. Adds the zones behind the scene's materials, if viewers may ever see
 // them.
 void describeZones(const scene::Scene& scene, topics::SceneInfo& info);
+int shownZones(const scene::Scene& scene);  // so many it adds
 
 // What is gone of leeway, container, protected and context zones shows, and what is left of targets. None
 // where viewers never see it. `scanned` must outlive it.

@@ -10,10 +10,10 @@
 namespace bonemill {
 namespace {
 
-void feed(const Surroundings& surroundings, uint32_t first_leaf, MeshOutbox& outbox,
+void feed(const Surroundings& surroundings, uint32_t first_leaf, const ShadeScale& shades, MeshOutbox& outbox,
           const std::stop_token& stop) {
     size_t nodes = 0, triangles = 0;
-    meshSurroundings(surroundings, first_leaf, [&](NodeMesh&& mesh) {
+    meshSurroundings(surroundings, first_leaf, shades, [&](NodeMesh&& mesh) {
         ++nodes;
         triangles += mesh.indices.size() / 3;
         NodeGroup group;
@@ -27,14 +27,14 @@ void feed(const Surroundings& surroundings, uint32_t first_leaf, MeshOutbox& out
 }  // namespace
 
 SurroundingsFeed::SurroundingsFeed(const std::shared_ptr<const Surroundings>& surroundings,
-                                   uint32_t first_leaf, MeshOutbox& outbox) {
+                                   uint32_t first_leaf, const ShadeScale& shades, MeshOutbox& outbox) {
     if (!surroundings) {
         is_done_ = true;
         return;
     }
-    thread_ = std::jthread([this, surroundings, first_leaf, &outbox](const std::stop_token& stop) {
+    thread_ = std::jthread([this, surroundings, first_leaf, shades, &outbox](const std::stop_token& stop) {
         try {
-            feed(*surroundings, first_leaf, outbox, stop);
+            feed(*surroundings, first_leaf, shades, outbox, stop);
         } catch (const std::exception& error) {  // it is for people: the session goes on
             spdlog::error("the bone around the region cannot be shown: {}", error.what());
         }

@@ -8,15 +8,16 @@
 
 #include "haptic_server/core/volume/surroundings.h"
 #include "haptic_server/surface/mesh/mesh_outbox.h"
+#include "haptic_server/surface/mesh/scan_shade.h"
 
 namespace bonemill {
 
 class SurroundingsFeed {
   public:
     // Begins at once; there is nothing to do without surroundings (null). Nodes are numbered from first_leaf
-    // on. The outbox must outlive this object, whose end ends the work.
+    // on, in these shades. The outbox must outlive this object, whose end ends the work.
     SurroundingsFeed(const std::shared_ptr<const Surroundings>& surroundings, uint32_t first_leaf,
-                     MeshOutbox& outbox);
+                     const ShadeScale& shades, MeshOutbox& outbox);
 
     // Any thread: all that there is has been put.
     bool isDone() const noexcept { return is_done_; }

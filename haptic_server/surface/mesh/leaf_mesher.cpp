@@ -21,10 +21,10 @@ int stepsToIso(Density low, Density high, Density iso, int steps_per_cell) noexc
 }  // namespace
 
 LeafMesher::LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice, int most_steps_per_cell,
-                       const BoneProperties* properties)
+                       const VertexLook& look)
     : volume_(volume),
       lattice_(lattice),
-      properties_(properties),
+      look_(look),
       grid_(volume, lattice, most_steps_per_cell),
       triangles_(cubeTriangles()),
       crossed_(lattice.leafCells()),
@@ -139,18 +139,22 @@ void LeafMesher::addVertex(const Eigen::Vector3i& local, int axis) {
     const OctahedralNormal packed = encodeNormal(normal);  // of any length
     vertices_.push_back(
         {uint16_t(position.x()), uint16_t(position.y()), uint16_t(position.z()), packed.u, packed.v});
-    if (properties_ || paint_)
-        materials_.push_back(shownAt(density_[low] >= volume_.iso(), voxel, axis, low, normal));
+    if (look_.properties || look_.shade || paint_)
+        materials_.push_back(shownAt(density_[low] >= volume_.iso(), voxel, axis, low, normal, fraction));
 }
 
 uint8_t LeafMesher::shownAt(bool is_low_inside, const Eigen::Vector3i& low_voxel, int axis, size_t low,
-                            const Eigen::Vector3f& normal) const noexcept {
+                            const Eigen::Vector3f& normal, float fraction) const {
     const Eigen::Vector3i high_voxel = low_voxel + Eigen::Vector3i::Unit(axis);
     const Eigen::Vector3i& inside = is_low_inside ? low_voxel : high_voxel;
     if (paint_)
         if (const uint8_t zone = paint_->between(inside, is_low_inside ? high_voxel : low_voxel)) return zone;
-    return properties_ ? materialUnder(inside, is_low_inside ? low : low + stride_[axis], normal)
-                       : kNoMaterial;
+    const MaterialId material = look_.properties
+                                    ? materialUnder(inside, is_low_inside ? low : low + stride_[axis], normal)
+                                    : kNoMaterial;
+    if (!look_.shade || (look_.properties && !look_.shade->scale().stands_for[material])) return material;
+    const Eigen::Vector3f place = low_voxel.cast<float>() + fraction * Eigen::Vector3f::Unit(axis);
+    return look_.shade->under(place.cwiseQuotient(inverse_spacing_), normal);
 }
 
 // The voxels around the edge alone decide it, so that leaves agree. Outside the volume the original
@@ -163,8 +167,8 @@ MaterialId LeafMesher::materialUnder(const Eigen::Vector3i& inside, size_t corne
     const size_t below_corner = size_t(ptrdiff_t(corner) + step.x() + step.y() * ptrdiff_t(stride_[1]) +
                                        step.z() * ptrdiff_t(stride_[2]));
     const bool is_denser_below = density_[below_corner] >= volume_.iso() &&
-                                 properties_->original(below) > properties_->original(inside);
-    return properties_->material(is_denser_below ? below : inside);
+                                 look_.properties->original(below) > look_.properties->original(inside);
+    return look_.properties->material(is_denser_below ? below : inside);
 }
 
 }  // namespace bonemill

@@ -23,19 +23,24 @@
 #include "haptic_server/core/volume/crossed_cells.h"
 #include "haptic_server/core/volume/marching_cubes_table.h"
 #include "haptic_server/surface/mesh/mesh_grid.h"
+#include "haptic_server/surface/mesh/scan_shade.h"
 #include "haptic_server/surface/mesh/zone_paint.h"
 
 namespace bonemill {
+
+// What vertices show; without both they have no material. Both must outlive who uses them.
+struct VertexLook {
+    const BoneProperties* properties = nullptr;
+    ScanShade* shade = nullptr;  // of what bone was where no material says it
+};
 
 // It meshes one leaf after another with reused memory, for one thread at a time. Volume and lattice
 // must outlive it.
 class LeafMesher {
   public:
-    // most_steps_per_cell is as for MeshGrid. Without `properties` (which must outlive it) no vertex
-    // has a material.
+    // most_steps_per_cell is as for MeshGrid.
     LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice,
-               int most_steps_per_cell = MeshGrid::kMaxStepsPerCell,
-               const BoneProperties* properties = nullptr);
+               int most_steps_per_cell = MeshGrid::kMaxStepsPerCell, const VertexLook& look = {});
 
     // From now on vertices show these zones; null: none. It must outlive this object.
     void setPaint(const ZonePaint* paint) noexcept { paint_ = paint; }
@@ -52,7 +57,7 @@ class LeafMesher {
     uint32_t vertexOnEdge(const Eigen::Vector3i& local, int axis);
     void addVertex(const Eigen::Vector3i& local, int axis);
     uint8_t shownAt(bool is_low_inside, const Eigen::Vector3i& low_voxel, int axis, size_t low,
-                    const Eigen::Vector3f& normal) const noexcept;
+                    const Eigen::Vector3f& normal, float fraction) const;
     MaterialId materialUnder(const Eigen::Vector3i& inside, size_t corner,
                              const Eigen::Vector3f& normal) const noexcept;
 
@@ -63,7 +68,7 @@ class LeafMesher {
 
     const VoxelVolume& volume_;
     const LeafLattice& lattice_;
-    const BoneProperties* properties_;
+    VertexLook look_;
     const ZonePaint* paint_ = nullptr;
     MeshGrid grid_;
     const std::array<CubeTriangles, 256>& triangles_;
@@ -75,7 +80,7 @@ class LeafMesher {
     std::vector<Density> density_;  // cells_ + 3 voxels per axis from local (-1, -1, -1) on, x fastest
     std::vector<PackedVertex> vertices_;
     std::vector<uint32_t> indices_;
-    std::vector<uint8_t> materials_;     // per vertex, with properties or zones
+    std::vector<uint8_t> materials_;     // per vertex, with a look or zones
     std::vector<uint32_t> edge_vertex_;  // per corner and axis: vertex on the edge that starts there
 };
 

@@ -22,9 +22,9 @@ namespace bonemill {
 // the version was odd or moved. It is not RT-safe, and one thread calls all members.
 class Mesher {
   public:
-    // All must outlive the mesher. most_steps_per_cell as for MeshGrid, properties as for LeafMesher.
+    // All must outlive the mesher. most_steps_per_cell as for MeshGrid.
     Mesher(const VoxelVolume& volume, const LeafLattice& lattice,
-           int most_steps_per_cell = MeshGrid::kMaxStepsPerCell, const BoneProperties* properties = nullptr);
+           int most_steps_per_cell = MeshGrid::kMaxStepsPerCell, const VertexLook& look = {});
 
     using Sink = std::function<void(NodeMesh&&)>;
     static constexpr uint32_t kAllLeaves = std::numeric_limits<uint32_t>::max();
@@ -72,10 +72,10 @@ class Mesher {
 // It belongs to one normal thread, beside the tick, and is not RT-safe.
 class MeshRounds {
   public:
-    // All must outlive this object; properties as for LeafMesher. The ring holds the ticks' cuts, each pushed
+    // All must outlive this object. The ring holds the ticks' cuts, each pushed
     // after its voxels were written; a cut that finds it full is meshed all the same, only later.
     MeshRounds(const VoxelVolume& volume, const LeafLattice& lattice, SpscRing<Cut>& cuts,
-               const BoneProperties* properties = nullptr);
+               const VertexLook& look = {});
 
     using Sink = std::function<void(NodeGroup&&)>;
 

@@ -26,6 +26,20 @@ void leaveOutInside(NodeMesh& mesh, const Eigen::AlignedBox3d& box) {
     mesh.indices = std::move(kept);
 }
 
+void keepUsed(NodeMesh& mesh) {
+    const size_t count = mesh.vertices.size();
+    std::vector<unsigned int> place(count);
+    const size_t used =
+        meshopt_optimizeVertexFetchRemap(place.data(), mesh.indices.data(), mesh.indices.size(), count);
+    meshopt_remapIndexBuffer(mesh.indices.data(), mesh.indices.data(), mesh.indices.size(), place.data());
+    meshopt_remapVertexBuffer(mesh.vertices.data(), mesh.vertices.data(), count, sizeof(PackedVertex),
+                              place.data());
+    mesh.vertices.resize(used);
+    if (mesh.materials.empty()) return;
+    meshopt_remapVertexBuffer(mesh.materials.data(), mesh.materials.data(), count, 1, place.data());
+    mesh.materials.resize(used);
+}
+
 void simplify(NodeMesh& mesh, double most_moved) {
     std::vector<Eigen::Vector3f> positions;
     for (const PackedVertex& v : mesh.vertices)
@@ -38,11 +52,7 @@ void simplify(NodeMesh& mesh, double most_moved) {
                                   positions.size(), kStride, 0, float(most_moved) / scale,
                                   meshopt_SimplifyLockBorder));
     if (!fewer.empty()) mesh.indices = std::move(fewer);
-    std::vector<PackedVertex> used(mesh.vertices.size());
-    used.resize(meshopt_optimizeVertexFetch(used.data(), mesh.indices.data(), mesh.indices.size(),
-                                            mesh.vertices.data(), mesh.vertices.size(),
-                                            sizeof(PackedVertex)));
-    mesh.vertices = std::move(used);
+    keepUsed(mesh);
 }
 
 }  // namespace
@@ -51,10 +61,13 @@ uint32_t surroundingsLeafCount(const VolumeGeometry& scan) {
     return uint32_t(((scan.dims.array() + 1 + kLeafCells - 1) / kLeafCells).prod());
 }
 
-void meshSurroundings(const Surroundings& surroundings, uint32_t first_leaf, const SurroundingsSink& sink) {
+void meshSurroundings(const Surroundings& surroundings, uint32_t first_leaf, const ShadeScale& shades,
+                      const SurroundingsSink& sink) {
     const VoxelVolume& volume = surroundings.volume;
     const LeafLattice lattice(volume, Eigen::Vector3i::Constant(kLeafCells));
-    LeafMesher mesher(volume, lattice, MeshGrid::kStreamedStepsPerCell);
+    std::optional<ScanShade> shade;
+    if (shades.count > 0) shade.emplace(shades, volume.geometry(), Pose{}, volume.iso(), densitiesOf(volume));
+    LeafMesher mesher(volume, lattice, MeshGrid::kStreamedStepsPerCell, {nullptr, shade ? &*shade : nullptr});
     for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
         if (!lattice.mayHoldSurface(leaf, volume.iso())) continue;
         std::optional<NodeMesh> mesh = mesher.mesh(leaf);

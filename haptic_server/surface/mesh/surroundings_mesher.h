@@ -11,6 +11,7 @@
 
 #include "common/geometry/node_mesh.h"
 #include "haptic_server/core/volume/surroundings.h"
+#include "haptic_server/surface/mesh/scan_shade.h"
 
 namespace bonemill {
 
@@ -19,9 +20,10 @@ inline constexpr double kSurroundingsMoved = 0.15;
 // How many leaf numbers they take at most.
 uint32_t surroundingsLeafCount(const VolumeGeometry& scan);
 
-// The sink gets the meshes (V, m), numbered from first_leaf on; empty ones do not come. False from it ends
-// the work.
+// The sink gets the meshes (V, m), numbered from first_leaf on, in these shades; empty ones do not come.
+// False from it ends the work.
 using SurroundingsSink = std::function<bool(NodeMesh&&)>;
-void meshSurroundings(const Surroundings& surroundings, uint32_t first_leaf, const SurroundingsSink& sink);
+void meshSurroundings(const Surroundings& surroundings, uint32_t first_leaf, const ShadeScale& shades,
+                      const SurroundingsSink& sink);
 
 }  // namespace bonemill

@@ -34,7 +34,7 @@ std::shared_ptr<const Surroundings> balls() {
 TEST(SurroundingsFeed, PutsNodesBehindThoseOfTheBone) {
     MeshOutbox outbox;
     const auto surroundings = balls();
-    const SurroundingsFeed feed(surroundings, kFirstLeaf, outbox);
+    const SurroundingsFeed feed(surroundings, kFirstLeaf, {}, outbox);
     while (!feed.isDone()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     std::set<uint32_t> leaves;
     for (const NodeGroup& group :
@@ -49,7 +49,7 @@ TEST(SurroundingsFeed, PutsNodesBehindThoseOfTheBone) {
 
 TEST(SurroundingsFeed, HasNothingToDoWithoutSurroundings) {
     MeshOutbox outbox;
-    const SurroundingsFeed feed(nullptr, kFirstLeaf, outbox);
+    const SurroundingsFeed feed(nullptr, kFirstLeaf, {}, outbox);
     EXPECT_TRUE(feed.isDone());
     EXPECT_TRUE(outbox.isEmpty());
 }
@@ -58,7 +58,7 @@ TEST(SurroundingsFeed, EndsWithItsOwner) {
     const auto surroundings = balls();
     for (int round = 0; round < 5; ++round) {
         MeshOutbox outbox;
-        const SurroundingsFeed feed(surroundings, kFirstLeaf, outbox);
+        const SurroundingsFeed feed(surroundings, kFirstLeaf, {}, outbox);
         std::this_thread::sleep_for(std::chrono::microseconds(200 * round));
     }
 }

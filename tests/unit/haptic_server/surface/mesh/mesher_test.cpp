@@ -198,7 +198,7 @@ TEST(Mesher, IncrementalEqualsFullAfterRandomEdits) {
          {Eigen::Vector3i(8, 8, 8), Eigen::Vector3i(5, 3, 9), Eigen::Vector3i(1, 1, 1)}) {
         Bone bone({30, 25, 28}, leaf_cells, 4);
         const BoneProperties properties = test::stripedProperties(bone.volume);
-        Mesher mesher(bone.volume, *bone.lattice, MeshGrid::kMaxStepsPerCell, &properties);
+        Mesher mesher(bone.volume, *bone.lattice, MeshGrid::kMaxStepsPerCell, {&properties});
         Model model;
         mesher.pass(model.sink());
         std::uniform_int_distribution<int> density(0, 1);

@@ -32,7 +32,7 @@ Surroundings ballWithoutPole() {
 
 std::vector<NodeMesh> meshed(const Surroundings& surroundings) {
     std::vector<NodeMesh> meshes;
-    meshSurroundings(surroundings, kFirstLeaf, [&](NodeMesh&& mesh) {
+    meshSurroundings(surroundings, kFirstLeaf, {}, [&](NodeMesh&& mesh) {
         meshes.push_back(std::move(mesh));
         return true;
     });
@@ -102,7 +102,7 @@ TEST(SurroundingsMesher, HasNoCracks) {
 TEST(SurroundingsMesher, EndsWhenItIsTold) {
     const Surroundings ball = ballWithoutPole();
     int meshes = 0;
-    meshSurroundings(ball, kFirstLeaf, [&](NodeMesh&&) { return ++meshes < 2; });
+    meshSurroundings(ball, kFirstLeaf, {}, [&](NodeMesh&&) { return ++meshes < 2; });
     EXPECT_EQ(meshes, 2);
 }
 
