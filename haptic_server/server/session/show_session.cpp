@@ -100,9 +100,10 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
     info.set_lacks_patient_axes(simulation.lacks_patient_axes);
     for (const SceneTool& tool : simulation.tools) info.add_tool_names(tool.name);
     fillCamera(scene.camera(), info.mutable_camera());
-    describeToViewers(shownSceneOf(scene, simulation.segment_colors), info);
+    const scene::Scene shown = shownSceneOf(scene, simulation.segment_colors);
+    describeToViewers(shown, info);
     describeZones(scene, info);
-    describeShades(shadesOf(scene, simulation), info);
+    describeShades(shadesOf(shown, simulation.mapping), info);
     info.set_leaf_count(simulation.bone->lattice.leafCount());
     if (simulation.surroundings)  // their nodes are numbered behind those of the bone
         info.set_leaf_count(info.leaf_count() +
@@ -150,7 +151,8 @@ ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const 
       density_scale_(scaleOf(simulation.mapping)),
       scene_info_(sceneInfo(scene, simulation)),
       surroundings_(simulation.surroundings, simulation.bone->lattice.leafCount(),
-                    shadesOf(scene, simulation).scale, outbox) {
+                    shadesOf(shownSceneOf(scene, simulation.segment_colors), simulation.mapping).scale,
+                    outbox) {
     *scene_info_.mutable_densities() = densityGridOf(density_source_, density_scale_);
 }
 

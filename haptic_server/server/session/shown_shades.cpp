@@ -72,16 +72,15 @@ scene::Material shadeAt(const std::vector<Anchor>& anchors, double raw) {
 
 }  // namespace
 
-ShownShades shadesOf(const scene::Scene& scene, const Simulation& simulation) {
-    const scene::Scene shown = shownSceneOf(scene, simulation.segment_colors);
+ShownShades shadesOf(const scene::Scene& shown, const DensityMapping& mapping) {
     const std::vector<const scene::Material*> shaded = shadedOf(shown);
     const std::vector<Anchor> anchors = anchorsOf(shaded);
     ShownShades shades;
-    const int first = scene.material_size() + shownZones(scene) + 1;
+    const int first = shown.material_size() + shownZones(shown) + 1;
     const int count = std::min(kMostShades, kMaxMaterials - first + 1);
     if (shaded.size() < 2 || count < kFewestShades) return shades;
-    const Density low = simulation.mapping.density(anchors.front().raw);
-    const Density high = simulation.mapping.density(anchors.back().raw);
+    const Density low = mapping.density(anchors.front().raw);
+    const Density high = mapping.density(anchors.back().raw);
     if (low >= high) return shades;
     shades.scale = {uint8_t(first), count, low, high, {}};
     shades.scale.stands_for[kNoMaterial] = true;
@@ -97,12 +96,11 @@ void describeShades(const ShownShades& shades, topics::SceneInfo& info) {
     for (const scene::Material& shade : shades.list) *info.add_materials() = shade;
 }
 
-ShownBone::ShownBone(const scene::Scene& scene, const Simulation& simulation)
-    : properties_(wantsVertexMaterials(shownSceneOf(scene, simulation.segment_colors))
-                      ? simulation.tick.effects.properties.get()
-                      : nullptr) {
-    if (!properties_) return;
-    const ShadeScale scale = shadesOf(scene, simulation).scale;
+ShownBone::ShownBone(const scene::Scene& scene, const Simulation& simulation) {
+    const scene::Scene shown = shownSceneOf(scene, simulation.segment_colors);
+    if (!wantsVertexMaterials(shown)) return;
+    properties_ = simulation.tick.effects.properties.get();
+    const ShadeScale scale = shadesOf(shown, simulation.mapping).scale;
     if (scale.count == 0) return;
     const Surroundings* const around = simulation.surroundings.get();
     const VoxelVolume& volume = simulation.bone->volume;

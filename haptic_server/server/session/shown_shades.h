@@ -18,9 +18,9 @@ struct ShownShades {
     std::vector<scene::Material> list;  // of each: the name of its material, and a colour
 };
 
-// None unless two materials with a colour are ranges of values alone, and numbers are left for some shades
-// behind those of materials and zones.
-ShownShades shadesOf(const scene::Scene& scene, const Simulation& simulation);
+// Of a scene as viewers see it (shownSceneOf). None unless two materials with a colour are ranges of values
+// alone, and numbers are left for some shades behind those of materials and zones.
+ShownShades shadesOf(const scene::Scene& shown, const DensityMapping& mapping);
 
 // Adds the shades behind materials and zones.
 void describeShades(const ShownShades& shades, topics::SceneInfo& info);
@@ -32,7 +32,7 @@ class ShownBone {
     VertexLook look() noexcept { return {properties_, shade_ ? &*shade_ : nullptr}; }
 
   private:
-    const BoneProperties* properties_;
+    const BoneProperties* properties_ = nullptr;
     std::optional<ScanShade> shade_;
 };
 

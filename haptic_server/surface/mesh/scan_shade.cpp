@@ -10,7 +10,7 @@ namespace bonemill {
 namespace {
 
 constexpr int kNoBone = 1, kLowest = 2, kHighest = 255;  // of what is remembered
-constexpr float kDepth = 0.5f;                           // scan voxels under the surface
+constexpr float kDepth = 1;                              // scan voxels under the surface
 
 }  // namespace
 
@@ -30,7 +30,7 @@ ScanShade::ScanShade(const ShadeScale& scale, const VolumeGeometry& scan, const 
       density_at_(std::move(density_at)),
       known_(size_t(scan.dims.cast<int64_t>().prod()), 0) {}
 
-// Linear between the voxels around a place half a voxel under the surface; those without bone near them have
+// Linear between the voxels around a place a voxel under the surface; those without bone near them have
 // no say.
 uint8_t ScanShade::under(const Eigen::Vector3f& p_V, const Eigen::Vector3f& normal_V) {
     const Eigen::Vector3f inwards = -(R_SV_ * normal_V).normalized();
@@ -69,7 +69,7 @@ float ScanShade::computedAt(const Eigen::Vector3i& voxel) const {
     forEachIndex(IndexBox{voxel, voxel}.grown(1), [&](const Eigen::Vector3i& v) {
         const Density density = density_at_(v);
         if (density < iso_) return;
-        const double weight = double(density) * density;
+        const double weight = double(density) * density * density;
         sum += weight * density;
         weights += weight;
     });
