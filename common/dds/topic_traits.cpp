@@ -5,15 +5,15 @@
 namespace bonemill::dds {
 namespace {
 
-constexpr dds_duration_t kMaxBlocking = DDS_SECS(1);
+constexpr dds_duration_t kMaxBlocking = DDS_SECS(1), kMaxCommandBlocking = DDS_MSECS(50);
 // It bounds what a flood of commands can take of the server's memory.
 constexpr int kMaxQueuedCommands = 1024;
 // A viewer finds so many tool states when it has drawn: at 100 per second those of a third of a second.
 constexpr int kQueuedToolStates = 32;
 
-Qos reliableQos() {
+Qos reliableQos(dds_duration_t most_blocking = kMaxBlocking) {
     Qos qos = makeQos();
-    dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kMaxBlocking);
+    dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, most_blocking);
     return qos;
 }
 
@@ -48,9 +48,9 @@ Qos streamQos() {
     return qos;
 }
 
-// Beyond what a reader holds the writer waits, at most kMaxBlocking.
+// Beyond what a reader holds the writer waits, but no longer than a window may stand still.
 Qos commandQos() {
-    Qos qos = reliableQos();
+    Qos qos = reliableQos(kMaxCommandBlocking);
     dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, 0);
     dds_qset_resource_limits(qos.get(), kMaxQueuedCommands, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
     return qos;

@@ -46,6 +46,7 @@ struct TopicDescription {
 inline constexpr int kMaxStreamKeys = 1024;
 // The same bound for senders of commands: an honest client repeats a command that gets lost.
 inline constexpr int kMaxCommandKeys = 16384;
+inline constexpr size_t kLongestCommand = 4096;  // bytes of payload; readers drop longer ones
 
 // There is one for each of the samples above.
 template <class Sample>

@@ -50,7 +50,7 @@ BoneProperties threeMaterials(const VoxelVolume& volume) {
 
 double bytesPerTriangle(const VoxelVolume& volume, const LeafLattice& lattice,
                         const BoneProperties& properties) {
-    Mesher mesher(volume, lattice, MeshGrid::kStreamedStepsPerCell, &properties);
+    Mesher mesher(volume, lattice, MeshGrid::kStreamedStepsPerCell, {&properties});
     size_t nodes = 0, triangles = 0, bytes = 0;
     mesher.pass([&](NodeMesh&& mesh) {
         bytes += encodeNodeMesh(mesh, {.epoch = UINT64_MAX, .batch = nodes++}).bytes.size();

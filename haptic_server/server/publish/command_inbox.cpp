@@ -15,12 +15,10 @@ constexpr size_t kMaxProvenSenders = 4096;
 
 // These are far more than a classroom has, and they bound what invented sender ids can take.
 constexpr RoomLimits kSenders{1024, 128};
-// It is many times what any command needs.
-constexpr size_t kLongestPayload = 4096;
 
 bool parse(std::span<const uint8_t> payload, topics::Command& command) {
     const google::protobuf::LogSilencer silencer;  // malformed commands are counted, not logged one by one
-    if (payload.size() > kLongestPayload) return false;
+    if (payload.size() > dds::kLongestCommand) return false;
     return command.ParseFromArray(payload.data(), static_cast<int>(payload.size()));
 }
 

@@ -20,13 +20,11 @@ uint64_t randomGuestSender() {
 }
 
 std::unordered_set<uint32_t> bricksOf(const topics::DensityWish& wish) {
-    constexpr size_t kMax = 16384;
     std::unordered_set<uint32_t> bricks(wish.lacking().begin(), wish.lacking().end());
     uint32_t next = 0;
     for (int i = 0; i + 1 < wish.held_size(); i += 2) {
         next += wish.held(i);
-        for (uint32_t n = 0; n < wish.held(i + 1) && bricks.size() < kMax; ++n) bricks.insert(next + n);
-        next += wish.held(i + 1);
+        for (uint32_t n = 0; n < wish.held(i + 1); ++n) bricks.insert(next++);
     }
     return bricks;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/commands/role_rules.h"
+#include "common/dds/topic_traits.h"
 
 namespace bonemill::gateway {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 constexpr double kLargestNumber = 1e6;
 constexpr double kUnitTolerance = 1e-3;
 constexpr int kMaxWished = 16384;
+constexpr std::chrono::seconds kDeafFor{1};
 
 template <class Field>
 bool areSane(const Field& field, int count) {
@@ -40,9 +42,13 @@ bool isSane(const topics::HandPointer& hand) {
     return std::abs(std::sqrt(square) - 1) < kUnitTolerance;
 }
 
+// What few numbers name is as bounded as what they are.
 bool isSane(const topics::DensityWish& wish) {
-    return wish.lacking_size() <= kMaxWished && wish.held_size() % 2 == 0 && wish.held_size() <= kMaxWished &&
-           wish.revisions_size() % 2 == 0 && wish.revisions_size() <= 2 * kMaxWished;
+    if (wish.held_size() % 2 != 0 || wish.revisions_size() % 2 != 0) return false;
+    uint64_t held = 0;
+    for (int i = 1; i < wish.held_size(); i += 2) held += wish.held(i);
+    return uint64_t(wish.lacking_size()) + held <= kMaxWished && wish.held_size() <= kMaxWished &&
+           wish.revisions_size() <= 2 * kMaxWished;
 }
 
 bool isSane(const Hello& hello) {
@@ -54,7 +60,8 @@ bool isSane(const FromGuest& message) {
         case FromGuest::kHello:
             return isSane(message.hello());
         case FromGuest::kCommand:
-            return message.command().action_case() != topics::Command::ACTION_NOT_SET;
+            return message.command().action_case() != topics::Command::ACTION_NOT_SET &&
+                   message.command().ByteSizeLong() <= dds::kLongestCommand;
         case FromGuest::kAnnounce:
             return isSane(message.announce());
         case FromGuest::kHand:
@@ -96,7 +103,10 @@ void GuestVoice::command(const Speaker& speaker, topics::Command command) {
     command.set_sender(speaker.sender);
     command.set_role(speaker.role);
     command.set_name(speaker.name);
-    if (mouth_) mouth_->commands.write(session_, command.sender(), command.SerializeAsString());
+    const auto now = std::chrono::steady_clock::now();
+    if (!mouth_ || now < deaf_until_) return;
+    if (!mouth_->commands.write(session_, command.sender(), command.SerializeAsString()))
+        deaf_until_ = now + kDeafFor;
 }
 
 void GuestVoice::hand(const Speaker& speaker, topics::HandPointer hand) {

@@ -2,6 +2,7 @@
 // knows them. For one thread.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -30,7 +31,8 @@ class GuestVoice {
     void leave() { mouth_.reset(); }
 
     void announce(const Speaker& speaker, topics::Viewer viewer);
-    // The role must be one that may order it (role_rules.h).
+    // The role must be one that may order it (role_rules.h). A server that does not take commands is not
+    // waited for again and again, while all guests wait: they are dropped for a second.
     void command(const Speaker& speaker, topics::Command command);
     void hand(const Speaker& speaker, topics::HandPointer hand);
     void wish(const Speaker& speaker, topics::DensityWish wish);
@@ -49,6 +51,7 @@ class GuestVoice {
 
     const uint32_t session_;
     std::optional<Mouth> mouth_;
+    std::chrono::steady_clock::time_point deaf_until_;
 };
 
 inline constexpr size_t kMaxFrameBytes = 16 << 10;

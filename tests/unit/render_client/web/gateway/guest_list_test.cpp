@@ -130,6 +130,25 @@ TEST(GuestFrames, OnlyAHelloMayBeLong) {
     EXPECT_FALSE(parseFromGuest("")) << "says nothing";
 }
 
+// Positions that come round again would name the same bricks without end.
+TEST(GuestFrames, FewNumbersNameNoMoreBricksThanMany) {
+    FromGuest message;
+    topics::DensityWish& wish = *message.mutable_wish();
+    wish.add_lacking(1);
+    for (const uint32_t number : {0u, 16383u}) wish.add_held(number);
+    EXPECT_TRUE(parseFromGuest(message.SerializeAsString()));
+    for (const uint32_t number : {uint32_t(-16383), 1u}) wish.add_held(number);
+    EXPECT_FALSE(parseFromGuest(message.SerializeAsString()));
+}
+
+TEST(GuestFrames, ACommandThatTheServerWouldDropIsNone) {
+    FromGuest message;
+    message.mutable_command()->mutable_add_remark()->set_note(std::string(4000, 'n'));
+    EXPECT_TRUE(parseFromGuest(message.SerializeAsString()));
+    message.mutable_command()->mutable_add_remark()->set_note(std::string(4100, 'n'));
+    EXPECT_FALSE(parseFromGuest(message.SerializeAsString()));
+}
+
 TEST(GuestFrames, NumbersAreOnesToComputeWith) {
     FromGuest hand;
     topics::HandPointer& pointer = *hand.mutable_hand();
