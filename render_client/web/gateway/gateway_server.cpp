@@ -1,5 +1,6 @@
 #include "render_client/web/gateway/gateway_server.h"
 
+#include <spdlog/spdlog.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -13,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/user_error.h"
+#include "common/files/file_stamp.h"
 #include "common/tcp/listen.h"
 #include "render_client/web/gateway/gateway.h"
 #include "render_client/web/gateway/gateway_connection.h"
@@ -25,6 +28,7 @@ namespace {
 namespace net = boost::asio;
 
 constexpr std::chrono::milliseconds kStep{5}, kIdleStep{50}, kRound{50};
+constexpr std::chrono::seconds kCertificateRound{1};
 constexpr CrowdBounds kMaxConnections{256, 96, 192};  // that are no guest's
 constexpr size_t kSpareDescriptors = 128;             // for DDS, files and the relay
 constexpr int kMaxAccepted = 32;                      // in one round: others are to be served, too
@@ -59,9 +63,13 @@ struct GatewayServer::Port {
     void adoptRelayed();
     bool findPlaceFor(const GuestOrigin& comer);
     void forgetEnded();
+    void rereadCertificate(Gateway::Clock::time_point now);
     void step();
 
-    const GatewayCertificate certificate;
+    const std::vector<std::string> other_names;
+    GatewayCertificate certificate;
+    std::string certificate_stamp;
+    Gateway::Clock::time_point certificate_due{};
     StaticPages pages;
     HostNames names;
     net::ssl::context tls;
@@ -78,9 +86,10 @@ struct GatewayServer::Port {
 };
 
 GatewayServer::Port::Port(const GatewayOptions& options, Descriptor listening)
-    : certificate(certificateFor(options)),
+    : other_names(otherNames(options)),
+      certificate(certificateFor(options)),
       pages(options.page),
-      names(certificate, otherNames(options)),
+      names(certificate, other_names),
       tls(tlsOf(certificate)),
       gateway(options),
       lobby{gateway, tls, {pages, names, !certificate.is_self_made}},
@@ -150,8 +159,29 @@ void GatewayServer::Port::forgetEnded() {
     std::erase_if(connections, [](const auto& connection) { return connection->hasEnded(); });
 }
 
+// One of an authority is renewed every few weeks, while guests are here: they keep theirs, who comes now is
+// shown the new one.
+void GatewayServer::Port::rereadCertificate(Gateway::Clock::time_point now) {
+    if (certificate.is_self_made || now < certificate_due) return;
+    certificate_due = now + kCertificateRound;
+    std::string stamp = stampOf(certificate.certificate) + ' ' + stampOf(certificate.key);
+    if (stamp == std::exchange(certificate_stamp, stamp)) return;
+    try {
+        GatewayCertificate renewed = certificateOf(certificate.certificate, certificate.key);
+        if (renewed.fingerprint == certificate.fingerprint) return;
+        net::ssl::context renewed_tls = tlsOf(renewed);
+        names = HostNames(renewed, other_names);
+        tls = std::move(renewed_tls);
+        certificate = std::move(renewed);
+        spdlog::info("the certificate was renewed; fingerprint (SHA-256): {}", certificate.fingerprint);
+    } catch (const UserError& error) {
+        spdlog::warn("{}; the certificate before stays in use", error.what());
+    }
+}
+
 void GatewayServer::Port::step() {
     const auto now = Gateway::Clock::now();
+    rereadCertificate(now);
     if (!is_listening) listen();
     gateway.step(now);
     for (size_t n = 0; n < connections.size(); ++n) connections[n]->step(now);

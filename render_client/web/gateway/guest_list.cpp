@@ -2,7 +2,6 @@
 
 #include <google/protobuf/text_format.h>
 #include <spdlog/spdlog.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "common/base/user_error.h"
+#include "common/files/file_stamp.h"
 #include "common/files/whole_file.h"
 #include "common/text/foreign_text.h"
 #include "render_client/web/secrets/secrets.h"
@@ -19,15 +19,6 @@ namespace bonemill::gateway {
 namespace {
 
 constexpr const char* kAskAgain = "Ask for a new invitation.";
-
-std::string stampOf(const std::filesystem::path& file) {
-    struct stat status {};
-    if (stat(file.c_str(), &status) != 0) return "";
-    std::ostringstream stamp;
-    stamp << status.st_ino << ' ' << status.st_size << ' ' << status.st_mtim.tv_sec << ' '
-          << status.st_mtim.tv_nsec;
-    return stamp.str();
-}
 
 template <class Message>
 bool readText(const std::filesystem::path& file, Message& message) {

@@ -1,6 +1,7 @@
 """A session in folders of its own: its programs, what they hold, and what they leave behind."""
 import array
 import os
+import re
 import signal
 import subprocess
 import tempfile
@@ -8,7 +9,7 @@ import time
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
 MARK = "BONEMILL_SOAK"
-EDGE, VOXEL_MM = (56, 56, 40), 0.4
+EDGE, VOXEL_MM = (40, 40, 24), 0.5
 UPRIGHT = "q_WT { w: 0.70710678 x: 0.70710678 y: 0 z: 0 }"
 
 
@@ -96,10 +97,13 @@ def descriptors(pid):
     return len(os.listdir(f"/proc/{pid}/fd"))
 
 
-def segments_of(pids):
-    """System V segments that one of these processes made."""
-    with open("/proc/sysvipc/shm") as file:
-        return [line.split()[1] for line in file.readlines()[1:] if int(line.split()[4]) in pids]
+def link_memory(session):
+    """The System V segments and semaphores of this session's link (linkKeyOf in common/ipc/link_place.h)."""
+    key, found = str(int(session) ^ 0x424D0000), []
+    for kind in ("shm", "sem"):
+        with open(f"/proc/sysvipc/{kind}") as file:
+            found += [f"{kind} {line.split()[1]}" for line in file if line.split()[0] == key]
+    return found
 
 
 class Laboratory:
@@ -151,11 +155,10 @@ class Laboratory:
         return child
 
     def start_gateway(self, *words, port=0, **more):
-        """Returns port and fingerprint."""
+        """Returns its port."""
         self.start("gateway", "render_client", "--serve", f"127.0.0.1:{port}", *self.place(), *words, **more)
-        said = self.await_words("gateway", "(SHA-256): ")
-        address = next(word for word in said.split() if word.startswith("https://127.0.0.1:"))
-        return int(address.rsplit(":", 1)[1].strip("/")), said.split("(SHA-256): ")[1].split()[0]
+        said = self.await_words("gateway", "https://127.0.0.1:")
+        return int(re.search(r"https://127\.0\.0\.1:(\d+)\n", said)[1])
 
     def invite(self, port, people, role="operator"):
         words = ["--name", f"Guest {people}", "--role", role, "--gateway", f"https://127.0.0.1:{port}"]

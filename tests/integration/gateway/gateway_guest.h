@@ -38,7 +38,9 @@ inline std::string invitationOf(const std::string& name, const std::string& role
 
 class RunningGateway {
   public:
-    explicit RunningGateway(const std::string& guests, double mbit_per_s = 1000) {
+    // With a certificate of its own making, unless it is given one.
+    explicit RunningGateway(const std::string& guests, double mbit_per_s = 1000,
+                            const GatewayCertificate& given = {}) {
         setenv("XDG_CONFIG_HOME", (folder_ / "config").c_str(), 1);
         invite(guests);
         std::filesystem::create_directories(folder_ / "page");
@@ -51,6 +53,8 @@ class RunningGateway {
         options.guests = folder_ / "guests";
         options.page = folder_ / "page";
         options.guest_mbit_per_s = mbit_per_s;
+        options.certificate = given.certificate;
+        options.key = given.key;
         start();
     }
     ~RunningGateway() { stop(); }
@@ -74,6 +78,7 @@ class RunningGateway {
     }
     WebTarget target() const { return {"127.0.0.1", server_->port(), server_->certificate().fingerprint}; }
     operator WebTarget() const { return target(); }
+    uint16_t port() const { return server_->port(); }
     std::string filesContent() const {
         return test::readFile(folder_ / "guests") + test::readFile(folder_ / "guests.seats");
     }

@@ -245,6 +245,46 @@ TEST(Gateway, AHandThatLeavesLetsTheToolGo) {
     EXPECT_EQ(hands.size(), 1u) << "an observer holds nothing";
 }
 
+void put(const GatewayCertificate& what, const GatewayCertificate& where) {
+    const auto over = std::filesystem::copy_options::overwrite_existing;
+    std::filesystem::copy_file(what.certificate, where.certificate, over);
+    std::filesystem::copy_file(what.key, where.key, over);
+}
+
+bool shows(const RunningGateway& gateway, const GatewayCertificate& certificate) {
+    try {
+        const TestGuest guest({"127.0.0.1", gateway.port(), certificate.fingerprint});
+        return true;
+    } catch (const UserError&) {
+        return false;
+    }
+}
+
+TEST(Gateway, ShowsARenewedCertificateAndKeepsItsGuests) {
+    TestServer server(1);
+    const test::TemporaryFolder folder;
+    const GatewayCertificate old = selfMadeCertificate(folder.path() / "old"),
+                             renewed = selfMadeCertificate(folder.path() / "renewed"),
+                             used{folder / "certificate.pem", folder / "key.pem", "", false};
+    put(old, used);
+    const RunningGateway gateway(invitationOf("Anna", "OPERATOR", kToken), 1000, used);
+    TestGuest anna({"127.0.0.1", gateway.port(), old.fingerprint}, kToken, true);
+    ASSERT_TRUE(anna.isWelcome());
+
+    put({renewed.certificate, old.key, "", false}, used);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(1500);
+    anna.pollUntil([&] { return std::chrono::steady_clock::now() > end; });
+    EXPECT_TRUE(shows(gateway, old)) << "a certificate without its key";
+
+    put(renewed, used);
+    EXPECT_TRUE(anna.pollUntil([&] { return shows(gateway, renewed); }, std::chrono::seconds(10)));
+    server.publisher.publishToolState(syntheticTick(7));
+    EXPECT_TRUE(anna.pollUntil([&] {
+        server.publisher.publishToolState(syntheticTick(7));
+        return anna.tool.tick() == 7;
+    }));
+}
+
 TEST(Gateway, ThatHearsNothingJoinsAnewAndKeepsItsGuests) {
     const test::TemporaryFolder folder;
     test::writeFile(folder / "guests", invitationOf("Anna", "OPERATOR", kToken));
