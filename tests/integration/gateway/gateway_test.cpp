@@ -1,4 +1,5 @@
 // Guests see what the server shows, and the server hears them as the guest list knows them.
+#include "common/base/user_error.h"
 #include "haptic_server/teaching/lessons/remark_list.h"
 #include "tests/integration/gateway/gateway_guest.h"
 
