@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/base/make_room.h"
+#include "common/dds/topic_traits.h"
 
 namespace bonemill {
 namespace {
