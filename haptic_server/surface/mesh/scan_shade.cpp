@@ -28,7 +28,8 @@ ScanShade::ScanShade(const ShadeScale& scale, const VolumeGeometry& scan, const 
       p_SV_(X_SV.position.cast<float>()),
       iso_(iso),
       density_at_(std::move(density_at)),
-      known_(size_t(scan.dims.cast<int64_t>().prod()), 0) {}
+      bricks_((scan.dims.array() + kBrick - 1) / kBrick),
+      known_(size_t(bricks_.prod())) {}
 
 // Linear between the voxels around a place a voxel under the surface; those without bone near them have
 // no say.
@@ -48,10 +49,17 @@ uint8_t ScanShade::under(const Eigen::Vector3f& p_V, const Eigen::Vector3f& norm
     return weights > 0 ? scale_.at(sum / weights) : scale_.first;
 }
 
+uint8_t& ScanShade::knownAt(const Eigen::Vector3i& voxel) {
+    const Eigen::Vector3i brick = voxel / kBrick, local = voxel - kBrick * brick;
+    std::unique_ptr<Brick>& known =
+        known_[size_t(brick.x() + bricks_.x() * (brick.y() + bricks_.y() * brick.z()))];
+    if (!known) known = std::make_unique<Brick>();
+    return (*known)[size_t(local.x() + kBrick * (local.y() + kBrick * local.z()))];
+}
+
 float ScanShade::smoothAt(const Eigen::Vector3i& voxel) {
     if ((voxel.array() < 0).any() || (voxel.array() >= dims_.array()).any()) return 0;
-    uint8_t& known = known_[size_t(voxel.x()) +
-                            size_t(dims_.x()) * (size_t(voxel.y()) + size_t(dims_.y()) * size_t(voxel.z()))];
+    uint8_t& known = knownAt(voxel);
     const auto span = float(scale_.high - scale_.low);
     if (known == 0) {
         const float density = computedAt(voxel);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "common/geometry/pose.h"
@@ -23,7 +24,7 @@ struct ShadeScale {
 };
 
 // The scan as it was, smoothed over its own voxels. It belongs to one thread; not RT-safe: it remembers what
-// it has computed, one byte per voxel of the scan.
+// it has computed, one byte per voxel of the bricks that hold surface.
 class ScanShade {
   public:
     using DensityAt = std::function<Density(const Eigen::Vector3i& voxel)>;  // 0 outside
@@ -38,6 +39,10 @@ class ScanShade {
     const ShadeScale& scale() const noexcept { return scale_; }
 
   private:
+    static constexpr int kBrick = 16;  // voxels along an edge
+    using Brick = std::array<uint8_t, size_t(kBrick) * kBrick * kBrick>;
+
+    uint8_t& knownAt(const Eigen::Vector3i& voxel);
     float smoothAt(const Eigen::Vector3i& voxel);
     float computedAt(const Eigen::Vector3i& voxel) const;
 
@@ -48,7 +53,8 @@ class ScanShade {
     Eigen::Vector3f p_SV_;
     Density iso_;
     DensityAt density_at_;
-    std::vector<uint8_t> known_;  // per voxel of the scan; 0: not yet computed
+    Eigen::Vector3i bricks_;                     // per axis
+    std::vector<std::unique_ptr<Brick>> known_;  // 0: not yet computed
 };
 
 // As the volume is; it must outlive what is returned, and is not written.
