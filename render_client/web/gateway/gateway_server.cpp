@@ -45,6 +45,10 @@ GatewayCertificate certificateFor(const GatewayOptions& options) {
                                        : certificateOf(options.certificate, options.key);
 }
 
+std::string stampOfBoth(const std::filesystem::path& certificate, const std::filesystem::path& key) {
+    return stampOf(certificate) + ' ' + stampOf(key);
+}
+
 std::vector<std::string> otherNames(const GatewayOptions& options) {
     std::vector<std::string> names = options.names;
     if (options.via) names.push_back(options.via->host);
@@ -67,8 +71,8 @@ struct GatewayServer::Port {
     void step();
 
     const std::vector<std::string> other_names;
+    std::string certificate_stamp;  // of its files, from before they were read
     GatewayCertificate certificate;
-    std::string certificate_stamp;
     Gateway::Clock::time_point certificate_due{};
     StaticPages pages;
     HostNames names;
@@ -87,6 +91,7 @@ struct GatewayServer::Port {
 
 GatewayServer::Port::Port(const GatewayOptions& options, Descriptor listening)
     : other_names(otherNames(options)),
+      certificate_stamp(stampOfBoth(options.certificate, options.key)),
       certificate(certificateFor(options)),
       pages(options.page),
       names(certificate, other_names),
@@ -164,11 +169,10 @@ void GatewayServer::Port::forgetEnded() {
 void GatewayServer::Port::rereadCertificate(Gateway::Clock::time_point now) {
     if (certificate.is_self_made || now < certificate_due) return;
     certificate_due = now + kCertificateRound;
-    std::string stamp = stampOf(certificate.certificate) + ' ' + stampOf(certificate.key);
+    std::string stamp = stampOfBoth(certificate.certificate, certificate.key);
     if (stamp == std::exchange(certificate_stamp, stamp)) return;
     try {
         GatewayCertificate renewed = certificateOf(certificate.certificate, certificate.key);
-        if (renewed.fingerprint == certificate.fingerprint) return;
         net::ssl::context renewed_tls = tlsOf(renewed);
         names = HostNames(renewed, other_names);
         tls = std::move(renewed_tls);

@@ -1,5 +1,6 @@
-"""Guests of a gateway, as a page in a browser would be: they come in, acknowledge what comes, and come back by their ticket."""
+"""Guests of a gateway, as a page in a browser is one: they come in, acknowledge what comes, and come back by ticket."""
 import asyncio
+import logging
 import os
 import random
 import ssl
@@ -8,6 +9,7 @@ import struct
 PROTOCOL_VERSION = 2  # kProtocolVersion of render_client/link/subscribe/remote_session.h
 TEXT, BINARY, CLOSE, PING, PONG = 1, 2, 8, 9, 10
 AGAIN_S = 0.5
+logging.getLogger("asyncio").setLevel(logging.ERROR)  # what is written to a lost line is not worth a word
 
 
 def varint(n):

@@ -37,8 +37,9 @@ def unpacked(journal):
         if kind == CHUNK:
             size, = struct.unpack_from("<I", content, 28)
             packed = content[32 + size + 8:]
-            inner = packed if size == 0 else subprocess.run(["zstd", "-dc"], input=packed, stdout=subprocess.PIPE, check=True).stdout
-            out += [record(*one) for one in records(inner) if one[0] in (SCHEMA, CHANNEL, MESSAGE)]
+            if size > 0:
+                packed = subprocess.run(["zstd", "-dc"], input=packed, stdout=subprocess.PIPE, check=True).stdout
+            out += [record(*one) for one in records(packed) if one[0] in (SCHEMA, CHANNEL, MESSAGE)]
         elif kind in (HEADER, SCHEMA, CHANNEL):
             out.append(record(kind, content))
     out += [record(DATA_END, bytes(4)), record(FOOTER, bytes(20)), MAGIC]
@@ -89,7 +90,8 @@ def play(words, log):
 
 
 def run(words, log):
-    child = subprocess.Popen(["timeout", "-s", "KILL", str(HANGS_S), *words], stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+    child = subprocess.Popen(["timeout", "-s", "KILL", str(HANGS_S), *words], stdin=subprocess.DEVNULL, stdout=log,
+                             stderr=log)
     _, status, usage = os.wait4(child.pid, 0)
     child.returncode = os.waitstatus_to_exitcode(status)
     code = child.returncode if child.returncode < 0 or child.returncode <= 128 else 128 - child.returncode
@@ -112,11 +114,11 @@ def one_run(lab, program, path, number):
     return result
 
 
-def try_one(lab, whole, limits, seed, number):
+def try_one(lab, kind, whole, limits, number):
     """Returns [(program, code, what its cost is of the limit)]."""
-    path = lab / f"{number}.mcap"
+    path = lab / f"{kind.replace(' ', '_')}_{number}.mcap"
     with open(path, "wb") as file:
-        file.write(mutant(whole, random.Random(f"{seed} {number}")))
+        file.write(mutant(whole, random.Random(f"{lab.options.seed} {kind} {number}")))
     results = []
     for program, limit_s in limits.items():
         code, cost_s = one_run(lab, program, path, number)
@@ -131,9 +133,9 @@ def try_one(lab, whole, limits, seed, number):
 
 
 def try_kind(lab, kind, whole, count, say):
-    limits, seed = {}, f"{lab.options.seed} {kind}"
+    limits = {}
     for program in ("replay", "export", "assess"):
-        path = lab / f"whole_{kind}.mcap"
+        path = lab / f"whole_{kind.replace(' ', '_')}.mcap"
         with open(path, "wb") as file:
             file.write(whole)
         runs = [one_run(lab, program, path, 0) for _ in range(5)]
@@ -142,7 +144,8 @@ def try_kind(lab, kind, whole, count, say):
                 raise laboratory.Broken(f"{program} of the whole recording, {kind}: {runs}, {log.read()[-400:]}")
         limits[program] = MOST_COST * sorted(cost for _, cost in runs)[2] + SPARE_S
     with concurrent.futures.ThreadPoolExecutor(WORKERS) as pool:
-        results = [one for many in pool.map(lambda number: try_one(lab, whole, limits, seed, number), range(count)) for one in many]
+        results = [one for many in pool.map(lambda number: try_one(lab, kind, whole, limits, number), range(count))
+                   for one in many]
     bad = 0
     for program, limit_s in limits.items():
         codes = [code for name, code, _ in results if name == program]
@@ -150,9 +153,10 @@ def try_kind(lab, kind, whole, count, say):
         crashed = sum(code not in (0, 1, 2, "hangs") for code in codes)
         dear, hung = sum(cost > 1 for cost in costs), codes.count("hangs")
         bad += crashed + dear + hung
-        say(f"{kind}: {program} of {count} mutants", f"{codes.count(0)} taken, {codes.count(1) + codes.count(2)} refused, "
-            f"{crashed} crashed, {hung} hung, {dear} too dear; the dearest {MOST_COST * max(costs):.2f} times "
-            f"the whole file's {(limit_s - SPARE_S) / MOST_COST:.2f} s")
+        say(f"{kind}: {program} of {count} mutants",
+            f"{codes.count(0)} taken, {codes.count(1) + codes.count(2)} refused, {crashed} crashed, "
+            f"{hung} hung, {dear} too dear; the dearest {MOST_COST * max(costs):.2f} times the "
+            f"whole file's {(limit_s - SPARE_S) / MOST_COST:.2f} s")
     return bad
 
 

@@ -149,8 +149,8 @@ class Laboratory:
                           "--recording", self / "recordings", "--report", self / "report.json", *words, **more)
 
     def start_device(self, *words, **more):
-        child = self.start("device", "device_daemon", "--device", "simulated", *self.place(), "--stop-dir", self / "tmp",
-                           "--wait-seconds", "60", *words, **more)
+        child = self.start("device", "device_daemon", "--device", "simulated", *self.place(), "--stop-dir",
+                           self / "tmp", "--wait-seconds", "60", *words, **more)
         self.await_words("device", "haptic_server answers")
         return child
 
@@ -201,7 +201,7 @@ class Laboratory:
         except subprocess.TimeoutExpired:
             child.kill()
             child.wait()
-            raise Broken(f"{title} does not end within {limit_s} s") from None
+            raise Broken(f"{title} does not end within {limit_s} s: {self.log(title)[-400:]}") from None
 
     def await_quiet(self, limit_s=15):
         """Waits until no process is left, and returns those that are."""
