@@ -1,4 +1,4 @@
-// Writes phantoms: a tooth as a DICOM CT series, blocks, a vertebra and analytic bodies as
+// Writes phantoms: a tooth as a DICOM CT series, blocks, a vertebra, temporal bones and analytic bodies as
 // NRRD. See docs/teach/volumes.md.
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -12,6 +12,7 @@
 #include "common/process/run_program.h"
 #include "haptic_server/cases/phantom/analytic_body.h"
 #include "haptic_server/cases/phantom/skull_labels.h"
+#include "haptic_server/cases/phantom/temporal_bone_phantom.h"
 #include "haptic_server/cases/phantom/tooth_phantom.h"
 #include "haptic_server/cases/phantom/vertebra_phantom.h"
 #include "haptic_server/cases/phantom_dicom/dicom_series_writer.h"
@@ -29,6 +30,15 @@ void write(const std::string& file, const VolumeGeometry& geometry, std::span<co
     std::cout << "wrote " << file << "\n";
 }
 
+// HU are whole numbers.
+void writeScan(const std::string& file, const std::string& labels_file, const RawVolume& ct,
+               const std::vector<uint8_t>& labels) {
+    const std::vector<int16_t> hu = ct.values.visit(
+        [](const auto& samples) { return std::vector<int16_t>(samples.begin(), samples.end()); });
+    write<int16_t>(file, ct.geometry, hu);
+    if (!labels_file.empty()) write<uint8_t>(labels_file, ct.geometry, labels);
+}
+
 struct VertebraArguments {
     std::string file, labels;
     double voxel_mm = 0.4;
@@ -37,10 +47,20 @@ struct VertebraArguments {
 void makeVertebra(const VertebraArguments& arguments) {
     requireApart({{"--out", arguments.file}, {"--labels", arguments.labels}}, {});
     const VertebraScan scan = scanVertebra(vertebraGrid(arguments.voxel_mm * kMillimetre));
-    const std::vector<int16_t> hu = scan.ct.values.visit(
-        [](const auto& samples) { return std::vector<int16_t>(samples.begin(), samples.end()); });
-    write<int16_t>(arguments.file, scan.ct.geometry, hu);
-    if (!arguments.labels.empty()) write<uint8_t>(arguments.labels, scan.ct.geometry, scan.labels);
+    writeScan(arguments.file, arguments.labels, scan.ct, scan.labels);
+}
+
+struct TemporalArguments {
+    std::string file, labels;
+    double voxel_mm = 0.15;
+    TemporalBoneKind kind;
+};
+
+void makeTemporalBone(const TemporalArguments& arguments) {
+    requireApart({{"--out", arguments.file}, {"--labels", arguments.labels}}, {});
+    const TemporalBone bone(arguments.kind);
+    const TemporalScan scan = bone.scan(bone.grid(arguments.voxel_mm * kMillimetre));
+    writeScan(arguments.file, arguments.labels, scan.ct, scan.labels);
 }
 
 struct SkullArguments {
@@ -261,6 +281,35 @@ void addVertebra(CLI::App& vertebra, VertebraArguments& arguments) {
     addNumber(vertebra, "--voxel-mm", arguments.voxel_mm, 0.2, 2, "edge of a voxel");
 }
 
+// The first of the names is what is made where none is said.
+template <class T>
+void addChoice(CLI::App& command, const char* name, T& value,
+               const std::vector<std::pair<std::string, T>>& choices, const char* help) {
+    command.add_option(name, value, help)
+        ->transform(CLI::Transformer(choices))
+        ->check(CLI::IsMember(choices))
+        ->default_str(choices.front().first);
+}
+
+void addTemporalBone(CLI::App& bone, TemporalArguments& arguments) {
+    using enum TemporalBoneKind::Pneumatisation;
+    bone.add_option("--out", arguments.file, "NRRD file to write")->required();
+    bone.add_option("--labels", arguments.labels,
+                    "NRRD file to write: 1 sigmoid sinus, 2 facial nerve, 3 dura, 4 semicircular canals, 5 "
+                    "ossicles, 0 none");
+    addNumber(bone, "--voxel-mm", arguments.voxel_mm, 0.1, 2, "edge of a voxel");
+    TemporalBoneKind& kind = arguments.kind;
+    bone.add_option("--seed", kind.seed, "another seed is another bone")->capture_default_str();
+    addChoice<bool>(bone, "--side", kind.is_right, {{"left", false}, {"right", true}}, "left or right");
+    addChoice<TemporalBoneKind::Pneumatisation>(bone, "--pneumatisation", kind.pneumatisation,
+                                                {{"well", kWell}, {"poor", kPoor}, {"sclerotic", kSclerotic}},
+                                                "well, poor or sclerotic");
+    addChoice<bool>(bone, "--jugular", kind.has_high_jugular, {{"normal", false}, {"high", true}},
+                    "height of the jugular bulb");
+    addChoice<bool>(bone, "--dura", kind.has_low_dura, {{"normal", false}, {"low", true}},
+                    "height of the middle fossa's dura over the mastoid");
+}
+
 void addSkullLabels(CLI::App& skull, SkullArguments& arguments) {
     skull.add_option("--volume", arguments.volume, "that scan, Cranium.inv3")->required();
     skull.add_option("--out", arguments.file, "NRRD file to write")->required();
@@ -278,6 +327,7 @@ int run(int argc, char** argv) {
     BlockArguments block;
     BodyArguments body;
     VertebraArguments vertebra;
+    TemporalArguments temporal_bone;
     SkullArguments skull;
     addTooth(
         add("tooth", "molar-like tooth as a DICOM CT series, 256x256x161, 0.125 mm, HU", makeTooth, tooth),
@@ -290,6 +340,9 @@ int run(int argc, char** argv) {
     addVertebra(
         add("vertebra", "lumbar vertebra with nerves and vessels as NRRD, HU", makeVertebra, vertebra),
         vertebra);
+    addTemporalBone(add("temporal_bone", "mastoid with air cells and what lies in it as NRRD, HU",
+                        makeTemporalBone, temporal_bone),
+                    temporal_bone);
     addSkullLabels(add("skull_labels", "structures to spare in the left mastoid of Cranium.inv3",
                        makeSkullLabels, skull),
                    skull);

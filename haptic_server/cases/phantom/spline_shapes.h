@@ -63,4 +63,14 @@ inline double blend(double a, double b, double fillet) noexcept {
     return std::min(a, b) - h * h * fillet / 4;
 }
 
+// This is the first-order distance to an n-dimensional ellipsoid: (|p / r| - 1) over the length
+// of its gradient.
+template <class V>
+double ellipsoidal(const V& p, const V& half_axes) noexcept {
+    const V scaled = p.cwiseQuotient(half_axes);
+    const double size = scaled.norm();
+    if (size < 1e-9) return -half_axes.minCoeff();
+    return (size - 1) * size / scaled.cwiseQuotient(half_axes).norm();
+}
+
 }  // namespace bonemill

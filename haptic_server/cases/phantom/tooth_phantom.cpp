@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/base/units.h"
+#include "haptic_server/cases/phantom/lattice_noise.h"
 #include "haptic_server/cases/phantom/spline_shapes.h"
 #include "haptic_server/core/volume/index_box.h"
 
@@ -137,18 +138,10 @@ double meanHu(const VolumeGeometry& geometry, const Eigen::Vector3d& index) {
     return sum / (kSamplesPerAxis * kSamplesPerAxis * kSamplesPerAxis);
 }
 
-// It is SplitMix64 of (seed, index): the same noise on every machine, whatever the order of evaluation.
-uint64_t hashed(uint64_t seed, uint64_t index) {
-    uint64_t z = seed * 0x9e3779b97f4a7c15u + index + 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-}
-
 // It is the sum of four uniform numbers, scaled to variance 1: close to Gaussian, bounded, and
 // exact arithmetic only.
 double noise(uint64_t seed, uint64_t index) {
-    const uint64_t bits = hashed(seed, index);
+    const uint64_t bits = splitMix64(seed * 0x9e3779b97f4a7c15u + index);
     double sum = 0;
     for (int part = 0; part < 4; ++part) sum += (double(bits >> (16 * part) & 0xffff) + 0.5) / 65536 - 0.5;
     return sum * std::sqrt(3.0);

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "common/base/units.h"
+#include "haptic_server/cases/phantom/lattice_noise.h"
 #include "haptic_server/cases/phantom/spline_shapes.h"
 #include "haptic_server/core/volume/index_box.h"
 
@@ -17,16 +18,6 @@ using Eigen::Vector2d, Eigen::Vector3d;
 
 double roundedCut(double solid, double cut, double fillet) {
     return -blend(-solid, cut, fillet);
-}
-
-// This is the first-order distance to an n-dimensional ellipsoid: (|p / r| - 1) over the length
-// of its gradient.
-template <class V>
-double ellipsoidal(const V& p, const V& half_axes) {
-    const V scaled = p.cwiseQuotient(half_axes);
-    const double size = scaled.norm();
-    if (size < 1e-9) return -half_axes.minCoeff();
-    return (size - 1) * size / scaled.cwiseQuotient(half_axes).norm();
 }
 
 // The cross-section of the body lies between ellipse and box.
@@ -103,29 +94,10 @@ double corticalHu(const Vector3d& p) {
     return 1350 + 400 * onArch(p);
 }
 
-// This is a number in 0 .. 1 of a lattice point (SplitMix64): the same everywhere.
-double latticeNoise(int i, int j, int k) {
-    uint64_t z =
-        (uint64_t(uint16_t(i)) << 32 | uint64_t(uint16_t(j)) << 16 | uint16_t(k)) + 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return double((z ^ (z >> 31)) >> 40) / double((1 << 24) - 1);
-}
-
 // The marrow spaces are a little over a millimetre wide.
 double trabecularHu(const Vector3d& p) {
     constexpr double kLattice = 1.2;
-    const Vector3d at = p / kLattice;
-    const Eigen::Vector3i low = at.array().floor().cast<int>();
-    const Vector3d part = at - low.cast<double>();
-    double noise = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const Eigen::Vector3i step(corner & 1, corner >> 1 & 1, corner >> 2);
-        double weight = 1;
-        for (int a = 0; a < 3; ++a) weight *= step[a] ? part[a] : 1 - part[a];
-        noise += weight * latticeNoise(low.x() + step.x(), low.y() + step.y(), low.z() + step.z());
-    }
-    return kTrabecularLowHu + (kTrabecularHighHu - kTrabecularLowHu) * noise;
+    return kTrabecularLowHu + (kTrabecularHighHu - kTrabecularLowHu) * smoothNoise(p, kLattice);
 }
 
 // Makes what lies around the bone.
