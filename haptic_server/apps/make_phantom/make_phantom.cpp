@@ -53,12 +53,25 @@ void makeVertebra(const VertebraArguments& arguments) {
 struct TemporalArguments {
     std::string file, labels;
     double voxel_mm = 0.15;
-    TemporalBoneKind kind;
+    uint64_t seed = 1;
+    std::string side = "left", pneumatisation = "well", jugular = "normal", dura = "normal";
 };
+
+TemporalBoneKind kindOf(const TemporalArguments& arguments) {
+    using enum TemporalBoneKind::Pneumatisation;
+    TemporalBoneKind kind;
+    kind.seed = arguments.seed;
+    kind.is_right = arguments.side == "right";
+    kind.has_high_jugular = arguments.jugular == "high";
+    kind.has_low_dura = arguments.dura == "low";
+    if (arguments.pneumatisation != "well")
+        kind.pneumatisation = arguments.pneumatisation == "poor" ? kPoor : kSclerotic;
+    return kind;
+}
 
 void makeTemporalBone(const TemporalArguments& arguments) {
     requireApart({{"--out", arguments.file}, {"--labels", arguments.labels}}, {});
-    const TemporalBone bone(arguments.kind);
+    const TemporalBone bone(kindOf(arguments));
     const TemporalScan scan = bone.scan(bone.grid(arguments.voxel_mm * kMillimetre));
     writeScan(arguments.file, arguments.labels, scan.ct, scan.labels);
 }
@@ -281,33 +294,22 @@ void addVertebra(CLI::App& vertebra, VertebraArguments& arguments) {
     addNumber(vertebra, "--voxel-mm", arguments.voxel_mm, 0.2, 2, "edge of a voxel");
 }
 
-// The first of the names is what is made where none is said.
-template <class T>
-void addChoice(CLI::App& command, const char* name, T& value,
-               const std::vector<std::pair<std::string, T>>& choices, const char* help) {
-    command.add_option(name, value, help)
-        ->transform(CLI::Transformer(choices))
-        ->check(CLI::IsMember(choices))
-        ->default_str(choices.front().first);
-}
-
 void addTemporalBone(CLI::App& bone, TemporalArguments& arguments) {
-    using enum TemporalBoneKind::Pneumatisation;
+    const auto addChoice = [&](const char* name, std::string& value, const std::vector<std::string>& choices,
+                               const char* help) {
+        bone.add_option(name, value, help)->check(CLI::IsMember(choices))->capture_default_str();
+    };
     bone.add_option("--out", arguments.file, "NRRD file to write")->required();
     bone.add_option("--labels", arguments.labels,
                     "NRRD file to write: 1 sigmoid sinus, 2 facial nerve, 3 dura, 4 semicircular canals, 5 "
                     "ossicles, 0 none");
     addNumber(bone, "--voxel-mm", arguments.voxel_mm, 0.1, 2, "edge of a voxel");
-    TemporalBoneKind& kind = arguments.kind;
-    bone.add_option("--seed", kind.seed, "another seed is another bone")->capture_default_str();
-    addChoice<bool>(bone, "--side", kind.is_right, {{"left", false}, {"right", true}}, "left or right");
-    addChoice<TemporalBoneKind::Pneumatisation>(bone, "--pneumatisation", kind.pneumatisation,
-                                                {{"well", kWell}, {"poor", kPoor}, {"sclerotic", kSclerotic}},
-                                                "well, poor or sclerotic");
-    addChoice<bool>(bone, "--jugular", kind.has_high_jugular, {{"normal", false}, {"high", true}},
-                    "height of the jugular bulb");
-    addChoice<bool>(bone, "--dura", kind.has_low_dura, {{"normal", false}, {"low", true}},
-                    "height of the middle fossa's dura over the mastoid");
+    bone.add_option("--seed", arguments.seed, "another seed is another bone")->capture_default_str();
+    addChoice("--side", arguments.side, {"left", "right"}, "the mirror image of the other one");
+    addChoice("--pneumatisation", arguments.pneumatisation, {"well", "poor", "sclerotic"},
+              "how far air cells reach");
+    addChoice("--jugular", arguments.jugular, {"normal", "high"}, "dome of the jugular bulb");
+    addChoice("--dura", arguments.dura, {"normal", "low"}, "middle fossa over the mastoid");
 }
 
 void addSkullLabels(CLI::App& skull, SkullArguments& arguments) {

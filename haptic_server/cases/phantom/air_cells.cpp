@@ -12,8 +12,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kThinnestWall = 0.2, kThickestWall = 0.5;
-constexpr double kLargestRadius = 2.6;
-constexpr double kFillet = 0.7;        // of a cell's edges
+constexpr double kLargestRadius = 3;
+constexpr double kFillet = 0.5;        // of a cell's edges
 constexpr double kShareOfHoles = 0.5;  // walls between neighbours that are open
 
 // It bends the walls a little; the noise is slow enough to keep distances.
@@ -130,16 +130,16 @@ double AirCells::depth(const Vector3d& p, const std::vector<uint32_t>& near) con
     const Vector3d q = bent(p);
     const uint32_t own = nearestOf(near, q);
     const double own_power = power(own, q);
-    double depth = 3 * kFillet, through = -std::numeric_limits<double>::infinity();
+    double depth = 3 * kFillet;
     for (const uint32_t n : near) {
         if (n == own) continue;
         const double apart = (seeds_[n].middle - seeds_[own].middle).norm();
         const double to_face = (power(n, q) - own_power) / (2 * apart);
         if (to_face > 2 * kFillet) continue;
-        depth = blend(depth, to_face - (seeds_[n].wall + seeds_[own].wall) / 2, kFillet);
-        if (to_face < 0.5) through = std::max(through, hole(own, n, q));
+        const double to_wall = to_face - (seeds_[n].wall + seeds_[own].wall) / 2;
+        depth = blend(depth, std::max(to_wall, hole(own, n, q)), kFillet);
     }
-    return std::max(depth, through);
+    return depth;
 }
 
 int AirCells::cellAt(const Vector3d& p) const {

@@ -67,8 +67,9 @@ double spacesDepth(const TemporalDistances& d, const TemporalMeasures& m) {
     const double plates =
         std::min({of(d, kCranium) - 0.8 * m.tegmen_plate, labyrinth(d) - 0.8, of(d, kNerve) - 0.35,
                   of(d, kSinus) - 0.8, -of(d, kBlock) - 1, -of(d, kOuter) - m.cortex});
-    const double window = of(d, kOssicles) < 1 ? 1.0 : 0.0;  // the footplate stands in the oval window
-    const double middle = std::min(-of(d, kMiddleEar), plates + 0.7 * window);
+    const double window =
+        0.7 * smoothStep(1.2, 0.5, of(d, kOssicles));  // the footplate stands in the oval one
+    const double middle = std::min(-of(d, kMiddleEar), plates + window);
     const double antrum = std::min({-of(d, kAntrum), plates, of(d, kEarCanal) - 0.9});
     return std::max(middle, antrum);
 }
@@ -85,7 +86,7 @@ AirCells makeCells(const TemporalBoneKind& kind, const TemporalShapes& shapes) {
     // the Human Body, 1918).
     region.radius = [&](const Vector3d& p) {
         const double away = smoothStep(1, 16, shapes.distance(kAntrum, p));
-        return 1.75 - 0.6 * away;
+        return 2.5 - 0.8 * away;
     };
     return AirCells(region, kind.seed);
 }

@@ -87,10 +87,10 @@ SplineTube cochlea() {
 
 std::vector<Vector3d> sinusPath(const TemporalMeasures& m, const Vector3d& bulb) {
     const Vector3d shift(-m.sinus_deep, -m.sinus_forward, 0);
-    std::vector<Vector3d> path{{-15.5, 30, 3.5},   {-12.2, 23.5, 1},     {-10.4, 17.8, -4.5},
-                               {-11.6, 16, -10.5}, {-15.2, 14.6, -15.5}, {-20.5, 10, -17.5}};
+    std::vector<Vector3d> path{{-15.5, 30, 3.5},   {-11.6, 24, 1},   {-9.8, 18.2, -4.5},
+                               {-10.8, 16.8, -10}, {-15, 16.2, -15}, {-21.5, 12, -17.2}};
     for (size_t n = 1; n < 5; ++n) path[n] += shift;
-    path.push_back({-24.4, 4.2, std::min(bulb.z() + 0.5, -16.0)});
+    path.push_back({-25.4, 4.6, std::min(bulb.z() + 0.5, -16.0)});
     path.push_back(bulb);
     return path;
 }
@@ -108,7 +108,7 @@ std::vector<Vector3d> nervePath(double back) {
 }
 
 Vector3d bulbOf(const TemporalBoneKind& kind, const TemporalMeasures& m) {
-    return {-25, -0.5, -17 + m.bulb_up + (kind.has_high_jugular ? 4 : 0)};
+    return {-26, -0.5, -17 + m.bulb_up + (kind.has_high_jugular ? 4 : 0)};
 }
 constexpr double kBulbRadius = 4.3;
 
@@ -131,7 +131,7 @@ TemporalMeasures::TemporalMeasures(const TemporalBoneKind& kind) {
     canal_turn = draw.in(-3, 3) * M_PI / 180;
     ear_canal_radius = draw.in(3.6, 4.1);
     antrum_size = draw.in(0.92, 1.1) * antrumSize(kind.pneumatisation);
-    cortex = draw.in(1.8, 2.6);
+    cortex = draw.in(1.7, 2.4);
     sinus_plate = draw.in(0.6, 0.95);
     tegmen_plate = draw.in(0.6, 1.1);
     for (double& phase : wave_phase) phase = draw.in(0, 2 * M_PI);
@@ -155,7 +155,7 @@ TemporalShapes::TemporalShapes(const TemporalBoneKind& kind)
     : measures_(kind),
       bulb_(bulbOf(kind, measures_)),
       sinus_(sinusPath(measures_, bulb_), measures_.sinus_radius),
-      vein_({bulb_, {-25, -1.5, -23}, {-24.5, -2.5, -34}}, 3.8),
+      vein_({bulb_, {-26, -1.5, -23}, {-25.5, -2.5, -34}}, 3.8),
       nerve_(nervePath(measures_.nerve_back), measures_.nerve_radius),
       carotid_({{-26, -8.5, -34}, {-26, -10, -20}, {-27.2, -11.6, -14.5}, {-31, -14.5, -12}}, 2.5),
       meatus_({{-27.2, -6.3, -2.9}, {-30, -5.8, -2.9}, {-36, -4.6, -2.9}}, 2.0),
@@ -176,7 +176,8 @@ TemporalShapes::TemporalShapes(const TemporalBoneKind& kind)
 double TemporalShapes::sideOf(double y, double z) const noexcept {
     const double back = std::max(y - 5, 0.0), up = std::max(z - 2, 0.0), front = std::max(-y - 3, 0.0);
     const double zygoma = 2.2 * hump(z - 4, 2.5) * smoothStep(0, -8, y);
-    return -0.014 * back * back - 0.03 * up * up - 0.01 * front * front + zygoma;
+    return -0.014 * back * back - 0.03 * up * up - 0.01 * front * front + zygoma +
+           1.6 * hump(y - 10, 9) * hump(z + 9, 13);
 }
 
 double TemporalShapes::tegmenAt(double x, double y) const noexcept {
@@ -192,7 +193,7 @@ double TemporalShapes::outer(const Vector3d& p) const noexcept {
     double shape = both(lateral, 0.8 * (base - p.z()), 3);
     // The mastoid process, and the tympanic bone around the ear canal.
     const double half = 13 + measures_.tip_down / 2;
-    shape = blend(shape, ovoid(p, {-6.2, 8, -0.5 - half}, {7, 9, half}), 4);
+    shape = blend(shape, ovoid(p, {-5.6, 8.5, -0.5 - half}, {7.4, 9.5, half}), 4);
     const double tympanic = std::max(ear_canal_.signedDistance(p) - 2.0, lateral);
     shape = blend(shape, tympanic, 2);
     // The jaw's joint lies in front of the ear canal.
@@ -201,7 +202,7 @@ double TemporalShapes::outer(const Vector3d& p) const noexcept {
 }
 
 double TemporalShapes::cranium(const Vector3d& p) const noexcept {
-    static const Vector3d kOnPetrous(-13, 15.3, -4), kBackwards = Vector3d(-0.62, 0.78, 0.25).normalized();
+    static const Vector3d kOnPetrous(-13, 16, -4), kBackwards = Vector3d(-0.62, 0.78, 0.25).normalized();
     const double side = p.x() - sideOf(p.y(), p.z());
     const double middle = both(0.95 * (tegmenAt(p.x(), p.y()) - p.z()), side + 3.6, 4);
     const double behind = both(kBackwards.dot(kOnPetrous - p) + 0.5 * waves(p), side + 6.2, 3);
