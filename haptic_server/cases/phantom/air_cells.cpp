@@ -5,6 +5,7 @@
 
 #include "haptic_server/cases/phantom/lattice_noise.h"
 #include "haptic_server/cases/phantom/spline_shapes.h"
+#include "haptic_server/core/volume/index_box.h"
 
 namespace bonemill {
 namespace {
@@ -14,6 +15,7 @@ using Eigen::Vector3d;
 constexpr double kThinnestWall = 0.2, kThickestWall = 0.5;
 constexpr double kLargestRadius = 3;
 constexpr double kFillet = 0.5;        // of a cell's edges
+constexpr double kDeepest = 1;         // depths are told up to here
 constexpr double kShareOfHoles = 0.5;  // walls between neighbours that are open
 
 // It bends the walls a little; the noise is slow enough to keep distances.
@@ -57,6 +59,20 @@ class Bins {
     std::vector<std::vector<uint32_t>> bins_;
 };
 
+// The low corners of the cubes that the region may reach into.
+constexpr double kCube = 2;
+std::vector<Vector3d> cubesOf(const AirCells::Region& region) {
+    constexpr double kSteepest = 1.4;
+    const Vector3d half = Vector3d::Constant(kCube / 2);
+    std::vector<Vector3d> cubes;
+    const Eigen::Vector3i last = (region.box.sizes() / kCube).array().ceil().cast<int>() - 1;
+    forEachIndex({Eigen::Vector3i::Zero(), last}, [&](const Eigen::Vector3i& cube) {
+        const Vector3d low = region.box.min() + kCube * cube.cast<double>();
+        if (region.depth(low + half) > -kSteepest * half.norm()) cubes.push_back(low);
+    });
+    return cubes;
+}
+
 }  // namespace
 
 AirCells::AirCells(const Region& region, uint64_t seed) {
@@ -67,14 +83,15 @@ AirCells::AirCells(const Region& region, uint64_t seed) {
 // there is room, small ones between them.
 void AirCells::scatter(const Region& region, uint64_t seed) {
     constexpr double kTriesPerVolume = 3.5, kNearest = 0.8;
+    const std::vector<Vector3d> cubes = cubesOf(region);
     Bins bins(region.box);
-    const int tries = int(region.box.volume() * kTriesPerVolume);
+    const int tries = int(double(cubes.size()) * kCube * kCube * kCube * kTriesPerVolume);
     uint64_t state = splitMix64(seed ^ 0x5eed);
     const auto draw = [&] { return unitOf(state = splitMix64(state)); };
     for (int n = 0; n < tries; ++n) {
-        const Vector3d part(draw(), draw(), draw());
-        const double chance = draw(), wall = draw();
-        const Vector3d p = region.box.min() + part.cwiseProduct(region.box.sizes());
+        const Vector3d& cube = cubes[std::min(size_t(draw() * double(cubes.size())), cubes.size() - 1)];
+        const double x = draw(), y = draw(), z = draw(), chance = draw(), wall = draw();
+        const Vector3d p = cube + kCube * Vector3d(x, y, z);
         const double shrink = 1 - 0.55 * double(n) / tries;
         const double radius = std::min(region.radius(p) * (0.75 + 0.6 * chance) * shrink, kLargestRadius);
         bool has_room = true;
@@ -97,9 +114,8 @@ uint32_t AirCells::nearestOf(const std::vector<uint32_t>& near, const Vector3d& 
 }
 
 std::vector<uint32_t> AirCells::seedsNear(const Vector3d& p, double reach) const {
-    // A wall matters as far as its thickness and fillet reach; the seeds beyond it lie up to two diameters
-    // away.
-    constexpr double kWallReach = 1.2, kFarthest = 4 * kLargestRadius;
+    // A face matters as far as depth() looks; the seeds beyond it lie hardly more than two radii away.
+    constexpr double kFaceReach = kDeepest + kFillet + kThickestWall / 2, kFarthest = 2.4 * kLargestRadius;
     const double ball = reach + kBend * std::sqrt(3.0);
     double bound = std::numeric_limits<double>::infinity();
     const auto squaredReach = [&](const Seed& s, double by) {
@@ -107,7 +123,7 @@ std::vector<uint32_t> AirCells::seedsNear(const Vector3d& p, double reach) const
         return d * d - s.radius * s.radius;
     };
     for (const Seed& s : seeds_) bound = std::min(bound, squaredReach(s, ball));
-    bound += 2 * kFarthest * kWallReach;
+    bound += 2 * kFarthest * kFaceReach;
     std::vector<uint32_t> near;
     for (uint32_t n = 0; n < seeds_.size(); ++n)
         if (squaredReach(seeds_[n], -ball) < bound) near.push_back(n);
@@ -130,13 +146,13 @@ double AirCells::depth(const Vector3d& p, const std::vector<uint32_t>& near) con
     const Vector3d q = bent(p);
     const uint32_t own = nearestOf(near, q);
     const double own_power = power(own, q);
-    double depth = 3 * kFillet;
+    double depth = kDeepest;
     for (const uint32_t n : near) {
         if (n == own) continue;
         const double apart = (seeds_[n].middle - seeds_[own].middle).norm();
         const double to_face = (power(n, q) - own_power) / (2 * apart);
-        if (to_face > 2 * kFillet) continue;
         const double to_wall = to_face - (seeds_[n].wall + seeds_[own].wall) / 2;
+        if (to_wall > kDeepest + kFillet) continue;
         depth = blend(depth, std::max(to_wall, hole(own, n, q)), kFillet);
     }
     return depth;

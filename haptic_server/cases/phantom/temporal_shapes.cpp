@@ -37,6 +37,13 @@ double hump(double x, double width) {
     return std::exp(-(x / width) * (x / width));
 }
 
+// Far away the distance to the tube's box is enough.
+double tubeDistance(const SplineTube& tube, const Vector3d& p) {
+    constexpr double kFar = 5;
+    const double away = tube.box().exteriorDistance(p);
+    return away > kFar ? away : tube.signedDistance(p);
+}
+
 // It leads from `from` round an arc in the plane of u and v to `to`; angles in degrees from u towards v.
 SplineTube arcTube(const Vector3d& from, const Vector3d& centre, const Vector3d& u, const Vector3d& v,
                    double radius, double first_deg, double last_deg, const Vector3d& to, double lumen) {
@@ -194,7 +201,7 @@ double TemporalShapes::outer(const Vector3d& p) const noexcept {
     // The mastoid process, and the tympanic bone around the ear canal.
     const double half = 13 + measures_.tip_down / 2;
     shape = blend(shape, ovoid(p, {-5.6, 8.5, -0.5 - half}, {7.4, 9.5, half}), 4);
-    const double tympanic = std::max(ear_canal_.signedDistance(p) - 2.0, lateral);
+    const double tympanic = std::max(tubeDistance(ear_canal_, p) - 2.0, lateral);
     shape = blend(shape, tympanic, 2);
     // The jaw's joint lies in front of the ear canal.
     const double joint = both(both(p.y() + 11.4, -19 - p.x(), 3), p.z() + 0.5, 4);
@@ -212,7 +219,7 @@ double TemporalShapes::cranium(const Vector3d& p) const noexcept {
 
 double TemporalShapes::sinus(const Vector3d& p) const noexcept {
     const double bulb = (p - bulb_).norm() - kBulbRadius;
-    return blend(blend(sinus_.signedDistance(p), bulb, 1.5), vein_.signedDistance(p), 1);
+    return blend(blend(tubeDistance(sinus_, p), bulb, 1.5), tubeDistance(vein_, p), 1);
 }
 
 Vector3d TemporalShapes::turned(const Vector3d& p) const noexcept {
@@ -222,12 +229,12 @@ Vector3d TemporalShapes::turned(const Vector3d& p) const noexcept {
 double TemporalShapes::canals(const Vector3d& p) const noexcept {
     const Vector3d q = turned(p);
     double nearest = std::numeric_limits<double>::infinity();
-    for (const SplineTube& canal : canals_) nearest = std::min(nearest, canal.signedDistance(q));
+    for (const SplineTube& canal : canals_) nearest = std::min(nearest, tubeDistance(canal, q));
     return nearest;
 }
 
 double TemporalShapes::innerEar(const Vector3d& p) const noexcept {
-    return std::min(ovoid(p, kVestibule, {1.9, 2.6, 1.8}), cochlea_.signedDistance(p));
+    return std::min(ovoid(p, kVestibule, {1.9, 2.6, 1.8}), tubeDistance(cochlea_, p));
 }
 
 double TemporalShapes::ossicles(const Vector3d& p) const noexcept {
@@ -235,7 +242,7 @@ double TemporalShapes::ossicles(const Vector3d& p) const noexcept {
     const double incus = ovoid(p, {-16.2, -5.1, -0.2}, {1.0, 1.3, 1.25});
     const double footplate = ovoid(p, {-20.6, -4.4, -4.9}, {0.25, 1.45, 0.75});
     double shape = std::min(malleus, incus);
-    for (const SplineTube& limb : ossicle_limbs_) shape = blend(shape, limb.signedDistance(p), 0.4);
+    for (const SplineTube& limb : ossicle_limbs_) shape = blend(shape, tubeDistance(limb, p), 0.4);
     return std::min(shape, footplate);
 }
 
@@ -249,7 +256,7 @@ double TemporalShapes::middleEar(const Vector3d& p) const noexcept {
 double TemporalShapes::antrum(const Vector3d& p) const noexcept {
     const double size = measures_.antrum_size;
     const double antrum = ovoid(p, {-13.9, 5.2, 0}, Vector3d(3.5, 5.2, 4.3) * size);
-    return blend(antrum, aditus_.signedDistance(p), 2);
+    return blend(antrum, tubeDistance(aditus_, p), 2);
 }
 
 double TemporalShapes::distance(TemporalShape shape, const Vector3d& p) const noexcept {
@@ -266,7 +273,7 @@ double TemporalShapes::distance(TemporalShape shape, const Vector3d& p) const no
         case TemporalShape::kSinus:
             return sinus(p);
         case TemporalShape::kNerve:
-            return nerve_.signedDistance(p);
+            return tubeDistance(nerve_, p);
         case TemporalShape::kCanals:
             return canals(p);
         case TemporalShape::kInnerEar:
@@ -274,17 +281,17 @@ double TemporalShapes::distance(TemporalShape shape, const Vector3d& p) const no
         case TemporalShape::kOssicles:
             return ossicles(p);
         case TemporalShape::kEarCanal:
-            return std::max(ear_canal_.signedDistance(p), -to_drum());
+            return std::max(tubeDistance(ear_canal_, p), -to_drum());
         case TemporalShape::kDrum:
-            return std::max(ear_canal_.signedDistance(p) - 0.5, std::abs(to_drum()) - kDrumHalf);
+            return std::max(tubeDistance(ear_canal_, p) - 0.5, std::abs(to_drum()) - kDrumHalf);
         case TemporalShape::kMiddleEar:
             return middleEar(p);
         case TemporalShape::kAntrum:
             return antrum(p);
         case TemporalShape::kCarotid:
-            return carotid_.signedDistance(p);
+            return tubeDistance(carotid_, p);
         case TemporalShape::kMeatus:
-            return meatus_.signedDistance(p);
+            return tubeDistance(meatus_, p);
         case TemporalShape::kCount:
             break;
     }

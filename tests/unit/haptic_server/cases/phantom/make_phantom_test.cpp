@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "common/base/units.h"
+#include "haptic_server/cases/phantom/temporal_bone_phantom.h"
 #include "haptic_server/cases/phantom/vertebra_phantom.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "tests/support/places.h"
@@ -138,6 +139,26 @@ TEST(MakePhantom, vertebraAndLabelsLieOnOneGrid) {
     for (size_t n = 0; n < scan.labels.size(); ++n) ASSERT_EQ(labels.values[n], float(scan.labels[n]));
 }
 
+TEST(MakePhantom, temporalBoneIsOfTheKindThatIsSaid) {
+    const test::TemporaryFolder folder;
+    const Outcome outcome = runMakePhantom(
+        "temporal_bone --voxel-mm 2 --side right --seed 7 --pneumatisation poor --jugular high "
+        "--dura low --out " +
+        (folder / "t.nrrd") + " --labels " + (folder / "l.nrrd"));
+    ASSERT_EQ(outcome.code, 0) << outcome.output;
+    TemporalBoneKind kind;
+    kind.is_right = kind.has_high_jugular = kind.has_low_dura = true;
+    kind.pneumatisation = TemporalBoneKind::Pneumatisation::kPoor;
+    kind.seed = 7;
+    const TemporalBone bone(kind);
+    const TemporalScan scan = bone.scan(bone.grid(2e-3));
+    const RawVolume ct = importVolume(folder / "t.nrrd"), labels = importVolume(folder / "l.nrrd");
+    EXPECT_EQ(ct.values, scan.ct.values);
+    EXPECT_EQ(ct.geometry.X_WV.position, scan.ct.geometry.X_WV.position);
+    EXPECT_EQ(ct.geometry.dims, labels.geometry.dims);
+    for (size_t n = 0; n < scan.labels.size(); ++n) ASSERT_EQ(labels.values[n], float(scan.labels[n]));
+}
+
 TEST(MakePhantom, skullLabelsRefuseAnotherScan) {
     const test::TemporaryFolder folder;
     const std::string body = folder / "ball.nrrd";
@@ -174,6 +195,12 @@ TEST(MakePhantom, badArgumentsGiveOneMessageAndCode2) {
         {"vertebra", "--out"},
         {"vertebra --voxel-mm 0.01" + out, "--voxel-mm"},
         {"vertebra --voxel-mm 2 --out /nonexistent/a.nrrd", "/nonexistent/a.nrrd"},
+        {"temporal_bone", "--out"},
+        {"temporal_bone --voxel-mm 0.05" + out, "--voxel-mm"},
+        {"temporal_bone --side middle" + out, "--side"},
+        {"temporal_bone --pneumatisation 1" + out, "--pneumatisation"},
+        {"temporal_bone --seed -1" + out, "--seed"},
+        {"temporal_bone --dura high" + out, "--dura"},
         {"skull_labels" + out, "--volume"},
         {"skull_labels --volume /nonexistent/a.inv3" + out, "/nonexistent/a.inv3"},
         {"tooth --noise-hu -5 --out " + folder.path().string(), "--noise-hu"},
