@@ -239,6 +239,10 @@ void addNumber(CLI::App& command, const char* name, double& value, double low, d
     command.add_option(name, value, help)->check(within(low, high))->capture_default_str();
 }
 
+void addSeed(CLI::App& command, uint64_t& seed, const char* help) {
+    command.add_option("--seed", seed, help)->check(within(0, 1e15))->capture_default_str();
+}
+
 template <class T, class Limits>
 void addThree(CLI::App& command, const char* name, std::vector<T>& values, const Limits& limits,
               const char* help) {
@@ -248,7 +252,7 @@ void addThree(CLI::App& command, const char* name, std::vector<T>& values, const
 void addTooth(CLI::App& tooth, ToothArguments& arguments) {
     tooth.add_option("--out", arguments.folder, "folder to write to")->required();
     addNumber(tooth, "--noise-hu", arguments.scan.noise_hu, 0, 500, "standard deviation of the noise");
-    tooth.add_option("--seed", arguments.scan.seed, "seed of the noise")->capture_default_str();
+    addSeed(tooth, arguments.scan.seed, "seed of the noise");
     tooth.add_option("--labels", arguments.labels,
                      "NRRD file to write: 1 pulp, 2 caries, 3 dentine, 4 enamel, 0 none");
 }
@@ -304,7 +308,7 @@ void addTemporalBone(CLI::App& bone, TemporalArguments& arguments) {
                     "NRRD file to write: 1 sigmoid sinus, 2 facial nerve, 3 dura, 4 semicircular canals, 5 "
                     "ossicles, 0 none");
     addNumber(bone, "--voxel-mm", arguments.voxel_mm, 0.1, 2, "edge of a voxel");
-    bone.add_option("--seed", arguments.seed, "another seed is another bone")->capture_default_str();
+    addSeed(bone, arguments.seed, "another seed is another bone");
     addChoice("--side", arguments.side, {"left", "right"}, "the mirror image of the other one");
     addChoice("--pneumatisation", arguments.pneumatisation, {"well", "poor", "sclerotic"},
               "how far air cells reach");

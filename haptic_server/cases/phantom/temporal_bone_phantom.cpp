@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 using enum TemporalShape;
 using Pneumatisation = TemporalBoneKind::Pneumatisation;
 
-constexpr double kAirHu = -1000, kSoftHu = 40, kBrainHu = 32, kFluidHu = 15;
+constexpr double kAirHu = -1000, kMuscleHu = 40, kBrainHu = 32, kFluidHu = 15;
 constexpr double kCortexLowHu = 1500, kCortexHighHu = 1800, kSeptumHu = 1450;
 constexpr double kCapsuleLowHu = 2000, kCapsuleHighHu = 2300, kOssicleHu = 1700;
 constexpr double kMarrowLowHu = 250, kMarrowHighHu = 900, kScleroticLowHu = 1300, kScleroticHighHu = 1650;
@@ -154,7 +154,7 @@ class Cube {
     // What is drawn later covers what was drawn before it.
     double huOf(const Vector3d& p, const TemporalDistances& d, double blur) const {
         const double lateral = p.x() - shapes_.sideOf(p.y(), p.z());
-        double hu = mixed(kSoftHu, kAirHu, share(lateral + 2.5, blur));
+        double hu = mixed(kMuscleHu, kAirHu, share(lateral + 2.5, blur));
         const double bone = share(-of(d, kOuter), blur);
         const double behind_plates = behindPlates(p, d, shapes_.measures());
         if (bone > 0) hu = mixed(hu, boneHu(p, d, behind_plates), bone);
@@ -162,7 +162,7 @@ class Cube {
         hu = mixed(hu, kAirHu, share(airDepth(p, d, behind_plates), blur));
         hu = mixed(hu, kFluidHu, share(-std::min(labyrinth(d), of(d, kMeatus)), blur));
         const double soft = std::min({of(d, kSinus), of(d, kCarotid), of(d, kNerve), of(d, kDrum)});
-        hu = mixed(hu, kSoftHu, share(-soft, blur));
+        hu = mixed(hu, kMuscleHu, share(-soft, blur));
         hu = mixed(hu, kOssicleHu, share(-of(d, kOssicles), blur));
         return mixed(kAirHu, hu, share(-of(d, kBlock), blur));
     }

@@ -204,6 +204,7 @@ TEST(MakePhantom, badArgumentsGiveOneMessageAndCode2) {
         {"skull_labels" + out, "--volume"},
         {"skull_labels --volume /nonexistent/a.inv3" + out, "/nonexistent/a.inv3"},
         {"tooth --noise-hu -5 --out " + folder.path().string(), "--noise-hu"},
+        {"tooth --seed -5 --out " + folder.path().string(), "--seed"},
     };
     for (const auto& [arguments, word] : cases) {
         const Outcome outcome = runMakePhantom(arguments);

@@ -17,8 +17,8 @@ using Eigen::Vector3i;
 using enum TemporalTissue;
 using Pneumatisation = TemporalBoneKind::Pneumatisation;
 
-constexpr double kBoneHu = 300;  // the surface beside soft tissue
-constexpr double kAirHu = -480;  // half-way between soft tissue and air
+constexpr double kSurfaceHu = 300;  // the surface beside soft tissue
+constexpr double kSpaceHu = -480;   // half-way between soft tissue and air
 
 TemporalBoneKind kindOf(uint64_t seed, Pneumatisation pneumatisation = Pneumatisation::kWell) {
     TemporalBoneKind kind;
@@ -87,7 +87,7 @@ struct Spaces {
 
 Spaces spacesOf(const TemporalScan& scan) {
     const VolumeGeometry& g = scan.ct.geometry;
-    const auto is_air = [&](size_t n) { return scan.ct.values[n] < kAirHu; };
+    const auto is_air = [&](size_t n) { return scan.ct.values[n] < kSpaceHu; };
     std::vector<bool> is_open(g.voxelCount());
     forEachVoxel(g, [&](size_t n, const Vector3d& p_mm) { is_open[n] = is_air(n) && !isAtDrum(p_mm); });
     const std::vector<bool> is_outside = flood(g, 0, [&](size_t n) { return is_open[n]; });
@@ -128,7 +128,7 @@ class WellPneumatisedBone : public testing::Test {
         constexpr double kStep_mm = 0.1;
         double within = 0;
         for (int n = 0; n < 120; ++n, p_mm += kStep_mm * direction) {
-            const bool is_bone = huAt(p_mm) > kBoneHu;
+            const bool is_bone = huAt(p_mm) > kSurfaceHu;
             if (!is_bone && within > 0) return within;
             within += is_bone ? kStep_mm : 0;
         }
@@ -297,7 +297,7 @@ TEST(TemporalBone, NerveIsATubeOfOnePieceWithinBone) {
             area[int(std::lround((p_mm.z() + 19) / kVoxel_mm))] += kVoxel_mm * kVoxel_mm;
         }
         const double beside = distance_mm(bone, kFacialNerve, p_mm);
-        if (p_mm.z() < -6 && beside > 0.35 && beside < 0.6) uncovered += scan.ct.values[n] < kBoneHu;
+        if (p_mm.z() < -6 && beside > 0.35 && beside < 0.6) uncovered += scan.ct.values[n] < kSurfaceHu;
     });
     const std::vector<bool> is_piece = flood(grid, first, is_nerve);
     EXPECT_EQ(size_t(std::count(is_piece.begin(), is_piece.end(), true)), voxels);
