@@ -12,9 +12,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kThinnestWall = 0.2, kThickestWall = 0.5;
+constexpr double kThinnestWall = 0.2, kThickestWall = 0.45;
 constexpr double kLargestRadius = 3;
-constexpr double kFillet = 0.5;        // of a cell's edges
+constexpr double kFillet = 0.45;       // of a cell's edges
 constexpr double kDeepest = 1;         // depths are told up to here
 constexpr double kShareOfHoles = 0.5;  // walls between neighbours that are open
 

@@ -24,7 +24,7 @@ constexpr double kCapsuleLowHu = 2000, kCapsuleHighHu = 2300, kOssicleHu = 1700;
 constexpr double kMarrowLowHu = 250, kMarrowHighHu = 900, kScleroticLowHu = 1300, kScleroticHighHu = 1650;
 constexpr double kDuraThickness = 1.0;
 constexpr double kCapsule = 1.8;  // thickness of the otic capsule
-constexpr double kBlurVoxels = 1.5;
+constexpr double kBlurVoxels = 2.5;
 
 double of(const TemporalDistances& d, TemporalShape shape) {
     return d[size_t(shape)];
@@ -86,7 +86,7 @@ AirCells makeCells(const TemporalBoneKind& kind, const TemporalShapes& shapes) {
     // the Human Body, 1918).
     region.radius = [&](const Vector3d& p) {
         const double away = smoothStep(1, 16, shapes.distance(kAntrum, p));
-        return 2.5 - 0.8 * away;
+        return 2.6 - 0.7 * away;
     };
     return AirCells(region, kind.seed);
 }

@@ -37,7 +37,7 @@ struct TemporalBoneKind {
 };
 
 struct TemporalScan {
-    RawVolume ct;                 // HU; edges are soft over 1.5 voxels, the scanner's blur
+    RawVolume ct;                 // HU; edges are soft over 2.5 voxels, the scanner's blur
     std::vector<uint8_t> labels;  // TemporalTissue, x fastest
 };
 

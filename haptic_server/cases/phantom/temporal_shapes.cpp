@@ -138,7 +138,7 @@ TemporalMeasures::TemporalMeasures(const TemporalBoneKind& kind) {
     canal_turn = draw.in(-3, 3) * M_PI / 180;
     ear_canal_radius = draw.in(3.6, 4.1);
     antrum_size = draw.in(0.92, 1.1) * antrumSize(kind.pneumatisation);
-    cortex = draw.in(1.7, 2.4);
+    cortex = draw.in(1.5, 2.3);
     sinus_plate = draw.in(0.6, 0.95);
     tegmen_plate = draw.in(0.6, 1.1);
     for (double& phase : wave_phase) phase = draw.in(0, 2 * M_PI);
