@@ -299,8 +299,8 @@ void addVertebra(CLI::App& vertebra, VertebraArguments& arguments) {
 }
 
 void addTemporalBone(CLI::App& bone, TemporalArguments& arguments) {
-    const auto addChoice = [&](const char* name, std::string& value, const std::vector<std::string>& choices,
-                               const char* help) {
+    const auto add_choice = [&](const char* name, std::string& value, const std::vector<std::string>& choices,
+                                const char* help) {
         bone.add_option(name, value, help)->check(CLI::IsMember(choices))->capture_default_str();
     };
     bone.add_option("--out", arguments.file, "NRRD file to write")->required();
@@ -309,11 +309,11 @@ void addTemporalBone(CLI::App& bone, TemporalArguments& arguments) {
                     "ossicles, 0 none");
     addNumber(bone, "--voxel-mm", arguments.voxel_mm, 0.1, 2, "edge of a voxel");
     addSeed(bone, arguments.seed, "another seed is another bone");
-    addChoice("--side", arguments.side, {"left", "right"}, "the mirror image of the other one");
-    addChoice("--pneumatisation", arguments.pneumatisation, {"well", "poor", "sclerotic"},
-              "how far air cells reach");
-    addChoice("--jugular", arguments.jugular, {"normal", "high"}, "dome of the jugular bulb");
-    addChoice("--dura", arguments.dura, {"normal", "low"}, "middle fossa over the mastoid");
+    add_choice("--side", arguments.side, {"left", "right"}, "the mirror image of the other one");
+    add_choice("--pneumatisation", arguments.pneumatisation, {"well", "poor", "sclerotic"},
+               "how far air cells reach");
+    add_choice("--jugular", arguments.jugular, {"normal", "high"}, "dome of the jugular bulb");
+    add_choice("--dura", arguments.dura, {"normal", "low"}, "middle fossa over the mastoid");
 }
 
 void addSkullLabels(CLI::App& skull, SkullArguments& arguments) {

@@ -118,15 +118,15 @@ std::vector<uint32_t> AirCells::seedsNear(const Vector3d& p, double reach) const
     constexpr double kFaceReach = kDeepest + kFillet + kThickestWall / 2, kFarthest = 2.4 * kLargestRadius;
     const double ball = reach + kBend * std::sqrt(3.0);
     double bound = std::numeric_limits<double>::infinity();
-    const auto squaredReach = [&](const Seed& s, double by) {
+    const auto squared_reach = [&](const Seed& s, double by) {
         const double d = std::max((s.middle - p).norm() + by, 0.0);
         return d * d - s.radius * s.radius;
     };
-    for (const Seed& s : seeds_) bound = std::min(bound, squaredReach(s, ball));
+    for (const Seed& s : seeds_) bound = std::min(bound, squared_reach(s, ball));
     bound += 2 * kFarthest * kFaceReach;
     std::vector<uint32_t> near;
     for (uint32_t n = 0; n < seeds_.size(); ++n)
-        if (squaredReach(seeds_[n], -ball) < bound) near.push_back(n);
+        if (squared_reach(seeds_[n], -ball) < bound) near.push_back(n);
     return near;
 }
 

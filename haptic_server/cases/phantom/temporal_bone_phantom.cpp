@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 
 #include "common/base/units.h"
@@ -102,7 +101,7 @@ class Cube {
     Cube(const TemporalBoneKind& kind, const TemporalShapes& shapes, const AirCells& cells,
          const Vector3d& middle, double half_diagonal)
         : kind_(kind), shapes_(shapes), cells_(cells), at_middle_(shapes.distances(middle)) {
-        constexpr double kReach = 4.5, kSteepest = 1.4;
+        constexpr double kReach = 6.5, kSteepest = 1.4;
         for (size_t n = 0; n < kTemporalShapes; ++n)
             if (std::abs(at_middle_[n]) < kReach + kSteepest * half_diagonal)
                 near_.push_back(TemporalShape(n));
@@ -185,11 +184,56 @@ class Cube {
     std::vector<uint32_t> near_seeds_;
 };
 
-constexpr int kEdge = 8;  // voxels of a cube
+// Makes a few slices at a time.
+class Slabs {
+  public:
+    struct Slab {
+        std::vector<int16_t> hu;
+        std::vector<uint8_t> labels;
+    };
+    Slabs(const TemporalBoneKind& kind, const TemporalShapes& shapes, const AirCells& cells,
+          const VolumeGeometry& geometry)
+        : kind_(kind), shapes_(shapes), cells_(cells), geometry_(geometry) {}
 
-struct Slab {
-    std::vector<int16_t> hu;
-    std::vector<uint8_t> labels;
+    std::vector<int> firstSlices() const {
+        std::vector<int> firsts;
+        for (int k = 0; k < geometry_.dims.z(); k += kEdge) firsts.push_back(k);
+        return firsts;
+    }
+    Slab make(int first) const {
+        Eigen::Vector3i size = geometry_.dims;
+        size.z() = std::min(kEdge, geometry_.dims.z() - first);
+        Slab slab{std::vector<int16_t>(size_t(size.prod())), std::vector<uint8_t>(size_t(size.prod()))};
+        for (int j = 0; j < size.y(); j += kEdge)
+            for (int i = 0; i < size.x(); i += kEdge) fill(slab, {i, j, first}, size);
+        return slab;
+    }
+
+  private:
+    static constexpr int kEdge = 8;  // voxels of a cube
+
+    Vector3d pointOf(const Vector3d& index) const {
+        return toLeft(kind_, geometry_.X_WV * geometry_.spacing.cwiseProduct(index));
+    }
+    void fill(Slab& slab, const Eigen::Vector3i& low, const Eigen::Vector3i& slab_size) const {
+        const double blur = kBlurVoxels * geometry_.spacing.maxCoeff() * kPerMillimetre;
+        const double half_diagonal = (geometry_.spacing * (kEdge - 1) / 2).norm() * kPerMillimetre;
+        const Vector3d middle = low.cast<double>().array() + (kEdge - 1) / 2.0;
+        const Cube cube(kind_, shapes_, cells_, pointOf(middle), half_diagonal);
+        const Eigen::Vector3i high = (low.array() + kEdge - 1).matrix();
+        forEachIndex({low, high.cwiseMin((geometry_.dims.array() - 1).matrix())},
+                     [&](const Eigen::Vector3i& v) {
+                         const Cube::Voxel voxel = cube.at(pointOf(v.cast<double>()), blur);
+                         const size_t n = placeIn(slab_size, {v.x(), v.y(), v.z() - low.z()});
+                         slab.hu[n] = int16_t(std::lround(voxel.hu));
+                         slab.labels[n] = uint8_t(voxel.tissue);
+                     });
+    }
+
+    const TemporalBoneKind& kind_;
+    const TemporalShapes& shapes_;
+    const AirCells& cells_;
+    const VolumeGeometry& geometry_;
 };
 
 }  // namespace
@@ -215,43 +259,19 @@ VolumeGeometry TemporalBone::grid(double voxel_size) const {
 }
 
 TemporalScan TemporalBone::scan(const VolumeGeometry& geometry) const {
-    const double blur = kBlurVoxels * geometry.spacing.maxCoeff() * kPerMillimetre;
-    const auto pointOf = [&](const Vector3d& index) {
-        return toLeft(kind_, geometry.X_WV * geometry.spacing.cwiseProduct(index));
-    };
-    const Eigen::Vector3i last = geometry.dims.array() - 1;
-    const double half_diagonal = (geometry.spacing * (kEdge - 1) / 2).norm() * kPerMillimetre;
-    const auto make_slab = [&](int first) {
-        Eigen::Vector3i size = geometry.dims;
-        size.z() = std::min(kEdge, geometry.dims.z() - first);
-        Slab slab{std::vector<int16_t>(size_t(size.prod())), std::vector<uint8_t>(size_t(size.prod()))};
-        for (int j = 0; j <= last.y(); j += kEdge)
-            for (int i = 0; i <= last.x(); i += kEdge) {
-                const Eigen::Vector3i low(i, j, first);
-                const Vector3d middle = low.cast<double>().array() + (kEdge - 1) / 2.0;
-                const Cube cube(kind_, *shapes_, *cells_, pointOf(middle), half_diagonal);
-                const IndexBox box{low, (low.array() + kEdge - 1).matrix().cwiseMin(last)};
-                forEachIndex(box, [&](const Eigen::Vector3i& v) {
-                    const Cube::Voxel voxel = cube.at(pointOf(v.cast<double>()), blur);
-                    const size_t n = placeIn(size, v - Eigen::Vector3i(0, 0, first));
-                    slab.hu[n] = int16_t(std::lround(voxel.hu));
-                    slab.labels[n] = uint8_t(voxel.tissue);
-                });
-            }
-        return slab;
-    };
     TemporalScan scan;
     scan.ct.geometry = geometry;
     scan.ct.is_hounsfield = true;
     scan.ct.description = "temporal bone phantom";
     scan.ct.values.reserve(geometry.voxelCount());
     scan.labels.reserve(geometry.voxelCount());
-    std::vector<int> firsts;
-    for (int k = 0; k <= last.z(); k += kEdge) firsts.push_back(k);
-    workAhead(firsts, make_slab, [&](int, Slab&& slab) {
-        scan.ct.values.append(std::span<const int16_t>(slab.hu));
-        scan.labels.insert(scan.labels.end(), slab.labels.begin(), slab.labels.end());
-    });
+    const Slabs slabs(kind_, *shapes_, *cells_, geometry);
+    workAhead(
+        slabs.firstSlices(), [&](int first) { return slabs.make(first); },
+        [&](int, Slabs::Slab&& slab) {
+            scan.ct.values.append(std::span<const int16_t>(slab.hu));
+            scan.labels.insert(scan.labels.end(), slab.labels.begin(), slab.labels.end());
+        });
     return scan;
 }
 

@@ -1,5 +1,8 @@
 #include "haptic_server/cases/phantom/temporal_shapes.h"
 
+#include <limits>
+
+#include "common/base/units.h"
 #include "haptic_server/cases/phantom/lattice_noise.h"
 
 namespace bonemill {
@@ -39,7 +42,7 @@ double hump(double x, double width) {
 
 // Far away the distance to the tube's box is enough.
 double tubeDistance(const SplineTube& tube, const Vector3d& p) {
-    constexpr double kFar = 5;
+    constexpr double kFar = 6.5;
     const double away = tube.box().exteriorDistance(p);
     return away > kFar ? away : tube.signedDistance(p);
 }
@@ -50,7 +53,7 @@ SplineTube arcTube(const Vector3d& from, const Vector3d& centre, const Vector3d&
     constexpr int kPoints = 8;
     std::vector<Vector3d> points{from};
     for (int n = 0; n < kPoints; ++n) {
-        const double angle = (first_deg + (last_deg - first_deg) * n / (kPoints - 1)) * M_PI / 180;
+        const double angle = (first_deg + (last_deg - first_deg) * n / (kPoints - 1)) * kDegree;
         points.push_back(centre + radius * (std::cos(angle) * u + std::sin(angle) * v));
     }
     points.push_back(to);
@@ -64,7 +67,7 @@ constexpr double kLumen = 0.5;  // radius of a bony semicircular canal
 // Zonneveld, Yearbook of Physical Anthropology 41:211, 1998. They stand nearly at right angles (Della
 // Santina et al., JARO 6:191, 2005), the lateral one with its front 25 degrees up.
 SplineTube lateralCanal() {
-    const double c = std::cos(25 * M_PI / 180), s = std::sin(25 * M_PI / 180);
+    const double c = std::cos(25 * kDegree), s = std::sin(25 * kDegree);
     return arcTube({-22.4, -3.4, -3.4}, {-21.3, -0.8, -1.0}, Vector3d::UnitX(), {0, c, -s}, 2.3, -105, 125,
                    {-23.4, -2.6, -3.6}, kLumen);
 }
@@ -84,7 +87,7 @@ SplineTube cochlea() {
     constexpr int kPoints = 26;
     std::vector<Vector3d> points;
     for (int n = 0; n <= kPoints; ++n) {
-        const double part = double(n) / kPoints, angle = 5 * M_PI * part - 2.2;
+        const double part = double(n) / kPoints, angle = 2.5 * kTurn * part - 2.2;
         const double radius = 3.1 - 2.2 * part;
         points.push_back(Vector3d(-23.7, -9.3, -6.6) + 2.9 * part * axis +
                          radius * (std::cos(angle) * u + std::sin(angle) * v));
@@ -135,13 +138,13 @@ TemporalMeasures::TemporalMeasures(const TemporalBoneKind& kind) {
     tip_down = draw.in(-1.5, 1.5);
     nerve_back = draw.in(-0.5, 0.5);
     nerve_radius = draw.in(0.6, 0.75);
-    canal_turn = draw.in(-3, 3) * M_PI / 180;
+    canal_turn = draw.in(-3, 3) * kDegree;
     ear_canal_radius = draw.in(3.6, 4.1);
     antrum_size = draw.in(0.92, 1.1) * antrumSize(kind.pneumatisation);
     cortex = draw.in(1.5, 2.3);
     sinus_plate = draw.in(0.6, 0.95);
     tegmen_plate = draw.in(0.6, 1.1);
-    for (double& phase : wave_phase) phase = draw.in(0, 2 * M_PI);
+    for (double& phase : wave_phase) phase = draw.in(0, kTurn);
     low_dura = kind.has_low_dura ? 3 : 0;
 }
 

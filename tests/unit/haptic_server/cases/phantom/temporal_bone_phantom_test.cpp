@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "common/base/units.h"
 #include "haptic_server/core/volume/index_box.h"
@@ -173,7 +174,7 @@ TEST_F(WellPneumatisedBone, CellsGrowTowardsTheAntrum) {
     double near_sum = 0, far_sum = 0;
     for (const auto& [number, cell] : cells) {
         const double volume = cell.samples * double(kStride) * 0.4 * 0.4 * 0.4;
-        const double diameter = std::cbrt(6 * volume / M_PI);
+        const double diameter = std::cbrt(6 * volume / std::numbers::pi);
         if (diameter > 0.5 && diameter < 6) of_fitting_size += cell.samples;
         const double away = (cell.sum / cell.samples - antrum).norm();
         if (away < 9) near_sum += diameter, ++near;
@@ -301,9 +302,10 @@ TEST(TemporalBone, NerveIsATubeOfOnePieceWithinBone) {
     });
     const std::vector<bool> is_piece = flood(grid, first, is_nerve);
     EXPECT_EQ(size_t(std::count(is_piece.begin(), is_piece.end(), true)), voxels);
-    EXPECT_GT(double(voxels) * std::pow(kVoxel_mm, 3), 28 * M_PI * 0.6 * 0.6) << "28 mm of its course";
+    EXPECT_GT(double(voxels) * std::pow(kVoxel_mm, 3), 28 * std::numbers::pi * 0.6 * 0.6)
+        << "28 mm of its course";
     for (int level = 1; level * kVoxel_mm < 13; ++level) {  // the mastoid part, from below
-        const double diameter = 2 * std::sqrt(area[level] / M_PI);
+        const double diameter = 2 * std::sqrt(area[level] / std::numbers::pi);
         EXPECT_GT(diameter, 1.1) << level;
         EXPECT_LT(diameter, 1.8) << level;
     }
