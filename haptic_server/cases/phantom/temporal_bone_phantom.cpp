@@ -7,6 +7,7 @@
 #include "common/base/units.h"
 #include "common/process/work_ahead.h"
 #include "haptic_server/cases/phantom/air_cells.h"
+#include "haptic_server/cases/phantom/lattice_noise.h"
 #include "haptic_server/cases/phantom/temporal_shapes.h"
 #include "haptic_server/core/volume/index_box.h"
 
