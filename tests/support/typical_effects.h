@@ -46,12 +46,12 @@ inline constexpr HeatConfig kHeat{.cell = 0.5e-3,
                                   .dry_transfer = 10,
                                   .necrosis_temperature = 47,
                                   .necrosis_time = 0};
-inline constexpr ThermalConfig kThermal{.heat_share = 0.2,
-                                        .rubbing_heat_share = 0.05,
-                                        .diamond_rubbing_heat_share = 0.15,
-                                        .drill_rubbing_heat_share = 0.15,
-                                        .irrigation_radius = 10e-3,
-                                        .heat = kHeat};
+inline const ThermalConfig kThermal{.heat_share = 0.2,
+                                    .rubbing_heat_share = 0.05,
+                                    .diamond_rubbing_heat_share = 0.15,
+                                    .drill_rubbing_heat_share = 0.15,
+                                    .irrigation_radius = 10e-3,
+                                    .heat = kHeat};
 inline constexpr ProtectedStructuresConfig kProtectedStructures{.warning_distance = 2e-3};
 
 }  // namespace bonemill::test

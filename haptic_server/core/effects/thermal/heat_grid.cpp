@@ -15,11 +15,10 @@ constexpr double kLongestShare = 0.9 * kStableShare;
 constexpr double kShortestTurn = 0.02;  // s: quicker turns would show nobody more
 constexpr double kTurnsPerSecond = 4000;
 constexpr double kPoolShare = 0.8;  // of the bricks that could have their turn in time
-constexpr size_t kMostBricks = 1024, kMaxDeadBricks = 16384;
+constexpr size_t kMostBricks = 1024, kMostDeadBricks = 16384;
 constexpr size_t kLookupsPerStep = 4;  // of a brick's cubes in the volume
 constexpr size_t kLookupsOfHeat = 2;   // of them, that dead bone leaves to the bricks whose turn it is
 constexpr int64_t kMaxBricksToRevisit = 512;
-constexpr size_t kMaxDeadSeen = 256;  // bricks with dead cells that a step looks through for stale ones
 // They are in K: a brick whose border is warmer than that opens its neighbour; one that is cooler all over is
 // closed when it has been open for a while. Cold matters less.
 constexpr float kWarm = 0.01f, kCold = -2, kSettledCold = -0.5f;
@@ -35,12 +34,16 @@ HeatGrid::HeatGrid(const HeatConfig& config, const VoxelVolume& bone, double dt)
     : config_(config),
       bone_(bone),
       dt_(dt),
+      bricks_((bone.dims().cast<double>().array() * bone.spacing().array() / (config.cell * kEdge))
+                  .ceil()
+                  .cast<int>()),
       cell_capacity_(config.heat_capacity * pinned::cube(config.cell)),
       per_time_(config.conductivity / (config.heat_capacity * config.cell * config.cell)),
       longest_(kLongestShare / per_time_),
       turn_(std::min(kShortestTurn, longest_ / 2)),
       most_turns_(size_t(std::max(1.0, std::round(kTurnsPerSecond * dt)))),
-      necrosis_excess_(config.necrosis_temperature - config.body_temperature) {
+      necrosis_excess_(config.necrosis_temperature - config.body_temperature),
+      dead_(bricks_, kMostDeadBricks) {
     // There is half a cube of bone between a cube's middle and its face.
     const auto rate = [&](double transfer) {
         if (transfer <= 0) return 0.0;
@@ -49,14 +52,10 @@ HeatGrid::HeatGrid(const HeatConfig& config, const VoxelVolume& bone, double dt)
     };
     wet_rate_ = rate(config.wet_transfer);
     dry_rate_ = rate(config.dry_transfer);
-    const Eigen::Array3d size = bone.dims().cast<double>().array() * bone.spacing().array();
-    bricks_ = (size / (config.cell * kEdge)).ceil().cast<int>();
     directory_.assign(size_t(bricks_.prod()), kNone);
-    dead_directory_.assign(directory_.size(), kNone);
     const double in_time = kPoolShare * double(most_turns_) * longest_ / dt;
     pool_.resize(std::min({kMostBricks, size_t(std::max(1.0, in_time)), directory_.size()}));
     hottest_.resize(pool_.size());
-    dead_pool_.resize(std::min(kMaxDeadBricks, directory_.size()));
     for (size_t n = pool_.size(); n > 0; --n) free_.push_back(uint32_t(n - 1));
     active_.reserve(pool_.size());
     lookups_ = kLookupsPerStep;
@@ -128,7 +127,7 @@ void HeatGrid::lookUpBone(Brick& brick) noexcept {
             brick.is_bone[n] = *at;
             brick.open_faces[n] =
                 *at ? uint8_t(!at[-kX] + !at[kX] + !at[-kY] + !at[kY] + !at[-kZ] + !at[kZ]) : uint8_t(0);
-            if (!*at) removeDead(brick, n);
+            if (!*at) dead_.remove(brick.index, n);
         });
 }
 
@@ -167,52 +166,20 @@ void HeatGrid::noteChange(const IndexBox& voxels) noexcept {
     forEachIndex(box.clamped(Eigen::Vector3i::Zero(), bricks_.array() - 1),
                  [&](const Eigen::Vector3i& index) {
                      if (Brick* brick = find(index)) brick->is_stale = true;
-                     const uint32_t slot = deadSlotOf(index);
-                     if (slot != kNone) markDeadStale(slot, slot + 1);
+                     dead_.noteChange(index);
                  });
 }
 
 void HeatGrid::noteChangeEverywhere() noexcept {
     for (const uint32_t slot : active_) pool_[slot].is_stale = true;
-    markDeadStale(0, dead_used_);
+    dead_.noteChangeEverywhere();
 }
 
 void HeatGrid::forget() noexcept {
     while (!active_.empty()) close(active_.size() - 1);
     turns_due_ = 0;
     next_ = 0;
-    dead_used_ = dead_count_ = stale_dead_ = next_dead_ = 0;
-}
-
-uint32_t HeatGrid::deadSlotOf(const Eigen::Vector3i& brick) const noexcept {
-    const uint32_t slot = dead_directory_[directoryIndex(brick)];
-    return slot < dead_used_ && dead_pool_[slot].brick == brick ? slot : kNone;
-}
-
-void HeatGrid::markDeadStale(size_t first, size_t end) noexcept {
-    for (size_t slot = first; slot < end; ++slot) {
-        stale_dead_ += !dead_pool_[slot].is_stale;
-        dead_pool_[slot].is_stale = true;
-    }
-}
-
-// Dead cells whose bone is gone are not counted any more, whether their brick is open or not.
-void HeatGrid::reviewDead() noexcept {
-    for (size_t n = 0; n < kMaxDeadSeen && stale_dead_ > 0 && lookups_ > kLookupsOfHeat; ++n) {
-        next_dead_ = next_dead_ + 1 < dead_used_ ? next_dead_ + 1 : 0;
-        DeadCells& dead = dead_pool_[next_dead_];
-        if (!dead.is_stale) continue;
-        dead.is_stale = false;
-        --stale_dead_;
-        --lookups_;
-        for (int cell = 0; cell < kCells; ++cell) {
-            const Eigen::Vector3i place(cell & (kEdge - 1), cell >> kShift & (kEdge - 1),
-                                        cell >> (2 * kShift));
-            if (!dead.is_dead[size_t(cell)] || isBone(dead.brick * kEdge + place)) continue;
-            dead.is_dead[size_t(cell)] = false;
-            --dead_count_;
-        }
-    }
+    dead_.forget();
 }
 
 void HeatGrid::irrigate(const Eigen::Vector3d& center_V, double radius,
@@ -238,7 +205,8 @@ void HeatGrid::step(bool has_time) noexcept {
     lookups_ = kLookupsPerStep;
     turns_due_ = std::min(turns_due_ + double(active_.size()) * dt_ / turn_, double(most_turns_));
     if (!has_time) return;
-    reviewDead();
+    lookups_ -=
+        dead_.review(kLookupsPerStep - kLookupsOfHeat, [&](const auto& cell) { return isBone(cell); });
     for (; turns_due_ >= 1 && !active_.empty(); --turns_due_) {
         if (next_ >= active_.size()) next_ = 0;
         Brick& brick = pool_[active_[next_]];
@@ -341,28 +309,8 @@ void HeatGrid::harm(Brick& brick, double elapsed) noexcept {
             continue;
         }
         brick.hot_time[n] += float(elapsed);
-        if (double(brick.hot_time[n]) >= config_.necrosis_time) markDead(brick, n);
+        if (double(brick.hot_time[n]) >= config_.necrosis_time) dead_.add(brick.index, n);
     }
-}
-
-void HeatGrid::markDead(Brick& brick, int cell) noexcept {
-    uint32_t slot = deadSlotOf(brick.index);
-    if (slot == kNone) {
-        if (dead_used_ == dead_pool_.size()) return;
-        slot = dead_directory_[directoryIndex(brick.index)] = uint32_t(dead_used_++);
-        dead_pool_[slot] = {.is_dead = {}, .brick = brick.index, .is_stale = false};
-    }
-    auto is_dead = dead_pool_[slot].is_dead[size_t(cell)];
-    dead_count_ += !is_dead;
-    is_dead = true;
-}
-
-void HeatGrid::removeDead(const Brick& brick, int cell) noexcept {
-    const uint32_t slot = deadSlotOf(brick.index);
-    if (slot == kNone) return;
-    auto is_dead = dead_pool_[slot].is_dead[size_t(cell)];
-    dead_count_ -= is_dead;
-    is_dead = false;
 }
 
 bool HeatGrid::isSettled(const Brick& brick) const noexcept {
@@ -391,7 +339,7 @@ double HeatGrid::hottest() const noexcept {
 }
 
 double HeatGrid::necroticVolume() const noexcept {
-    return double(dead_count_) * pinned::cube(config_.cell);
+    return double(dead_.count()) * pinned::cube(config_.cell);
 }
 
 double HeatGrid::storedHeat() const noexcept {

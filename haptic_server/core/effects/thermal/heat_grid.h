@@ -8,10 +8,10 @@
 // The frame is V. Construction allocates; all else is RT-safe, for the tick thread only.
 #pragma once
 
-#include <bitset>
 #include <cstdint>
 #include <vector>
 
+#include "haptic_server/core/effects/thermal/dead_cells.h"
 #include "haptic_server/core/effects/thermal/thermal_config.h"
 #include "haptic_server/core/volume/voxel_volume.h"
 
@@ -46,7 +46,7 @@ class HeatGrid {
     size_t activeBricks() const noexcept { return active_.size(); }
 
   private:
-    static constexpr int kShift = 3, kEdge = 1 << kShift, kCells = kEdge * kEdge * kEdge;
+    static constexpr int kShift = DeadCells::kShift, kEdge = DeadCells::kEdge, kCells = DeadCells::kCells;
     static constexpr uint32_t kNone = ~uint32_t(0);
     static constexpr int kOutside = -1;
     static constexpr int kTurnsPerLook = 4;
@@ -84,11 +84,6 @@ class HeatGrid {
     void openNeighbours(Brick& brick) noexcept;
     void cool(Brick& brick, double elapsed) noexcept;
     void harm(Brick& brick, double elapsed) noexcept;
-    void markDead(Brick& brick, int cell) noexcept;
-    void removeDead(const Brick& brick, int cell) noexcept;
-    uint32_t deadSlotOf(const Eigen::Vector3i& brick) const noexcept;
-    void reviewDead() noexcept;
-    void markDeadStale(size_t first, size_t end) noexcept;
     float& hottestOf(const Brick& brick) noexcept { return hottest_[size_t(&brick - pool_.data())]; }
     float hottestOf(const Brick& brick) const noexcept { return hottest_[size_t(&brick - pool_.data())]; }
     bool isSettled(const Brick& brick) const noexcept;
@@ -117,18 +112,7 @@ class HeatGrid {
     std::vector<uint32_t> free_;
     std::vector<uint32_t> active_;
     std::vector<uint32_t> directory_;  // per brick: in pool_
-    // Dead cells outlive their brick's memory with a bit each. A slot in the directory counts only while it
-    // is in use by that brick (deadSlotOf()), so that all are forgotten at once.
-    struct DeadCells {
-        std::bitset<kCells> is_dead;
-        Eigen::Vector3i brick;
-        bool is_stale;  // its bone may be gone
-    };
-    std::vector<uint32_t> dead_directory_;
-    std::vector<DeadCells> dead_pool_;
-    size_t dead_used_ = 0;
-    size_t dead_count_ = 0;
-    size_t stale_dead_ = 0, next_dead_ = 0;  // how many are stale; where the search for them goes on
+    DeadCells dead_;
 };
 
 }  // namespace bonemill

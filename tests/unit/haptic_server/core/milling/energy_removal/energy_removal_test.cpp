@@ -284,52 +284,6 @@ TEST(EnergyRemoval, BelowTheThresholdItOnlyRubs) {
     expectBalance(cutting, config.removal.specific_energy);
 }
 
-// The threshold makes of uneven pressure more removal; what is uneven by voxels and ticks must not count.
-TEST(EnergyRemoval, AThresholdDoesNotKnowVoxelsAndTicks) {
-    struct Case {
-        double voxel, rate;  // m, Hz
-    };
-    double first = 0;
-    for (const Case& c : {Case{0.125e-3, 1000}, Case{0.25e-3, 1000}, Case{0.125e-3, 500},
-                          Case{0.125e-3, 4000}, Case{0.25e-3, 4000}}) {
-        RigConfig config;
-        config.size = {7e-3, 4e-3, 3e-3};
-        config.spacing.setConstant(c.voxel);
-        config.rate = c.rate;
-        config.rotation = kUpright;
-        config.removal.threshold_pressure = 1e6;
-        MillingRig rig(config);
-        constexpr double kDepth = 0.8e-3, kSink = 0.3, kFeed = 2e-3;
-        const Vector3d start = onTop(rig) - Vector3d(1.5e-3, 0, 0);
-        rig.feed(kSink, start, {0, 0, -kDepth / kSink});
-        rig.feed(1.5, start - Vector3d(0, 0, kDepth), {kFeed, 0, 0});
-        if (first == 0) first = rig.removedVolume();
-        EXPECT_NEAR(rig.removedVolume() / first, 1, 0.05) << c.voxel << ' ' << c.rate;
-    }
-}
-
-// Over whole strokes, from R/h = 8 to 4: cuts as deep as some voxels hardly know them, thin ones do
-// (docs/teach/effects.md).
-TEST(EnergyRemoval, AThresholdKnowsTheVoxelsInThinCutsOnly) {
-    for (const auto& [depth, most] : {std::pair{0.8e-3, 0.05}, {0.3e-3, 0.25}}) {
-        double finest = 0;
-        for (const double voxels : {8.0, 6.0, 5.0, 4.0}) {
-            RigConfig config;
-            config.size = {7e-3, 4e-3, 3e-3};
-            config.spacing.setConstant(config.burr.radius / voxels);
-            config.rotation = kUpright;
-            config.removal.threshold_pressure = 1e6;
-            MillingRig rig(config);
-            constexpr double kSink = 0.15, kFeed = 6e-3;
-            const Vector3d start = onTop(rig) - Vector3d(1.5e-3, 0, 0);
-            rig.feed(kSink, start, {0, 0, -depth / kSink});
-            rig.feed(0.5, start - Vector3d(0, 0, depth), {kFeed, 0, 0});
-            if (finest == 0) finest = rig.removedVolume();
-            EXPECT_NEAR(rig.removedVolume() / finest, 1, most) << depth << ' ' << voxels;
-        }
-    }
-}
-
 TEST(EnergyRemoval, DiamondsTakeMoreEnergy) {
     RigConfig config = sideways();
     config.burr.grit = BurrGrit::kDiamond;
