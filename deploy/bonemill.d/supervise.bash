@@ -156,6 +156,11 @@ end_with_error() {  # ROLE CODE
     complain "${title[$1]}: ${what:-it left with code $2, see $logs/$1.log}"
 }
 
+# haptic_server goes on from its recording, where it makes one.
+bone_after_restart() {
+    if [[ " ${extra[*]} " == *" --no-recording "* ]]; then echo "the bone will be whole again"; else echo "what was milled is kept"; fi
+}
+
 restart() {  # ROLE CODE
     local role=$1 how="left with code $2" more=""
     (($2 <= 128)) || how="was ended by signal $(($2 - 128))"
@@ -164,7 +169,7 @@ restart() {  # ROLE CODE
         complain "${title[$role]} $how again, after $most_restarts restarts: session $number ends, see $logs/$role.log"
         return
     fi
-    [[ $role != server ]] || more="; the bone will be whole again"
+    [[ $role != server ]] || more="; $(bone_after_restart)"
     due_s[$role]=$((started_s[$role] + restart_after_s + 1))  # Whole seconds: one more, lest it be less than said.
     restarts[$role]=$((restarts[$role] + 1))
     say "${title[$role]} $how: it is started again (${restarts[$role]} of $most_restarts)$more"
