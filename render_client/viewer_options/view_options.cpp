@@ -50,9 +50,10 @@ std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
                             ->check(within(0, 1))
                             ->type_name("[OPACITY]");
     auto* structures =
-        app.add_option("--structures", raw.structures,
-                       "Protected structures are seen through-bone, only where exposed, or off")
-            ->check(CLI::IsMember({"through-bone", "exposed", "off"}))
+        app.add_option(
+               "--structures", raw.structures,
+               "Protected structures are seen where exposed and through thin bone, through-bone, or off")
+            ->check(CLI::IsMember({"exposed", "through-bone", "off"}))
             ->capture_default_str();
     auto* thickness = app.add_flag("--thickness", raw.thickness,
                                    "Bone has the colour of its distance to the next protected structure");
@@ -100,9 +101,9 @@ ViewSettings viewSettings(const RawView& raw) {
         if (raw.cuts[axis]) settings.cuts[axis] = {true, *raw.cuts[axis], raw.flips[axis]};
     settings.is_transparent = raw.is_transparent;
     settings.opacity = raw.opacity.value_or(ViewSettings::kDefaultOpacity);
-    settings.structures.fill(raw.structures == "off"       ? StructureMode::kOff
-                             : raw.structures == "exposed" ? StructureMode::kExposedOnly
-                                                           : StructureMode::kThroughBone);
+    settings.structures.fill(raw.structures == "off"            ? StructureMode::kOff
+                             : raw.structures == "through-bone" ? StructureMode::kThroughBone
+                                                                : StructureMode::kExposedOnly);
     settings.show_thickness = raw.thickness;
     settings.stereo = raw.stereo == "side-by-side" ? StereoMode::kSideBySide
                       : raw.stereo == "anaglyph"   ? StereoMode::kAnaglyph

@@ -24,7 +24,7 @@ struct RawView {
     std::string camera = "orbit";
     bool has_depth_of_field = false;
     std::string quality = "auto";
-    std::string structures = "through-bone";
+    std::string structures = "exposed";
     bool thickness = false;
     std::optional<double> text_scale;
     bool no_handpiece = false;

@@ -29,6 +29,7 @@ class StructurePictures : public testing::Test {
         scene_ = std::make_unique<RenderScene>(gl);
         scene_->settings().show_hud = false;
         scene_->settings().show_force = false;
+        scene_->settings().structures.fill(StructureMode::kThroughBone);
         topics::SceneInfo info = test::milledInfo();
         for (const char* name : {"facial nerve", "sigmoid sinus"}) {
             info.add_materials()->set_name(name);
@@ -101,6 +102,28 @@ TEST_F(StructurePictures, OnlyWhereExposed) {
     EXPECT_EQ(test::goldenProblem(draw(), "structures_exposed"), "");
 }
 
+// What is blue makes bone blue that is thin over it, the more the thinner, and none that is thick.
+TEST_F(StructurePictures, WhatLiesUnderThinBoneShinesThrough) {
+    scene_->settings().structures.fill(StructureMode::kExposedOnly);
+    const Picture without = draw();
+    const Eigen::Vector3d outwards = Eigen::Vector3d(-0.5, -0.8, -0.3).normalized();
+    const Eigen::Vector3d top = test::kBlockCenter + test::kBlockRadius * outwards;
+    const auto blueOver = [&](double cover) {
+        constexpr double kRadius = 0.0015;
+        scene_->clearStructures();
+        scene_->setStructure(test::ballStructure(kSinus, top - (kRadius + cover) * outwards, kRadius),
+                             kStructureWarning);
+        const auto [x, y] = pixelOf(top);
+        const auto now = draw().at(x, y), before = without.at(x, y);
+        return double(now[2]) / now[0] - double(before[2]) / before[0];
+    };
+    const double thin = blueOver(0.3e-3), thicker = blueOver(0.8e-3);
+    EXPECT_GT(thin, 0.2);
+    EXPECT_GT(thicker, 0.02);
+    EXPECT_LT(thicker, 0.5 * thin);
+    EXPECT_EQ(blueOver(2.3e-3), 0);
+}
+
 TEST_F(StructurePictures, Thickness) {
     showBoth();
     scene_->settings().show_thickness = true;
@@ -144,7 +167,7 @@ TEST_F(StructurePictures, TheComparisonSeesAMissingOne) {
                              showBoth();
                              scene_->settings().structures.fill(StructureMode::kExposedOnly);
                          });
-    expectAlterationSeen("structures_thickness", {"textureLod(thickness, at, 0.0).r", "1.0"}, [&] {
+    expectAlterationSeen("structures_thickness", {"textureLod(near_structures, at, 0.0)", "vec4(1.0)"}, [&] {
         showBoth();
         scene_->settings().show_thickness = true;
         scene_->settings().show_hud = true;

@@ -48,8 +48,8 @@ struct SliceSettings {
 };
 
 // How a protected structure is seen; the places of ViewSettings::structures are 1 + its index in
-// SceneInfo.materials.
-enum class StructureMode : uint8_t { kThroughBone, kExposedOnly, kOff };
+// SceneInfo.materials. Bone hides what lies behind it, but where it is thin (shineThrough()).
+enum class StructureMode : uint8_t { kExposedOnly, kThroughBone, kOff };
 constexpr size_t kMaxStructures = 256;
 
 struct ViewSettings {

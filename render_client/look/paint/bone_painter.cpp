@@ -6,12 +6,12 @@
 #include "render_client/look/model/material_palette.h"
 #include "render_client/look/paint/frame.h"
 #include "render_client/look/shaders/shaders.h"
-#include "render_client/look/structures/structure_set.h"
 
 namespace bonemill {
 namespace {
 
-constexpr GLenum kFilmUnit = 1;  // of the film's texture; 0 is the shadow's
+// Units of textures; 0 is the shadow's, 2 the palette's.
+constexpr GLenum kFilmUnit = 1, kNearUnit = 3;
 
 constexpr double kGrain = 0.045;  // size of the mottling over the bone's radius
 constexpr GLuint kAllBits = 0xff;
@@ -29,8 +29,7 @@ const Eigen::Vector3f kInsideGlass(0.85f, 0.22f, 0.10f);
 
 }  // namespace
 
-FilmPainter::FilmPainter(const GlApi& gl, bool has_materials) : gl_(gl), texture_(gl) {
-    setMaterials(has_materials);
+FilmPainter::FilmPainter(const GlApi& gl) : gl_(gl), texture_(gl) {
     constexpr int kCells = SurfaceFilm::kCells;
     gl_.ActiveTexture(GL_TEXTURE0 + kFilmUnit);
     gl_.BindTexture(GL_TEXTURE_3D, texture_.name());
@@ -38,12 +37,6 @@ FilmPainter::FilmPainter(const GlApi& gl, bool has_materials) : gl_(gl), texture
     gl_.setSampling(GL_TEXTURE_3D, GL_LINEAR, GL_REPEAT);
     gl_.ActiveTexture(GL_TEXTURE0);
     gl_.check("making the film's texture");
-}
-
-void FilmPainter::setMaterials(bool has_materials) {
-    const std::string define = has_materials ? MaterialPalette::kDefine : "";
-    surface_ = std::make_unique<Program>(gl_, "bone with a film", define + shaders::kMeshVertex,
-                                         define + "#define FILM\n" + shaders::kBoneFragment);
 }
 
 Eigen::AlignedBox3f FilmPainter::update(const EffectPicture& picture) {
@@ -71,61 +64,65 @@ Eigen::AlignedBox3f FilmPainter::update(const EffectPicture& picture) {
     return changed;
 }
 
-void FilmPainter::setUniforms() const {
+void FilmPainter::setUniforms(const Program& program) const {
     gl_.bindTexture(kFilmUnit, GL_TEXTURE_3D, texture_.name());
-    surface_->set("film", int(kFilmUnit));
-    surface_->set("film_period", period_);
+    program.set("film", int(kFilmUnit));
+    program.set("film_period", period_);
     const bool is_anywhere = !shown_.isEmpty();
-    surface_->set("film_low", is_anywhere ? shown_.min() : Eigen::Vector3f::Ones().eval());
-    surface_->set("film_high", is_anywhere ? shown_.max() : Eigen::Vector3f::Zero().eval());
-    surface_->set("film_strength", strength_);
-    surface_->set("blood_colour", blood_colour_);
+    program.set("film_low", is_anywhere ? shown_.min() : Eigen::Vector3f::Ones().eval());
+    program.set("film_high", is_anywhere ? shown_.max() : Eigen::Vector3f::Zero().eval());
+    program.set("film_strength", strength_);
+    program.set("blood_colour", blood_colour_);
 }
 
-ThicknessPainter::ThicknessPainter(const GlApi& gl, const ThicknessField& field)
+NearStructurePainter::NearStructurePainter(const GlApi& gl, const NearStructures& near)
     : gl_(gl),
-      surface_(gl, "bone of thickness", std::string("#define THICKNESS\n") + shaders::kMeshVertex,
-               std::string("#define THICKNESS\n") + shaders::kBoneFragment),
       texture_(gl),
       // A texture's corner is half a sample before its first one.
-      first_V_(field.first_V - Eigen::Vector3f::Constant(0.5f * field.step)),
-      extent_(field.step * field.size.cast<float>()) {
-    constexpr uint8_t kFar = 255;
-    const bool is_empty = field.shares.empty();
-    gl_.ActiveTexture(GL_TEXTURE0 + GLenum(kUnit));
+      first_V_(near.first_V - Eigen::Vector3f::Constant(0.5f * near.step)),
+      extent_(near.step * near.size.cast<float>()),
+      reach_(near.reach) {
+    gl_.ActiveTexture(GL_TEXTURE0 + kNearUnit);
     gl_.BindTexture(GL_TEXTURE_3D, texture_.name());
-    gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    gl_.TexImage3D(GL_TEXTURE_3D, 0, GL_R8, is_empty ? 1 : field.size.x(), is_empty ? 1 : field.size.y(),
-                   is_empty ? 1 : field.size.z(), 0, GL_RED, GL_UNSIGNED_BYTE,
-                   is_empty ? &kFar : field.shares.data());
+    gl_.TexImage3D(GL_TEXTURE_3D, 0, GL_RGBA8, near.size.x(), near.size.y(), near.size.z(), 0, GL_RGBA,
+                   GL_UNSIGNED_BYTE, near.samples.data());
     gl_.setSampling(GL_TEXTURE_3D, GL_LINEAR);
     gl_.ActiveTexture(GL_TEXTURE0);
-    if (is_empty) extent_.setOnes();
+    gl_.check("making the texture of what is near the bone");
 }
 
-void ThicknessPainter::setUniforms() const {
-    gl_.bindTexture(GLenum(kUnit), GL_TEXTURE_3D, texture_.name());
-    surface_.set("thickness", kUnit);
+void NearStructurePainter::setUniforms(const Program& program, bool shows_thickness) const {
+    gl_.bindTexture(kNearUnit, GL_TEXTURE_3D, texture_.name());
+    program.set("near_structures", int(kNearUnit));
     for (int i = 0; i < kThicknessColours; ++i)
-        surface_.set(("thickness_colours[" + std::to_string(i) + "]").c_str(), thicknessColours()[size_t(i)]);
-    surface_.set("thickness_first", first_V_);
-    surface_.set("thickness_extent", extent_);
+        program.set(("thickness_colours[" + std::to_string(i) + "]").c_str(), thicknessColours()[size_t(i)]);
+    program.set("near_first", first_V_);
+    program.set("near_extent", extent_);
+    program.set("shine", Eigen::Vector4f(kMostShine, kShineLength, kShineReach, reach_));
+    program.set("shows_thickness", shows_thickness ? 1 : 0);
 }
 
 BonePainter::BonePainter(const GlApi& gl)
     : gl_(gl),
-      surface_(gl, "bone", shaders::kMeshVertex, shaders::kBoneFragment),
       depth_(gl, "bone depth", shaders::kMeshVertex, shaders::kDepthFragment),
       cap_(gl, "cap", shaders::kFullScreenVertex, shaders::kCapFragment),
       no_attributes_(gl) {}
 
 void BonePainter::setPalette(const std::vector<Eigen::Vector4f>& colours) {
-    coloured_.reset();
-    if (colours.empty()) return;
-    const std::string define = MaterialPalette::kDefine;
-    coloured_.reset(new Coloured{
-        {gl_, colours},
-        {gl_, "bone of materials", define + shaders::kMeshVertex, define + shaders::kBoneFragment}});
+    palette_ = colours.empty() ? nullptr : std::make_unique<MaterialPalette>(gl_, colours);
+}
+
+// Each combination of what the surface shows has a program of its own, made when it is first seen.
+const Program& BonePainter::surface() {
+    const bool has_film = hasFilm();
+    std::unique_ptr<Program>& program =
+        surfaces_[size_t(palette_ ? 1 : 0) + size_t(has_film ? 2 : 0) + size_t(near_ ? 4 : 0)];
+    if (program) return *program;
+    const std::string both =
+        std::string(palette_ ? MaterialPalette::kDefine : "") + (near_ ? "#define NEAR_STRUCTURES\n" : "");
+    program = std::make_unique<Program>(gl_, "bone", both + shaders::kMeshVertex,
+                                        both + (has_film ? "#define FILM\n" : "") + shaders::kBoneFragment);
+    return *program;
 }
 
 void BonePainter::drawOpaque(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture) {
@@ -167,10 +164,7 @@ void BonePainter::drawTransparent(const Frame& frame, const NodeStore& nodes, GL
 void BonePainter::drawSurface(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
                               const Look& look) {
     const ClipPlanes clip(gl_, frame.cuts_V);
-    const Program& surface = thickness_  ? thickness_->surface()
-                             : film_     ? film_->surface()
-                             : coloured_ ? coloured_->surface
-                                         : surface_;
+    const Program& surface = this->surface();
     surface.use();
     frame.setLight(gl_, surface, shadow_texture);
     setCutPlanes(surface, frame.cuts_V);
@@ -180,12 +174,9 @@ void BonePainter::drawSurface(const Frame& frame, const NodeStore& nodes, GLuint
     surface.set("inside_colour", look.inside);
     surface.set("shows_scan", milled_grey_ ? 1 : 0);
     surface.set("grey_of_density", milled_grey_.value_or(Eigen::Vector2f::UnitX()));
-    if (thickness_) {
-        thickness_->setUniforms();
-    } else {
-        if (coloured_) coloured_->palette.setUniforms(surface);
-        if (film_) film_->setUniforms();
-    }
+    if (palette_) palette_->setUniforms(surface);
+    if (hasFilm()) film_->setUniforms(surface);
+    if (near_) near_->setUniforms(surface, shows_thickness_);
     triangles_drawn_ = nodes.draw(surface, frame.cull_from_V);
 }
 

@@ -11,6 +11,7 @@
 // It belongs to the thread of the context.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -20,31 +21,25 @@
 #include "render_client/look/model/node_store.h"
 #include "render_client/look/paint/frame.h"
 #include "render_client/look/paint/scan_painters.h"
-#include "render_client/look/structures/structure_set.h"
+#include "render_client/look/structures/near_structures.h"
 #include "render_client/look/visual_effects/surface_film.h"
 
 namespace bonemill {
 
-// Draws the bone with blood and water on it, with a surface shader of its own and the film as a texture.
+// Blood and water on the bone, as a texture.
 //
 // It belongs to the thread of the context.
 class FilmPainter {
   public:
-    // has_materials says whether bone has its materials' colours (MaterialPalette). Throws GlError with the
-    // compiler's log when the driver refuses the shader.
-    FilmPainter(const GlApi& gl, bool has_materials);
-    void setMaterials(bool has_materials);
+    explicit FilmPainter(const GlApi& gl);
 
     // Uploads the slices that changed. Returns the box (V) in which the bone looks different now.
     Eigen::AlignedBox3f update(const EffectPicture& picture);
-    // surface() draws bone in place of the plain surface's program. While it is in use setUniforms() sets the
-    // film's uniforms; the film takes texture unit 1.
-    const Program& surface() const { return *surface_; }
-    void setUniforms() const;
+    // The program (with FILM) must be in use.
+    void setUniforms(const Program& program) const;
 
   private:
     const GlApi& gl_;
-    std::unique_ptr<Program> surface_;
     GlTexture texture_;
     float period_ = 1;
     Eigen::AlignedBox3f shown_;
@@ -52,25 +47,23 @@ class FilmPainter {
     Eigen::Vector3f blood_colour_ = Eigen::Vector3f::Zero();
 };
 
-// Bone is drawn with this program while it shows how far it is to the next structure.
+// The structures near below the bone's surface, as a texture: they shine through, or the bone shows how far
+// it is to the next of them.
 //
 // It belongs to the thread of the context.
-class ThicknessPainter {
+class NearStructurePainter {
   public:
-    // Throws GlError with the compiler's log when the driver refuses the shader.
-    ThicknessPainter(const GlApi& gl, const ThicknessField& field);
+    // There is at least one sample.
+    NearStructurePainter(const GlApi& gl, const NearStructures& near);
 
-    const Program& surface() const { return surface_; }
-    // The program must be in use.
-    void setUniforms() const;
+    // The program (with NEAR_STRUCTURES) must be in use.
+    void setUniforms(const Program& program, bool shows_thickness) const;
 
   private:
-    static constexpr GLint kUnit = 3;  // 0 is the shadow's, 1 the film's, 2 the palette's
-
     const GlApi& gl_;
-    Program surface_;
     GlTexture texture_;
     Eigen::Vector3f first_V_, extent_;  // m, of the texture
+    float reach_;                       // m
 };
 
 class BonePainter {
@@ -79,13 +72,13 @@ class BonePainter {
     explicit BonePainter(const GlApi& gl);
 
     // Both draw into the bound framebuffer, whose depth and stencil are clear, and leave depth test and depth
-    // writes on. draw_tool draws opaque things.
+    // writes on. draw_tool draws opaque things. They throw GlError with the compiler's log when the driver
+    // refuses the surface's shader with what it is to show for the first time.
     void drawOpaque(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture);
     void drawTransparent(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, double opacity,
                          const std::function<void()>& draw_tool);
 
-    // From now on bone has its materials' colours (paletteOf()), or its own when there
-    // are none. Throws GlError.
+    // From now on bone has its materials' colours (paletteOf()), or its own when there are none.
     void setPalette(const std::vector<Eigen::Vector4f>& colours);
     // From now on bone is drawn with this film, or as it is when null. The film must outlive its use.
     void setFilm(const FilmPainter* film) { film_ = film; }
@@ -97,9 +90,11 @@ class BonePainter {
         milled_grey_ = grey_of_density;
     }
 
-    // From now on bone shows how far it is to the next structure, or no longer when null. It must outlive its
-    // use.
-    void setThickness(const ThicknessPainter* thickness) { thickness_ = thickness; }
+    // From now on bone shows what is near below its surface, or its own looks alone when null. It must
+    // outlive its use.
+    void setNearStructures(const NearStructurePainter* near) { near_ = near; }
+    // Whether that is how far it is to the next structure, and not what shines through. No film lies on it.
+    void showThickness(bool shows_thickness) { shows_thickness_ = shows_thickness; }
 
     // Returns how many bone triangles were inside the view volume of the last picture.
     size_t trianglesDrawn() const { return triangles_drawn_; }
@@ -109,6 +104,8 @@ class BonePainter {
         Eigen::Vector2f opacity;  // facing the eye, and what the outline adds
         Eigen::Vector3f inside;   // linear colour of the surface seen from within
     };
+    bool hasFilm() const { return film_ && !(near_ && shows_thickness_); }
+    const Program& surface();
     void drawSurface(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, const Look& look);
     void drawDepth(const Frame& frame, const NodeStore& nodes) const;
     void drawFarWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture);
@@ -120,17 +117,16 @@ class BonePainter {
     void drawCap(const Frame& frame, GLuint shadow_texture, float opacity) const;
 
     const GlApi& gl_;
-    Program surface_, depth_, cap_;
+    Program depth_, cap_;
+    // By what the surface shows (surface()); null until it is shown first.
+    std::array<std::unique_ptr<Program>, 8> surfaces_;
     GlVertexArray no_attributes_;
-    struct Coloured {
-        MaterialPalette palette;
-        Program surface;
-    };
-    std::unique_ptr<Coloured> coloured_;  // null: bone's own colour
+    std::unique_ptr<MaterialPalette> palette_;  // null: bone's own colour
     const FilmPainter* film_ = nullptr;
     const CtFaces* faces_ = nullptr;
     std::optional<Eigen::Vector2f> milled_grey_;
-    const ThicknessPainter* thickness_ = nullptr;
+    const NearStructurePainter* near_ = nullptr;
+    bool shows_thickness_ = false;
     size_t triangles_drawn_ = 0;
 };
 

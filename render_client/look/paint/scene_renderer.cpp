@@ -25,14 +25,12 @@ SceneRenderer::SceneRenderer(const GlApi& gl)
 
 void SceneRenderer::setPalette(const std::vector<Eigen::Vector4f>& colours) {
     bone_.setPalette(colours);
-    has_materials_ = !colours.empty();
-    if (film_) film_->setMaterials(has_materials_);
     changes_.forget();
 }
 
 void SceneRenderer::prepare(const EffectNeeds& needs) {
     bone_.setFilm(nullptr);
-    film_ = needs.film ? std::make_unique<FilmPainter>(gl_, has_materials_) : nullptr;
+    film_ = needs.film ? std::make_unique<FilmPainter>(gl_) : nullptr;
     particles_ = needs.particles ? std::make_unique<ParticlePainter>(gl_) : nullptr;
     tool_.prepareSpin(needs.spin);
     changes_.forget();
@@ -64,14 +62,14 @@ void SceneRenderer::draw(const FrameView& view, NodeStore& nodes, const ToolMesh
     gl_.check("drawing the scene");
 }
 
-void SceneRenderer::setThickness(const ThicknessField& field) {
-    bone_.setThickness(nullptr);
-    thickness_ = std::make_unique<ThicknessPainter>(gl_, field);
+void SceneRenderer::setNearStructures(const NearStructures& near) {
+    near_ = near.samples.empty() ? nullptr : std::make_unique<NearStructurePainter>(gl_, near);
+    bone_.setNearStructures(near_.get());
     changes_.forget();
 }
 
 void SceneRenderer::chooseSurface(const FrameView& view) {
-    bone_.setThickness(view.shows_thickness ? thickness_.get() : nullptr);
+    bone_.showThickness(view.shows_thickness);
     if (std::exchange(shows_thickness_, view.shows_thickness) != view.shows_thickness) changes_.forget();
     if (std::exchange(shows_strokes_, view.shows_strokes) != view.shows_strokes) changes_.forget();
     drawn_.set(view.drawn ? std::vector<Stroke>{*view.drawn} : std::vector<Stroke>{});

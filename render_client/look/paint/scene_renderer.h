@@ -51,8 +51,8 @@ class SceneRenderer {
         strokes_.set(strokes);
         changes_.forget();
     }
-    // Views that show thickness take it from here. Throws GlError.
-    void setThickness(const ThicknessField& field);
+    // Bone shows what is near below its surface from here on.
+    void setNearStructures(const NearStructures& near);
     // Makes what a scene's effects need to be drawn, and nothing else. Throws GlError.
     void prepare(const EffectNeeds& needs);
     // As BonePainter::setFaces().
@@ -113,11 +113,10 @@ class SceneRenderer {
     Program shadow_;
     StructurePainter structures_;
     StrokePainter strokes_;
-    StrokePainter drawn_;        // FrameView::drawn
-    bool shows_strokes_ = true;  // in the last picture
-    std::unique_ptr<ThicknessPainter> thickness_;
-    bool shows_thickness_ = false;  // in the last picture
-    bool has_materials_ = false;
+    StrokePainter drawn_;                         // FrameView::drawn
+    bool shows_strokes_ = true;                   // in the last picture
+    std::unique_ptr<NearStructurePainter> near_;  // null: nothing is near
+    bool shows_thickness_ = false;                // in the last picture
     std::unique_ptr<FilmPainter> film_;
     std::unique_ptr<ParticlePainter> particles_;
     std::unique_ptr<RenderTargets> targets_;

@@ -99,7 +99,7 @@ void RenderScene::setNode(const NodeMesh& mesh) {
 void RenderScene::setStructure(const NodeMesh& mesh, double warning_distance) {
     renderer_.setStructure(mesh);
     structures_.set(mesh, warning_distance);
-    is_thickness_ready_ = false;
+    near_structures_.reset();
 }
 
 void RenderScene::setRemarks(const std::map<uint32_t, topics::Remark>& remarks) {
@@ -110,7 +110,7 @@ void RenderScene::setRemarks(const std::map<uint32_t, topics::Remark>& remarks) 
 void RenderScene::clearStructures() {
     renderer_.clearStructures();
     structures_.clear();
-    is_thickness_ready_ = false;
+    near_structures_.reset();
 }
 
 // Another run of the server has begun, of which nothing is known yet.
@@ -269,7 +269,7 @@ void RenderScene::draw(int full_width, int height, float ui_scale, GLuint target
     updateCt(full_width, height);
     FrameView view = makeView();
     view.effects = effectPicture();
-    prepareThickness(view);
+    prepareNearStructures(view);
     const PictureArea whole{0, width, height};
     switch (settings_.stereo) {
         case StereoMode::kOff:
@@ -307,14 +307,18 @@ std::optional<Eigen::Vector3d> RenderScene::pick(int x, int y) const {
     return renderer_.pick(x, y);
 }
 
-// The field is made when it is first wanted.
-void RenderScene::prepareThickness(const FrameView& view) {
+// What is seen of structures through thin bone is made anew when other structures are shown.
+void RenderScene::prepareNearStructures(const FrameView& view) {
     hud_input_.legend.reset();
-    if (!view.shows_thickness) return;
-    hud_input_.legend = structures_.legend();
-    if (std::exchange(is_thickness_ready_, true)) return;
+    if (view.shows_thickness) hud_input_.legend = structures_.legend();
+    std::map<uint32_t, Eigen::Vector3f> colours;
+    for (const StructureLook& look : view.structures)
+        if (look.mode != StructureMode::kOff) colours.emplace(look.structure, look.colour);
+    if (near_structures_ == colours) return;
+    near_structures_ = std::move(colours);
     const StructureSet& structures = structures_.structures();
-    renderer_.setThickness(thicknessField(structures, structures.largestWarningDistance()));
+    const double reach = std::max(structures.largestWarningDistance(), double(kShineReach));
+    renderer_.setNearStructures(nearStructures(structures, *near_structures_, reach));
 }
 
 // Names stand in each eye's picture, so that they have the depth of what they name.

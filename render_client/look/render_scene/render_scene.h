@@ -168,7 +168,7 @@ class RenderScene {
     bool hasPatientAxes() const { return !hud_input_.info || !hud_input_.info->lacks_patient_axes(); }
     OrientationAxes orientationOf(const Camera& camera) const;
     void paintHud(const Camera& camera, const PictureArea& area, float ui_scale);
-    void prepareThickness(const FrameView& view);
+    void prepareNearStructures(const FrameView& view);
     void nameMouse(const PictureArea& area, std::vector<HudLabel>& labels) const;
     void paintNames(const FrameView& view, const PictureArea& area, float ui_scale);
 
@@ -199,8 +199,8 @@ class RenderScene {
     FaultList faults_;
     StructureView structures_;
     RemarkView remarks_;
-    Stroke drawn_;  // now
-    bool is_thickness_ready_ = false;
+    Stroke drawn_;                                                        // now
+    std::optional<std::map<uint32_t, Eigen::Vector3f>> near_structures_;  // drawn, with their colours
     std::optional<std::pair<int, int>> mouse_;
     FrameView last_view_;  // of the last picture without stereo
     std::vector<Eigen::Vector4f> palette_;

@@ -21,14 +21,22 @@ uniform bool shows_scan;
 uniform float grain_size;      // m
 #endif
 
-#ifdef THICKNESS
-in float share_to_structure;
-uniform vec3 thickness_colours[5];  // linear, from 0 to the reach
+#ifdef NEAR_STRUCTURES
+in vec4 near_structure;              // linear colour, distance as a share of the reach
+uniform bool shows_thickness;        // or what shines through
+uniform vec3 thickness_colours[5];   // linear, from 0 to the reach
+uniform vec4 shine;                  // the most, its length, where it ends, the reach (m)
 
 vec3 thicknessColour(float share) {
     float at = clamp(share, 0.0, 1.0) * 4.0;
     int low = min(int(at), 3);
     return mix(thickness_colours[low], thickness_colours[low + 1], at - float(low));
+}
+
+// As shineThrough() of near_structures.h.
+float shineThrough(float thickness) {
+    float least = exp(-shine.z / shine.y);
+    return shine.x * max(exp(-thickness / shine.y) - least, 0.0) / (1.0 - least);
 }
 #endif
 
@@ -67,8 +75,12 @@ void main() {
         albedo = mix(albedo, vec3(pow(grey, 2.2)), scanned.y);
     }
 #endif
-#ifdef THICKNESS
-    albedo = mix(thicknessColour(share_to_structure), albedo, smoothstep(0.85, 1.0, share_to_structure));
+#ifdef NEAR_STRUCTURES
+    float near_share = near_structure.a;
+    if (shows_thickness)
+        albedo = mix(thicknessColour(near_share), albedo, smoothstep(0.85, 1.0, near_share));
+    else
+        albedo = mix(albedo, near_structure.rgb * mix(0.9, 1.1, mottling), shineThrough(near_share * shine.w));
 #endif
     if (inside) albedo = inside_colour;
 #ifdef FILM

@@ -13,11 +13,11 @@ layout(location = 3) in vec2 scan;       // its density (0 to 1) where milling o
 out vec2 scanned;
 out vec3 p_M;
 #endif
-#ifdef THICKNESS
-uniform sampler3D thickness;     // share of the reach
-uniform vec3 thickness_first;    // V, m: of the texture's first corner
-uniform vec3 thickness_extent;   // m: of the texture
-out float share_to_structure;
+#ifdef NEAR_STRUCTURES
+uniform sampler3D near_structures;  // linear colour of the nearest, its distance as a share of the reach
+uniform vec3 near_first;            // V, m: of the texture's first corner
+uniform vec3 near_extent;           // m: of the texture
+out vec4 near_structure;
 #endif
 uniform vec3 origin;
 uniform vec3 step;
@@ -57,9 +57,9 @@ void main() {
 #if defined(GL_ES) && defined(CUT)
     kept = vec3(dot(cut_planes[0], p), dot(cut_planes[1], p), dot(cut_planes[2], p));
 #endif
-#ifdef THICKNESS
-    vec3 at = (p_M - thickness_first) / thickness_extent;
+#ifdef NEAR_STRUCTURES
+    vec3 at = (p.xyz - near_first) / near_extent;
     bool is_near = all(greaterThan(at, vec3(0.0))) && all(lessThan(at, vec3(1.0)));
-    share_to_structure = is_near ? textureLod(thickness, at, 0.0).r : 1.0;
+    near_structure = is_near ? textureLod(near_structures, at, 0.0) : vec4(0.0, 0.0, 0.0, 1.0);
 #endif
 }

@@ -3,8 +3,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
+#include <algorithm>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -49,28 +50,31 @@ class StructureSet {
     // Returns those that are nearer than their warning distance, the nearest first.
     std::vector<Clearance> clearances(std::span<const BurrBall> burr, const Pose& X_VT) const;
 
-    // Returns how far it is from there to the nearest structure, at most `within`.
-    float distance(const Eigen::Vector3f& p_V, float within) const;
+    struct Nearest {
+        uint32_t structure;
+        float distance;  // m; 0 within it
+    };
+    // Of those that counts(structure) is true of; there is none at `within` or farther.
+    template <class Counts>
+    std::optional<Nearest> nearest(const Eigen::Vector3f& p_V, float within, Counts&& counts) const {
+        std::optional<Nearest> nearest;
+        for (const auto& [id, structure] : structures_) {
+            const float least = nearest ? nearest->distance : within;
+            if (!counts(id) || structure.tree.box().squaredExteriorDistance(p_V) >= least * least) continue;
+            if (const auto place = nearestOf(structure.tree, p_V, least); place && place->distance < least)
+                nearest = Nearest{id, std::max(place->distance, 0.0f)};
+        }
+        return nearest;
+    }
 
   private:
+    // What lies deep in a structure is far from its surface, and yet not far from the structure.
+    static std::optional<NearestPlace> nearestOf(const TriangleTree& tree, const Eigen::Vector3f& p_V,
+                                                 float within) {
+        return tree.nearest(p_V, tree.box().contains(p_V) ? TriangleTree::kAnyDistance : within);
+    }
     std::map<uint32_t, Structure> structures_;
 };
-
-// How much there is from any place near the structures to the next of them, in samples on a grid: bone that
-// is looked at takes its colour from here. It is a plain value.
-struct ThicknessField {
-    static constexpr int kMaxSamples = 1 << 19, kMaxPerAxis = 256;
-
-    Eigen::Vector3f first_V = Eigen::Vector3f::Zero();  // m, of the first sample
-    float step = 0;                                     // m
-    Eigen::Vector3i size = Eigen::Vector3i::Zero();     // samples; 0: nothing is near
-    float reach = 0;                                    // m
-    std::vector<uint8_t> shares;  // of the reach, x fastest; 255: it is as far or farther
-};
-
-// Samples lie at least 0.4 mm apart, and there are kMaxSamples at most, however large the structures are.
-// Only those near a structure are computed one by one. It takes tenths of a second.
-ThicknessField thicknessField(const StructureSet& structures, double reach);
 
 // Returns the scene's colour of a material (sRGB, 0 to 1), or else what its name asks for by the custom of
 // anatomy books: nerves yellow, veins blue, arteries red, dura violet. Others take their turn in a row of
@@ -80,11 +84,6 @@ Eigen::Vector3f structureColour(const topics::SceneInfo& info, uint32_t structur
 // Returns the linear colour of an sRGB one, as the shaders' toneMap() takes it for, and back.
 Eigen::Vector3f linearColour(const Eigen::Vector3f& srgb);
 Eigen::Vector3f srgbColour(const Eigen::Vector3f& linear);
-
-// These colours (linear) stand for distances from 0 to the reach. They run from dark red through orange and
-// yellow to blue: bright and dark tell them apart without hues, too.
-constexpr int kThicknessColours = 5;
-const std::array<Eigen::Vector3f, kThicknessColours>& thicknessColours();
 
 // The colour of a distance to a structure: red at 0, yellow at half of the warning distance, green from there
 // on.

@@ -218,7 +218,7 @@ void PanelContent::buildStructures() {
                            ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoPicker);
         ImGui::SameLine();
         if (box(name, is_on, "Is seen or not"))
-            controls_.showStructure(structure, is_on ? StructureMode::kOff : StructureMode::kThroughBone);
+            controls_.showStructure(structure, is_on ? StructureMode::kOff : StructureMode::kExposedOnly);
         ImGui::SameLine(ImGui::GetContentRegionMax().x - 7.5f * ImGui::GetFontSize());
         ImGui::BeginDisabled(!is_on);
         if (box("through bone", is_through, "Is seen behind bone, too, and not only where it is exposed"))
@@ -227,7 +227,8 @@ void PanelContent::buildStructures() {
         ImGui::EndDisabled();
         ImGui::PopID();
     }
-    button("All", Action::kStructures, "All are seen through bone, or where they are exposed, or not at all");
+    button("All", Action::kStructures,
+           "All are seen where they are exposed, or through all bone, or not at all");
     ImGui::SameLine();
     box("Thickness", Action::kThickness, settings_.show_thickness,
         "Bone has the colour of its distance to the next structure");

@@ -179,9 +179,9 @@ TEST(Options, StructuresAreSeenAsAskedFor) {
     const auto modes = [](const std::vector<const char*>& options) {
         return parse(options)->settings.structures;
     };
-    for (const StructureMode mode : modes({})) EXPECT_EQ(mode, StructureMode::kThroughBone);
-    for (const StructureMode mode : modes({"--structures", "exposed"}))
-        EXPECT_EQ(mode, StructureMode::kExposedOnly);
+    for (const StructureMode mode : modes({})) EXPECT_EQ(mode, StructureMode::kExposedOnly);
+    for (const StructureMode mode : modes({"--structures", "through-bone"}))
+        EXPECT_EQ(mode, StructureMode::kThroughBone);
     for (const StructureMode mode : modes({"--structures", "off"})) EXPECT_EQ(mode, StructureMode::kOff);
     EXPECT_FALSE(parse({})->settings.show_thickness);
     EXPECT_TRUE(parse({"--thickness"})->settings.show_thickness);

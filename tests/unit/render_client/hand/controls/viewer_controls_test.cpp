@@ -103,9 +103,9 @@ TEST_F(Controls, StructuresGoRoundThreeModesAndEachHasItsOwn) {
     constexpr size_t kNerve = 3;
     controls_.showStructure(kNerve, StructureMode::kOff);
     EXPECT_EQ(settings_.structures[kNerve], StructureMode::kOff);
-    EXPECT_EQ(settings_.structures[kNerve + 1], StructureMode::kThroughBone);
+    EXPECT_EQ(settings_.structures[kNerve + 1], StructureMode::kExposedOnly);
     for (const StructureMode mode :
-         {StructureMode::kExposedOnly, StructureMode::kOff, StructureMode::kThroughBone}) {
+         {StructureMode::kThroughBone, StructureMode::kOff, StructureMode::kExposedOnly}) {
         type('T', true);
         for (const StructureMode shown : settings_.structures) EXPECT_EQ(shown, mode);
     }

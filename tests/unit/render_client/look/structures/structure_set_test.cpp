@@ -10,22 +10,19 @@
 #include "haptic_server/scans/densify/distance_transform.h"
 #include "haptic_server/surface/mesh/structure_mesher.h"
 #include "tests/support/structure_shapes.h"
+#include "tests/unit/render_client/look/structures/two_balls.h"
 
 namespace bonemill {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kWarning = 3e-3;
-const Vector3d kNear(0.01, 0.01, 0.01), kFar(0.024, 0.01, 0.01);
-constexpr double kNearRadius = 0.004, kFarRadius = 0.002;
-
-StructureSet twoBalls() {
-    StructureSet structures;
-    structures.set(test::ballStructure(3, kNear, kNearRadius), kWarning);
-    structures.set(test::ballStructure(7, kFar, kFarRadius), kWarning);
-    return structures;
-}
+using test::kFar;
+using test::kFarRadius;
+using test::kNear;
+using test::kNearRadius;
+using test::kWarning;
+using test::twoBalls;
 
 Pose at(const Vector3d& p) {
     Pose pose;
@@ -81,7 +78,10 @@ TEST(StructureSet, DeepInAStructureTheBurrIsInIt) {
                                             at(kNear + Vector3d(0, 0, 4e-4)));
     ASSERT_EQ(near.size(), 1u);
     EXPECT_NEAR(near[0].distance, -3.7e-3, 2e-5);
-    EXPECT_EQ(twoBalls().distance((kNear + Vector3d(0, 0, 4e-4)).cast<float>(), 1e-3f), 0);
+    const auto nearest = twoBalls().nearest((kNear + Vector3d(0, 0, 4e-4)).cast<float>(), 1e-3f,
+                                            [](uint32_t) { return true; });
+    ASSERT_TRUE(nearest);
+    EXPECT_EQ(nearest->distance, 0);
 }
 
 // The server measures to voxels, the viewer to the smooth surface of the same voxels.
@@ -143,44 +143,6 @@ TEST(StructureSet, TheBurrComesFromTheSceneInfo) {
     ASSERT_EQ(burrBallsOf(info).size(), 2u);
     EXPECT_EQ(burrBallsOf(info)[1].center_T, Vector3d(5, 6, 7));
     EXPECT_EQ(burrBallsOf(info)[1].radius, 0);
-}
-
-// Between samples the distance is trilinear, as the graphics card takes it.
-TEST(ThicknessField, IsTheDistanceToTheNextStructure) {
-    const StructureSet structures = twoBalls();
-    const ThicknessField field = thicknessField(structures, kWarning);
-    EXPECT_LE(field.size.prod(), ThicknessField::kMaxSamples);
-    ASSERT_EQ(field.shares.size(), size_t(field.size.prod()));
-    int near = 0;
-    for (int k = 0; k < field.size.z(); ++k)
-        for (int j = 0; j < field.size.y(); ++j)
-            for (int i = 0; i < field.size.x(); ++i) {
-                const Vector3d p =
-                    (field.first_V + field.step * Eigen::Vector3f(float(i), float(j), float(k)))
-                        .cast<double>();
-                const double distance =
-                    std::min((p - kNear).norm() - kNearRadius, (p - kFar).norm() - kFarRadius);
-                const double expected = std::clamp(distance, 0.0, kWarning);
-                const size_t place = size_t(i + field.size.x() * (j + field.size.y() * k));
-                EXPECT_NEAR(field.shares[place] / 255.0 * kWarning, expected, kWarning / 255 + 1e-5);
-                near += expected < kWarning;
-            }
-    EXPECT_GT(near, 1000);
-    EXPECT_TRUE(thicknessField({}, kWarning).shares.empty());
-}
-
-TEST(ThicknessField, IsBoundedHoweverLargeAStructureIs) {
-    for (const Vector3d& size :
-         {Vector3d(1e5, 1e-3, 1e-3), Vector3d(1e5, 1e5, 1e-3), Vector3d(1e-9, 1e-9, 1e-9)}) {
-        NodeMesh mesh = test::ballStructure(1, Vector3d::Zero(), 1);
-        mesh.step = (size / 65535).cast<float>();
-        StructureSet structures;
-        structures.set(mesh, kWarning);
-        const ThicknessField field = thicknessField(structures, kWarning);
-        EXPECT_LE(field.size.cast<int64_t>().prod(), ThicknessField::kMaxSamples) << size.transpose();
-        EXPECT_LE(field.size.maxCoeff(), ThicknessField::kMaxPerAxis) << size.transpose();
-        EXPECT_EQ(field.shares.size(), size_t(field.size.prod()));
-    }
 }
 
 }  // namespace

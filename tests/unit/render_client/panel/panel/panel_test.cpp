@@ -90,13 +90,13 @@ TEST_F(PanelClicks, StructuresAreListedWhereTheSceneProtectsSome) {
     EXPECT_FALSE(panel_.find("cortical bone"));
     constexpr size_t kNerve = 2;
     click("through bone");
-    EXPECT_EQ(settings_.structures[kNerve], StructureMode::kExposedOnly);
+    EXPECT_EQ(settings_.structures[kNerve], StructureMode::kThroughBone);
     click("facial nerve");
     EXPECT_EQ(settings_.structures[kNerve], StructureMode::kOff);
     click("facial nerve");
-    EXPECT_EQ(settings_.structures[kNerve], StructureMode::kThroughBone);
-    click("All (Shift+T)");
     EXPECT_EQ(settings_.structures[kNerve], StructureMode::kExposedOnly);
+    click("All (Shift+T)");
+    EXPECT_EQ(settings_.structures[kNerve], StructureMode::kThroughBone);
     click("Thickness (Shift+D)");
     EXPECT_TRUE(settings_.show_thickness);
     click("Distance line");
