@@ -4,6 +4,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <utility>
 
@@ -52,6 +53,15 @@ Modifiers modifiersOf(int bits) {
     throw UserError(what + (reason ? std::string(": ") + reason : "") + ". " + advice);
 }
 
+// Returns width and height that the first monitor has for windows; without one, more than any window takes.
+std::array<int, 2> monitorRoom() {
+    constexpr int kAny = 1 << 20;
+    int x = 0, y = 0, width = 0, height = 0;
+    if (GLFWmonitor* const monitor = glfwGetPrimaryMonitor())
+        glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
+    return width > 0 && height > 0 ? std::array{width, height} : std::array{kAny, kAny};
+}
+
 }  // namespace
 
 GlfwWindow::Library::Library(const std::string& advice) {
@@ -68,8 +78,16 @@ GlfwWindow::GlfwWindow(int width, int height, const std::string& title, const st
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    const std::array<int, 2> room = monitorRoom();
+    width = std::min(width, room[0]);
+    height = std::min(height, room[1]);
     window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
     if (!window_) failWith("cannot open a window with OpenGL 3.3", advice);
+    std::array<int, 4> frame{};  // left, top, right, bottom
+    glfwGetWindowFrameSize(window_, &frame[0], &frame[1], &frame[2], &frame[3]);
+    const int wide = std::min(width, room[0] - frame[0] - frame[2]),
+              high = std::min(height, room[1] - frame[1] - frame[3]);
+    if (wide < width || high < height) glfwSetWindowSize(window_, wide, high);
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
     gl_ = GlApi::load([](const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); });

@@ -16,8 +16,8 @@ namespace bonemill {
 
 class GlfwWindow {
   public:
-    // The size counts in screen coordinates. Throws UserError, ending with `advice`, when there is no display
-    // or no OpenGL 3.3.
+    // The size counts in screen coordinates, and is at most what the first monitor has room for. Throws
+    // UserError, ending with `advice`, when there is no display or no OpenGL 3.3.
     GlfwWindow(int width, int height, const std::string& title, const std::string& advice);
     GlfwWindow(const GlfwWindow&) = delete;
     GlfwWindow& operator=(const GlfwWindow&) = delete;

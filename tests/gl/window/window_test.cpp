@@ -2,11 +2,14 @@
 // behind it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <functional>
 #include <thread>
+#include <utility>
 
+#include "render_client/hand/window/glfw_window.h"
 #include "render_client/link/subscribe/scene_subscriber.h"
 #include "render_client/look/hud/hud_canvas.h"
 #include "tests/gl/golden.h"
@@ -182,6 +185,14 @@ class PanelTwin : test::ControlledPanel {
     const VirtualDisplay& display_;
     test::ShownSession& shown_;
 };
+
+TEST_F(Window, IsNoLargerThanTheScreenHasRoomFor) {
+    for (const auto& [width, height] : {std::pair{4 * kWidth, 2 * kHeight}, {kWidth / 2, kHeight / 2}}) {
+        const GlfwWindow window(width, height, "sized", "");
+        EXPECT_EQ(window.pixelWidth(), std::min(width, kWidth));
+        EXPECT_EQ(window.pixelHeight(), std::min(height, kHeight));
+    }
+}
 
 TEST_F(Window, EveryModeByKeyLooksAsItDid) {
     WindowedViewer& viewer = start("me", "operator");
