@@ -11,7 +11,7 @@ namespace bonemill {
 namespace {
 
 constexpr double kLittleTime = 60;  // s
-constexpr int kMaxGateRows = 2;
+constexpr int kMaxNamedGates = 2;
 
 struct RoleRow {
     scene::Task::Role role;
@@ -64,11 +64,13 @@ void addResultRows(const topics::TaskState& task, std::vector<HudRow>& rows) {
     rows.push_back(
         {"Result", broken == 0 ? "passed" : "failed", broken == 0 ? HudTone::kGood : HudTone::kAlarm});
     int named = 0;
-    for (const topics::TaskState::Gate& gate : task.gates())
-        if (gate.state() == topics::TaskState::Gate::BROKEN && named++ < kMaxGateRows)
-            rows.push_back({shortenedText(gate.text(), kLongestRow), "", HudTone::kAlarm});
-    if (broken > kMaxGateRows)
-        rows.push_back({"and " + std::to_string(broken - kMaxGateRows) + " more", "", HudTone::kAlarm});
+    for (const topics::TaskState::Gate& gate : task.gates()) {
+        if (gate.state() != topics::TaskState::Gate::BROKEN || named++ >= kMaxNamedGates) continue;
+        for (std::string& line : wrappedText(gate.text(), kLongestRow))
+            rows.push_back({std::move(line), "", HudTone::kAlarm});
+    }
+    if (broken > kMaxNamedGates)
+        rows.push_back({"and " + std::to_string(broken - kMaxNamedGates) + " more", "", HudTone::kAlarm});
 }
 
 std::string timeLeftText(const topics::TaskState& task) {

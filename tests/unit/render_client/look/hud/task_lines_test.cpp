@@ -84,5 +84,15 @@ TEST(TaskLines, brokenGatesAreNamedAndAResultSaysWhetherItPassed) {
     EXPECT_EQ(test::findRow(rows, "Score")->value, "31 of 100");
 }
 
+TEST(TaskLines, ABrokenGateIsSaidInFull) {
+    TaskState task;
+    task.set_is_result(true);
+    addGate(task, TaskState::Gate::BROKEN, "Target: removed: 0 %; at least 80 % were asked for");
+    std::string said;
+    for (const HudRow& row : taskStateRows(task))
+        if (row.label != "Result") said += (said.empty() ? "" : " ") + row.label;
+    EXPECT_EQ(said, "Target: removed: 0 %; at least 80 % were asked for");
+}
+
 }  // namespace
 }  // namespace bonemill
