@@ -1,6 +1,6 @@
 // The picture: which view of the session is drawn, when, and what is under a place of it.
 import { angleBetween, cornersOf, norm, placed, sub, type Vec3 } from './math/linear';
-import type { FromLink, PlacedNode, StructureSurface, ToolView } from './shared/messages';
+import type { FromLink, PlacedNode, SceneView, StructureSurface, ToolView } from './shared/messages';
 import { Pace } from './pace';
 import type { Session } from './session';
 import type { Place, ToolHold } from './tool_hold';
@@ -8,6 +8,7 @@ import { Labels, type Label } from './ui/labels';
 import { workOf } from './ui/words';
 import { endoscopeCamera, Orbit, type Camera } from './view/camera';
 import { openCanvas } from './view/gl';
+import { nearStructures } from './view/near_structures';
 import type { Ghost, PictureView, Stroke } from './view/picture_view';
 import { Renderer } from './view/renderer';
 import { linearColour, structureColour } from './view/structure_colours';
@@ -33,6 +34,7 @@ export class Stage {
   preview?: Stroke;  // being drawn
   private renderer: Renderer;
   private readonly structures = new Map<number, StructureSurface>();
+  private isNearStale = false;  // what shines through bone
   private kept: PlacedNode[] = [];  // while there is no context
   private readonly labels = new Labels();
   private frame = 0;
@@ -71,8 +73,10 @@ export class Stage {
       case 'epoch':
         bonePainter.clear();
         this.structures.clear();
+        this.isNearStale = true;
         break;
       case 'scene':
+        this.isNearStale = true;
         bonePainter.setMaterials(message.scene.materials);
         toolPainter.set(message.scene.tool);
         if (message.scene.name !== this.sceneName) this.firstView();
@@ -82,6 +86,7 @@ export class Stage {
         bonePainter.setStructure(message.id, message.surface);
         if (message.surface) this.structures.set(message.id, message.surface);
         else this.structures.delete(message.id);
+        this.isNearStale = true;
         break;
       case 'nodes':
         for (const leaf of message.gone) bonePainter.bone.remove(leaf);
@@ -139,6 +144,7 @@ export class Stage {
     for (const node of this.kept) bonePainter.bone.set(node);
     this.kept = [];
     for (const [id, surface] of this.structures) bonePainter.setStructure(id, surface);
+    this.isNearStale = true;
     if (scene) {
       bonePainter.setMaterials(scene.materials);
       toolPainter.set(scene.tool);
@@ -164,6 +170,7 @@ export class Stage {
 
   private view(): PictureView {
     const { session, settings } = this, { scene, tool } = session;
+    if (scene) this.prepareNear(scene);
     const X_WT = tool?.X_WT;
     const isEndoscope = settings.isEndoscope && tool !== undefined && scene !== undefined;
     return {
@@ -185,6 +192,15 @@ export class Stage {
       pointers: this.pointers().map(({ at }) => at),
       strokes: this.strokes(),
     };
+  }
+
+  // Made anew where structures came or went, before the next picture.
+  private prepareNear(scene: SceneView): void {
+    if (!this.isNearStale) return;
+    this.isNearStale = false;
+    const coloured = [...this.structures.values()].map((surface) => (
+      { surface, colour: linearColour(structureColour(scene, surface.id)) }));
+    this.renderer.bonePainter.setNear(nearStructures(coloured));
   }
 
   private structureLooks(): PictureView['structures'] {

@@ -23,12 +23,12 @@ export interface ViewSettings {
 export function firstSettings(): ViewSettings {
   const cut = (): CutPlane => ({ isOn: false, position: 0.5, isFlipped: false });
   return {
-    cuts: [cut(), cut(), cut()], lastCut: 0, isTransparent: false, opacity: 0.35, structures: 'behind',
+    cuts: [cut(), cut(), cut()], lastCut: 0, isTransparent: false, opacity: 0.35, structures: 'exposed',
     isEndoscope: false, showsForce: true, showsFigures: true, showsDetails: false, showsRemarks: true, following: '',
     mode: 'look', textScale: 1,
   };
 }
 
 export function nextStructureMode(mode: StructureMode): StructureMode {
-  return mode === 'behind' ? 'exposed' : mode === 'exposed' ? 'off' : 'behind';
+  return mode === 'exposed' ? 'behind' : mode === 'behind' ? 'off' : 'exposed';
 }

@@ -25,6 +25,7 @@ import { actionOf } from '../src/ui/key_table';
 import { conditions } from '../src/ui/words';
 import { Orbit, frustumPlanes, isBoxSeen, pixelOf } from '../src/view/camera';
 import { makeFrame, type PictureView } from '../src/view/picture_view';
+import { nearStructures } from '../src/view/near_structures';
 import * as synthetic from './synthetic';
 
 await decoderReady;
@@ -317,6 +318,31 @@ test('the first view shows all of the bone', () => {
       assert.ok(at.x > 0 && at.x < height * aspect && at.y > 0 && at.y < height);
     }
   }
+});
+
+// A square of 2 mm, of two large triangles.
+test('what is near bone is told with its distance', () => {
+  const vertices = new Uint8Array(4 * kVertexBytes), bytes = new DataView(vertices.buffer);
+  [[0, 0], [2000, 0], [0, 2000], [2000, 2000]].forEach(([x, y], i) => {
+    bytes.setUint16(kVertexBytes * i, x, true);
+    bytes.setUint16(kVertexBytes * i + 2, y, true);
+  });
+  const origin: linear.Vec3 = [0.01, 0.02, 0.03];
+  const node = { leaf: 0, chunk: '', origin, step: 1e-6, low: origin, high: origin, vertices, indices: Uint32Array.from([0, 1, 2, 1, 3, 2]), coarse: new Uint32Array() };
+  const near = nearStructures([{ surface: { id: 1, warningDistance: 0.002, node }, colour: [1, 0.5, 0] }])!;
+  let seen = 0;
+  for (let n = 0; n < near.samples.length / 4; ++n) {
+    const at = [n % near.size[0], Math.floor(n / near.size[0]) % near.size[1], Math.floor(n / near.size[0] / near.size[1])];
+    const p = at.map((steps, axis) => near.first[axis] + steps * near.step - origin[axis]);
+    const distance = Math.hypot(...p.map((x, axis) => Math.max(-x, axis < 2 ? x - 0.002 : x, 0)));
+    const told = (near.samples[4 * n + 3] / 255) * 0.002;
+    assert.ok(Math.abs(told - Math.min(distance, 0.002)) < 5e-5, `${at}: ${told} for ${distance}`);
+    if (distance > 0.0019) continue;
+    assert.deepEqual([...near.samples.subarray(4 * n, 4 * n + 3)], [255, 128, 0]);
+    ++seen;
+  }
+  assert.ok(seen > 200);
+  assert.equal(nearStructures([]), undefined);
 });
 
 function pictureView(): PictureView {

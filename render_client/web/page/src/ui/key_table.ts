@@ -29,7 +29,7 @@ const kRows: [string, Action, string, KeyBinding['group'], boolean?][] = [
   ['[', 'cutLower', 'move the last cut-plane', 'view', true],
   [']', 'cutHigher', 'move the last cut-plane', 'view', true],
   ['T', 'transparency', 'transparent bone', 'view'],
-  ['Shift+T', 'structures', 'structures: through bone, exposed, off', 'view'],
+  ['Shift+T', 'structures', 'structures: exposed, through bone, off', 'view'],
   ['E', 'endoscope', 'endoscope', 'view'],
   ['F', 'forceArrow', 'force arrow', 'view'],
   ['Left', 'orbitLeft', 'orbit', 'view', true],

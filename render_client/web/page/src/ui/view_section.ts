@@ -7,7 +7,7 @@ import { button, make } from './dom';
 import { pressed, row, say, type Section } from './panel';
 
 const kAxes = ['X: left, right', 'Y: front, back', 'Z: head, feet'];
-const kStructureWords = { behind: 'seen through bone', exposed: 'only where exposed', off: 'off' };
+const kStructureWords = { behind: 'seen through all bone', exposed: 'where exposed', off: 'off' };
 
 function slider(label: string, value: number, change: (value: number) => void): HTMLInputElement {
   const input = make('input');

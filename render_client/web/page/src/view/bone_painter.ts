@@ -9,8 +9,9 @@ import structure_fragment from '#shaders/structure_fragment.glsl';
 import type { MaterialView, StructureSurface } from '../shared/messages';
 import { BoneStore, Chunk, type Level } from './bone_store';
 import { frustumPlanes } from './camera';
-import { bindTexture, makeTexture, Program, type Gl, type UniformValue } from './gl';
+import { bindTexture, makeTexture, makeVolumeTexture, Program, type Gl, type UniformValue } from './gl';
 import type { Layers } from './layers';
+import { shineUniforms, type NearStructures } from './near_structures';
 import type { Frame, PictureView } from './picture_view';
 import { linearColour } from './structure_colours';
 import { product, type Box, type Mat4, type Vec3 } from '../math/linear';
@@ -38,6 +39,9 @@ export class BonePainter {
   private readonly structures = new Map<number, Chunk>();
   private programs!: Record<'whole' | 'cut', Programs>;
   private hasColours = false;
+  // What shines through thin bone.
+  private near?: { structures: NearStructures; texture: WebGLTexture };
+  private shines = true;
   private readonly light: string[];
   private readonly cap: Program;
   private readonly palette: WebGLTexture;
@@ -46,18 +50,18 @@ export class BonePainter {
   constructor(private readonly gl: Gl, private readonly layers: Layers) {
     this.bone = new BoneStore(gl);
     this.light = layers.shadow ? ['SHADOW'] : [];
-    this.makePrograms(false);
+    this.makePrograms();
     this.cap = new Program(gl, 'cap', full_screen_vertex, cap_fragment, this.light);
     this.palette = makeTexture(gl, gl.RGBA32F, 256, 1);
     this.nothing = gl.createVertexArray();
   }
 
   // One per way of looking, so that none does what is not asked for.
-  private makePrograms(has_colours: boolean): void {
-    this.hasColours = has_colours;
-    const { gl, light } = this, colours = has_colours ? ['MATERIALS'] : [];
+  private makePrograms(): void {
+    const { gl, light } = this;
+    const looks = [...(this.hasColours ? ['MATERIALS'] : []), ...(this.near ? ['NEAR_STRUCTURES'] : [])];
     const of = (words: string[]): Programs => ({
-      surface: new Program(gl, 'bone', mesh_vertex, bone_fragment, [...words, ...light, ...colours]),
+      surface: new Program(gl, 'bone', mesh_vertex, bone_fragment, [...words, ...light, ...looks]),
       depth: new Program(gl, 'bone depth', mesh_vertex, depth_fragment, words),
       structure: new Program(gl, 'structure', mesh_vertex, structure_fragment, [...words, ...light]),
     });
@@ -69,7 +73,9 @@ export class BonePainter {
     materials.forEach(({ colour }, i) => {
       if (colour) texels.set([...linearColour(colour), 1], 4 * (i + 1));
     });
-    if (has_colours !== this.hasColours) this.makePrograms(has_colours);
+    const has_changed = has_colours !== this.hasColours;
+    this.hasColours = has_colours;
+    if (has_changed) this.makePrograms();
     const { gl } = this;
     gl.bindTexture(gl.TEXTURE_2D, this.palette);
     gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, 256, 1, gl.RGBA, gl.FLOAT, texels);
@@ -83,6 +89,14 @@ export class BonePainter {
     const chunk = new Chunk(this.gl, surface.node.origin, surface.node.step);
     chunk.set(surface.node);
     this.structures.set(id, chunk);
+  }
+
+  // They shine through thin bone from now on; none: nothing does.
+  setNear(structures: NearStructures | undefined): void {
+    const { gl } = this, had = this.near;
+    if (had) gl.deleteTexture(had.texture);
+    this.near = structures && { structures, texture: makeVolumeTexture(gl, structures.size, structures.samples) };
+    if (!had !== !this.near) this.makePrograms();
   }
 
   // V; none: there is no such structure.
@@ -109,6 +123,7 @@ export class BonePainter {
   // seen through transparent bone.
   draw(frame: Frame, view: PictureView, draw_tool: () => void): void {
     this.trianglesDrawn = 0;
+    this.shines = view.structureMode !== 'off';
     if (view.opacity === undefined) this.drawOpaque(frame, view);
     else this.drawTransparent(frame, view, view.opacity, draw_tool);
   }
@@ -249,8 +264,11 @@ export class BonePainter {
   }
 
   private drawSurface(frame: Frame, opacity: number, outline: number, inside: Vec3): void {
+    const { near, gl } = this;
     const program = this.begin(frame, 'surface', {
       ...this.lightOf(frame), opacity: [opacity, outline], inside_colour: inside,
+      ...(near && shineUniforms(near.structures, this.shines)),
+      ...(near && { near_structures: bindTexture(gl, 3, near.texture, gl.TEXTURE_3D) }),
     });
     this.drawBone(frame, program, this.planesOf(frame));
   }

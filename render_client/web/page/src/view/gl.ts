@@ -29,7 +29,7 @@ export class Program {
   private readonly places = new Map<string, { place: WebGLUniformLocation; type: number }>();
 
   constructor(private readonly gl: Gl, name: string, vertex: string, fragment: string, defines: string[] = []) {
-    const precise = ['float', 'int', 'sampler2D', 'sampler2DShadow'].map((type) => `precision highp ${type};\n`);
+    const precise = ['float', 'int', 'sampler2D', 'sampler2DShadow', 'sampler3D'].map((type) => `precision highp ${type};\n`);
     const head = ['#version 300 es\n', ...precise, ...defines.map((word) => `#define ${word}\n`)].join('');
     this.program = gl.createProgram();
     for (const [kind, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]] as const) {
@@ -76,11 +76,23 @@ export class Program {
   }
 }
 
-export function bindTexture(gl: Gl, unit: number, texture: WebGLTexture | null): number {
+export function bindTexture(gl: Gl, unit: number, texture: WebGLTexture | null, kind: number = gl.TEXTURE_2D): number {
   gl.activeTexture(gl.TEXTURE0 + unit);
-  gl.bindTexture(gl.TEXTURE_2D, texture);
+  gl.bindTexture(kind, texture);
   gl.activeTexture(gl.TEXTURE0);
   return unit;
+}
+
+// Of four bytes, x fastest, and smooth between its samples.
+export function makeVolumeTexture(gl: Gl, size: readonly [number, number, number], bytes: Uint8Array): WebGLTexture {
+  const texture = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_3D, texture);
+  gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA8, ...size, 0, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+  for (const kind of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_3D, kind, gl.LINEAR);
+  for (const kind of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R])
+    gl.texParameteri(gl.TEXTURE_3D, kind, gl.CLAMP_TO_EDGE);
+  gl.bindTexture(gl.TEXTURE_3D, null);
+  return texture;
 }
 
 export function makeTexture(gl: Gl, format: number, width: number, height: number): WebGLTexture {
