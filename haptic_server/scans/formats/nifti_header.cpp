@@ -19,7 +19,7 @@ namespace {
 // These are the offsets of the fields in nifti1.h.
 constexpr size_t kHeaderBytes = 348;
 constexpr size_t kDimOffset = 40;
-constexpr size_t kBitpixOffset = 72;
+constexpr size_t kDatatypeOffset = 70;
 constexpr size_t kPixdimOffset = 76;
 constexpr size_t kVoxOffsetOffset = 108;
 constexpr size_t kSlopeOffset = 112;
@@ -45,6 +45,7 @@ class Header {
         swapped_ = at<int32_t>(0) != int32_t(kHeaderBytes);
     }
     bool isComplete() const { return is_complete_; }
+    bool isSwapped() const { return swapped_; }
 
     template <class T>
     T at(size_t offset) const {
@@ -61,7 +62,6 @@ class Header {
     bool swapped_ = false;
 };
 
-// ITK takes the singular values of these numbers and aborts the process when one is not finite.
 bool isGeometryFinite(const Header& header) {
     constexpr float kFarthest = 1e9f;
     const auto isFine = [&](size_t offset) { return std::abs(header.at<float>(offset)) < kFarthest; };
@@ -163,7 +163,7 @@ FileFrame plainFrame(const Header& header) {
     return frame;
 }
 
-// The library gives up where they differ, unless there is a qform.
+// Voxels of two sizes; a qform, which has those of pixdim, is told of instead.
 void checkSizesOfSform(const Header& header, const FileFrame& frame, const std::string& file) {
     constexpr double kMaxShare = 0.01;
     const Eigen::Vector3d said_mm = plainFrame(header).spacing_mm;
@@ -187,8 +187,8 @@ void takePlace(const Header& header, NiftiHeader& out) {
         apart_mm);
 }
 
-// A slope of 0, or one that is no number, means that nothing is scaled, but the library adds the intercept
-// even so; a slope that it finds too small it takes for 1.
+// A slope of 0, or one that is no number, means that nothing is scaled, but some programs add the intercept
+// even so; a slope that they find too small they take for 1.
 void checkScale(const Header& header, const std::string& file) {
     constexpr float kMinSlope = 1e-15f;
     const float slope = header.at<float>(kSlopeOffset), intercept = header.at<float>(kInterceptOffset);
@@ -203,7 +203,14 @@ void checkScale(const Header& header, const std::string& file) {
                         "scl_slope to 1, or scl_inter to 0");
 }
 
-// The library takes their absolute values or 1 where there is no sform, and gives up where there is one.
+void takeScale(const Header& header, NiftiHeader& out) {
+    const float slope = header.at<float>(kSlopeOffset);
+    if (slope == 0 || std::isnan(slope)) return;
+    out.slope = slope;
+    out.intercept = header.at<float>(kInterceptOffset);
+}
+
+// Programs take their absolute values or 1 where there is no sform, or give up.
 void checkVoxelSize(const Header& header, const std::string& file) {
     for (size_t a = 1; a <= std::min<size_t>(size_t(header.at<int16_t>(kDimOffset)), 3); ++a)
         if (!(header.at<float>(kPixdimOffset + 4 * a) > 0))
@@ -236,13 +243,15 @@ NiftiHeader readNiftiHeader(const std::filesystem::path& path) {
     checkScale(header, file);
     checkUnit(header, file);
     checkVoxelSize(header, file);
-    const int bits = header.at<int16_t>(kBitpixOffset);
-    if (bits <= 0 || bits % 8 != 0)
-        throw UserError(file + ": its NIfTI header states " + std::to_string(bits) +
-                        " bits per voxel; whole bytes are needed");
-    NiftiHeader out{.data_offset = uint64_t(data_offset), .bytes_per_voxel = uint64_t(bits / 8)};
+    NiftiHeader out{.dims = {},
+                    .datatype = header.at<int16_t>(kDatatypeOffset),
+                    .is_swapped = header.isSwapped(),
+                    .data_offset = uint64_t(data_offset)};
+    for (int a = 1; a <= axes; ++a)
+        out.dims.push_back(uint64_t(header.at<int16_t>(kDimOffset + 2 * size_t(a))));
+    takeScale(header, out);
     takePlace(header, out);
-    checkFrame(out.place.frame, file);  // before the library, which says it less clearly
+    checkFrame(out.place.frame, file);
     if (isSet(header, kSformCodeOffset) && !isSet(header, kQformCodeOffset))
         checkSizesOfSform(header, out.place.frame, file);
     return out;

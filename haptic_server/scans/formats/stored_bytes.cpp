@@ -81,10 +81,7 @@ uint64_t countStoredBytes(const StoredData& data, uint64_t needed) {
     if (error) throw UserError(data.file.string() + ": no such file; it should hold the voxels");
     const uint64_t stored = size > data.begin ? size - data.begin : 0;
     if (data.packing == StoredData::Packing::kOther) return stored * kMaxDeflateRatio;
-    const uint64_t unpacked = data.packing == StoredData::Packing::kPlain
-                                  ? stored
-                                  : InflateCounter(data).count(needed + data.skip_unpacked);
-    return unpacked > data.skip_unpacked ? unpacked - data.skip_unpacked : 0;
+    return data.packing == StoredData::Packing::kPlain ? stored : InflateCounter(data).count(needed);
 }
 
 }  // namespace bonemill

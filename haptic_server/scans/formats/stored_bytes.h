@@ -17,8 +17,7 @@ struct StoredData {
     std::filesystem::path file;
     uint64_t begin = 0;  // first byte of the data (of the packed data) in the file
     Packing packing = Packing::kPlain;
-    uint64_t packed_bytes = 0;   // as many belong to them; 0: all to the end of the file
-    uint64_t skip_unpacked = 0;  // bytes before the voxels once unpacked (NIfTI packs its header, too)
+    uint64_t packed_bytes = 0;  // as many belong to them; 0: all to the end of the file
 };
 
 // These are the bytes of voxels that can be read, counted up to `needed`. Throws UserError when the packed

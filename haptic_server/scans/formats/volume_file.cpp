@@ -1,14 +1,18 @@
 #include "haptic_server/scans/formats/volume_file.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "common/base/user_error.h"
 #include "common/files/require_file.h"
 #include "haptic_server/scans/confined/import_limits.h"
+#include "haptic_server/scans/confined/shared_name.h"
 #include "haptic_server/scans/formats/metaimage_header.h"
 #include "haptic_server/scans/formats/nifti_header.h"
+#include "haptic_server/scans/formats/nifti_values.h"
 #include "haptic_server/scans/formats/stored_bytes.h"
 #include "haptic_server/scans/frame/physical_frame.h"
 #include "haptic_server/scans/nrrd/nrrd_header.h"
@@ -21,11 +25,9 @@ namespace {
 struct FileFacts {
     std::string format;
     StoredData data;
-    std::function<FilePlace()> place;     // asked once the library took the file's axes for what they are
-    bool has_spacing = true;              // libraries take 1 mm where it is not said
-    bool has_other_data = false;          // beside its voxels, where the header says so
-    uint64_t stored_bytes_per_voxel = 0;  // 0: as many as the library's
-    std::string remark = {};
+    std::function<FilePlace()> place;  // asked once the library took the file's axes for what they are
+    bool has_spacing = true;           // libraries take 1 mm where it is not said
+    bool has_other_data = false;       // beside its voxels, where the header says so
     NrrdSegments segments = {};
     std::optional<Eigen::Vector3d> spacing_mm = {};  // what the scene says of it
 };
@@ -40,6 +42,11 @@ std::string segmentRemark(const Segments& segments) {
     if (segments.list.empty()) return {};
     return ", " + std::to_string(segments.list.size()) + " segments" +
            (segments.are_layered ? " in layers" : "");
+}
+
+std::string descriptionOf(const std::string& format, bool is_flipped, const std::string& remark) {
+    return format + (is_flipped ? ", left-handed: third axis reversed" : "") +
+           (remark.empty() ? "" : ", " + remark);
 }
 
 // One byte may make their count even, or end a line. Of packed ones no more than the first few are counted.
@@ -74,17 +81,15 @@ RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const
         throw UserError(file + ": has " + std::to_string(header.components) +
                         " values per voxel (colour or vectors); one number per voxel is needed");
     const std::vector<uint64_t> dims = volumeDims(header.dims);
-    const uint64_t copies = format == ItkFormat::kNifti ? 2 : 1;  // its library fills a buffer of its own
     const uint64_t layers = header.components;
-    checkVolumeSize(dims, copies * layers * header.bytes_per_voxel, file);
+    checkVolumeSize(dims, layers * header.bytes_per_voxel, file);
     requireOneSpacing(facts.has_spacing, facts.spacing_mm.has_value(),
                       format == ItkFormat::kNrrd ? "spacings or space directions" : "ElementSpacing = X Y Z",
                       file);
     if (facts.spacing_mm) checkSpacing(*facts.spacing_mm, file);
     const FilePlace place = placeOf(facts, dims, file);
     const uint64_t voxels = dims[0] * dims[1] * dims[2];
-    const uint64_t stored = facts.stored_bytes_per_voxel;
-    const uint64_t needed = layers * voxels * (stored > 0 ? stored : header.bytes_per_voxel);
+    const uint64_t needed = layers * voxels * header.bytes_per_voxel;
     const uint64_t found = countStoredBytes(facts.data, needed);
     checkStoredBytes(needed, found, file);
     RawVolume raw;
@@ -94,8 +99,7 @@ RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const
         raw.segments = joinLayers(facts.segments, uint32_t(layers), raw.values, file);
     const bool flipped = makeRightHanded(place.frame, file, raw.geometry, raw.values);
     raw.lacks_patient_axes = !place.is_patients;
-    raw.description = facts.format + (flipped ? ", left-handed: third axis reversed" : "") +
-                      (facts.remark.empty() ? "" : ", " + facts.remark) + segmentRemark(raw.segments) +
+    raw.description = descriptionOf(facts.format, flipped, {}) + segmentRemark(raw.segments) +
                       (facts.has_other_data ? "" : surplusRemark(facts.data, found, needed));
     return raw;
 }
@@ -127,14 +131,23 @@ RawVolume importNrrd(const std::filesystem::path& path, const std::optional<Eige
 }
 
 RawVolume importNifti(const std::filesystem::path& path) {
+    const std::string file = path.string();
+    noteFileBeingRead(path);
     const NiftiHeader header = readNiftiHeader(path);
-    FileFacts facts{.format = "NIfTI",
-                    .data = StoredData{path, header.data_offset},
-                    .place = [&] { return header.place; },
-                    .stored_bytes_per_voxel = header.bytes_per_voxel,
-                    .remark = header.remark};
-    if (path.extension() == ".gz") facts.data = StoredData{path, 0, Packing::kDeflate, 0, header.data_offset};
-    return readThrough(ItkFormat::kNifti, path, facts);
+    const uint64_t voxel_bytes = niftiVoxelBytes(header, path);
+    const std::vector<uint64_t> dims = volumeDims(header.dims);
+    checkVolumeSize(dims, std::min<uint64_t>(voxel_bytes, sizeof(float)), file);
+    NiftiValues read = readNiftiValues(path, header);
+    RawVolume raw;
+    raw.values = std::move(read.values);
+    const bool flipped = makeRightHanded(header.place.frame, file, raw.geometry, raw.values);
+    raw.lacks_patient_axes = !header.place.is_patients;
+    StoredData data{path};
+    if (read.is_packed) data.packing = Packing::kDeflate;
+    const uint64_t needed = voxel_bytes * dims[0] * dims[1] * dims[2];
+    raw.description =
+        descriptionOf("NIfTI", flipped, header.remark) + surplusRemark(data, needed + read.surplus, needed);
+    return raw;
 }
 
 RawVolume importMetaImage(const std::filesystem::path& path,

@@ -1,4 +1,4 @@
-// Reads what is no DICOM: NRRD, NIfTI and MetaImage through ITK, InVesalius projects, bone that is given as
+// Reads what is no DICOM: NRRD and MetaImage through ITK, NIfTI, InVesalius projects, bone that is given as
 // its closed surface, and folders of pictures, one of each slice, as micro-CT scanners and ImageJ write them.
 // All throw UserError with one message that names the file.
 #pragma once

@@ -1,7 +1,6 @@
 #include "haptic_server/scans/pixels/itk_image_file.h"
 
 #include <itkMetaImageIO.h>
-#include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
 #include <sys/stat.h>
 
@@ -30,9 +29,7 @@ itk::ImageIOBase::Pointer makeReader(ItkFormat format) {
     static std::mutex only_one;
     const std::lock_guard lock(only_one);
     static const std::map<ItkFormat, itk::ImageIOBase::Pointer (*)()> kMakers{
-        {ItkFormat::kNrrd, makeIo<itk::NrrdImageIO>},
-        {ItkFormat::kNifti, makeIo<itk::NiftiImageIO>},
-        {ItkFormat::kMetaImage, makeIo<itk::MetaImageIO>}};
+        {ItkFormat::kNrrd, makeIo<itk::NrrdImageIO>}, {ItkFormat::kMetaImage, makeIo<itk::MetaImageIO>}};
     return kMakers.at(format)();
 }
 

@@ -16,7 +16,7 @@
 
 namespace bonemill {
 
-enum class ItkFormat { kNrrd, kNifti, kMetaImage };
+enum class ItkFormat { kNrrd, kMetaImage };
 
 struct ItkImageHeader {
     std::vector<uint64_t> dims;  // all axes of the file

@@ -234,16 +234,18 @@ TEST(Nifti, aShearedSformIsRefused) {
 
 TEST(Nifti, lengthsInMetresAndMicrometresAreTurnedIntoOurs) {
     const test::TemporaryFolder folder;
-    for (const auto& [code, mm] : {std::pair('\1', 1000.0), std::pair('\3', 1e-3)}) {
-        SampleVolume stored, meant;
-        stored.spacing_mm /= 10, stored.origin_mm /= 10;
-        meant.spacing_mm = mm * stored.spacing_mm, meant.origin_mm = mm * stored.origin_mm;
-        writeNiftiFile(folder / "a.nii", stored, {});
-        std::string bytes = readBytes(folder / "a.nii");
-        bytes[123] = code;
-        writeBytes(folder / "a.nii", bytes);
-        EXPECT_NO_THROW(expectSamePlaces(importVolume(folder / "a.nii"), meant, 1e-6 * mm));
-    }
+    for (const auto& [code, mm] : {std::pair('\1', 1000.0), std::pair('\3', 1e-3)})
+        for (const double smaller : {10.0, mm}) {
+            SampleVolume stored, meant;
+            stored.spacing_mm /= smaller, stored.origin_mm /= smaller;
+            meant.spacing_mm = mm * stored.spacing_mm, meant.origin_mm = mm * stored.origin_mm;
+            writeNiftiFile(folder / "a.nii", stored, {});
+            std::string bytes = readBytes(folder / "a.nii");
+            bytes[123] = code;
+            writeBytes(folder / "a.nii", bytes);
+            EXPECT_NO_THROW(expectSamePlaces(importVolume(folder / "a.nii"), meant, 1e-6 * mm / smaller * 10))
+                << mm << " " << smaller;
+        }
 }
 
 TEST(Formats, aVoxelOfNoSizeIsRefused) {

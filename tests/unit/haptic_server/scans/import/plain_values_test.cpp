@@ -175,6 +175,43 @@ TEST_F(PlainValues, ofNiftiComeBack) {
     EXPECT_EQ(count_, 8 * 2 * 8 * 2);
 }
 
+// A float holds no whole numbers above 2^24, but what an offset makes of them.
+TEST_F(PlainValues, ofNiftiWithALargeOffsetComeBack) {
+    constexpr float kOffset = 1 << 30;
+    const std::vector<double> ramp = rampOf(16, true);
+    std::vector<double> stored = ramp;
+    for (double& value : stored) value += double(kOffset);
+    for (const Type& type : kTypes) {
+        if (type.bytes < 4 || (type.is_float && type.bytes < 8)) continue;
+        writeBytes(folder_ / "a.nii",
+                   niftiOf(type, asBytes(type, stored, false), {1, -kOffset, true}, false));
+        expectRamp(folder_ / "a.nii", ramp, type.nrrd);
+    }
+    EXPECT_GE(count_, 2);
+}
+
+TEST_F(PlainValues, ofNiftiComeBackWhateverItsNameSaysOfItsPacking) {
+    const Type& type = kTypes[3];
+    const std::string bytes = niftiOf(type, asBytes(type, rampOf(type), false), {1, 0, true}, false);
+    writeBytes(folder_ / "plain.nii.gz", bytes);
+    expectRamp(folder_ / "plain.nii.gz", rampOf(type), "not packed");
+    std::string packed = deflated(bytes, DeflateHead::kGzip);
+    writeBytes(folder_ / "packed.nii", packed);
+    expectRamp(folder_ / "packed.nii", rampOf(type), "packed");
+    packed[packed.size() - 6] ^= 1;  // of its checksum
+    writeBytes(folder_ / "damaged.nii.gz", packed);
+    expectRefused(folder_ / "damaged.nii.gz", {"damaged.nii.gz", "damaged"});
+}
+
+TEST_F(PlainValues, ofNiftiThatAreNoPlainNumbersAreRefused) {
+    for (const char* datatype : {"\x20", "\x80", "\1"}) {  // complex, colour, bits
+        std::string bytes = niftiOf(kTypes[3], std::string(120, 'x'), {1, 0, true}, false);
+        bytes[70] = datatype[0];
+        writeBytes(folder_ / "a.nii", bytes);
+        expectRefused(folder_ / "a.nii", {"a.nii", "sample type", "not a plain number"});
+    }
+}
+
 TEST_F(PlainValues, ofNiftiWithAnInterceptButNoSlopeAreRefused) {
     const Type& type = kTypes[3];
     for (const float slope : {0.0f, kNan}) {
