@@ -275,8 +275,11 @@ std::string whyItEnded(int status) {
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
         return printed("its library did not end within %d s of processor time; the file is damaged",
                        int(kMaxCpuSeconds));
-    return std::string("the library that reads such files gave up (") +
-           (WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "it ended early") + "); the file is damaged";
+    return std::string("the library that reads such files failed on it (") +
+           (WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "it ended early") +
+           "): the file is damaged, or of a kind that the library cannot read; open it in another program, "
+           "such "
+           "as 3D Slicer, and export it anew";
 }
 
 Received receiveFrom(const std::filesystem::path& path, const StartReader& start,

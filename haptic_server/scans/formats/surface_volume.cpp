@@ -24,7 +24,8 @@ constexpr double kFinestMm = 0.02, kCoarsestMm = 10;
 constexpr int kMarginVoxels = 3;           // of air: the ramp and one
 constexpr double kMostVoxels = 1 << 29;    // a minute of computing
 constexpr double kLipschitzSlack = 1.001;  // float rounding
-constexpr size_t kHeadBytes = 1024;        // of a file: an STL's or PLY's comments stand there
+// Comments stand there: in the first of an STL, and in all of the longest head that a PLY may have.
+constexpr size_t kStlHeadBytes = 1024, kPlyHeadBytes = size_t(1) << 16;
 
 std::string number(double value) {
     return printed("%.3g", value);
@@ -118,6 +119,11 @@ class SurfaceSampler {
     uint32_t guess_ = 0;
 };
 
+std::string headOf(const std::filesystem::path& path) {
+    const std::string bytes = firstBytes(path, kPlyHeadBytes);
+    return bytes.substr(0, bytes.starts_with("ply") ? bytes.find("\nend_header") : kStlHeadBytes);
+}
+
 // 3D Slicer writes which axes it means into the head of the files that it saves; empty: nothing is said.
 std::string spaceOf(const std::string& head, const std::string& file) {
     constexpr std::string_view kWord = "SPACE=";
@@ -133,7 +139,7 @@ std::string spaceOf(const std::string& head, const std::string& file) {
 
 RawVolume importSurface(const std::filesystem::path& path, std::optional<double> voxel_mm, double inside) {
     noteFileBeingRead(path);
-    const std::string file = path.string(), head = firstBytes(path, kHeadBytes);
+    const std::string file = path.string(), head = headOf(path);
     std::vector<Vector3d> corners = readMeshFile(path, kBoneSolid);
     const std::string space = spaceOf(head, file);
     if (space == "RAS")

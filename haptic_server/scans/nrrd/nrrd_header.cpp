@@ -100,6 +100,7 @@ void keepField(const std::string& name, const std::string& value, NrrdFields& fi
     if (name == "spacings") fields.spacings = value;
     if (name == "kinds") fields.kinds = value;
     if (name == "axismins") fields.axis_mins = value;
+    if (name == "axismaxs") fields.axis_maxs = value;
     if (name == "centers" || name == "centerings") fields.centers = value;
     if (name == "spaceunits") fields.space_units = value;
     if (name == "units") fields.axis_units = value;

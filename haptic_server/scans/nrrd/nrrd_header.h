@@ -17,7 +17,7 @@ namespace bonemill {
 // As the file says it, unchecked; absent fields are empty.
 struct NrrdFields {
     std::string type, endian, space, space_units, axis_units;
-    std::string sizes, space_directions, space_origin, spacings, kinds, axis_mins, centers;
+    std::string sizes, space_directions, space_origin, spacings, kinds, axis_mins, axis_maxs, centers;
     bool has_skip = false;  // data begin later than right behind the header
 };
 

@@ -122,11 +122,15 @@ std::vector<Axis> plainAxes(const NrrdFields& fields, size_t sizes) {
     return axes;
 }
 
+std::vector<std::string> centersOf(const NrrdFields& fields) {
+    std::istringstream words(fields.centers);
+    return {std::istream_iterator<std::string>(words), {}};
+}
+
 // "axis mins" are where the first sample's cell begins, unless samples are nodes.
 Vector3d plainOrigin(const NrrdFields& fields, const std::vector<Axis>& axes) {
     const std::vector<double> mins = numbersIn(fields.axis_mins);
-    std::istringstream words(fields.centers);
-    const std::vector<std::string> centers{std::istream_iterator<std::string>(words), {}};
+    const std::vector<std::string> centers = centersOf(fields);
     Vector3d origin = Vector3d::Zero();
     for (size_t n = 0; n < axes.size(); ++n) {
         const size_t a = axes[n].number;
@@ -135,6 +139,28 @@ Vector3d plainOrigin(const NrrdFields& fields, const std::vector<Axis>& axes) {
         origin[int(n)] = mins[a] + (is_node ? 0 : axes[n].step.norm() / 2);
     }
     return origin;
+}
+
+// From "axis mins" to "axis maxs" there are as many spacings as samples, of nodes one fewer; either where
+// nothing says which they are.
+void checkExtents(const NrrdFields& fields, const std::vector<Axis>& axes, const std::vector<double>& sizes,
+                  const std::string& file) {
+    constexpr double kMaxShare = 0.01;
+    const std::vector<double> mins = numbersIn(fields.axis_mins), maxs = numbersIn(fields.axis_maxs);
+    const std::vector<std::string> centers = centersOf(fields);
+    for (const Axis& axis : axes) {
+        const size_t a = axis.number;
+        if (fields.spacings.empty() || a >= mins.size() || a >= maxs.size()) continue;
+        const double extent = maxs[a] - mins[a], spacing = axis.step.norm();
+        if (!std::isfinite(extent)) continue;
+        const std::string center = a < centers.size() ? centers[a] : "";
+        const auto agrees = [&](double spacings) {
+            return std::abs(extent - spacings * spacing) <= kMaxShare * spacings * spacing;
+        };
+        if ((center != "node" && agrees(sizes[a])) || (center != "cell" && agrees(sizes[a] - 1))) continue;
+        throw UserError(file + ": its axis mins and axis maxs contradict its spacings (" + fields.spacings +
+                        "); take the wrong ones out of the header");
+    }
 }
 
 Vector3d originOf(const NrrdFields& fields, const std::vector<Axis>& axes, const std::string& file) {
@@ -159,6 +185,7 @@ FilePlace nrrdPlaceOf(const NrrdHeader& header, const std::string& file) {
                                        ? plainAxes(fields, sizes.size())
                                        : axesOfDirections(fields, sizes.size(), file);
     if (axes.size() != 3) refuseAxes(file);
+    if (fields.space_directions.empty()) checkExtents(fields, axes, sizes, file);
     FilePlace place{.frame = {}, .is_patients = space.is_patients};
     const Vector3d to_mm = header.mm_per_unit * space.to_LPS;
     for (int a = 0; a < 3; ++a) {

@@ -171,7 +171,7 @@ TEST(GuardedImport, theReadersMemoryIsBounded) {
 
 TEST(GuardedImport, deathOfTheReaderNamesTheFileItWasAt) {
     expectUserError([] { importGuarded("folder", []() -> RawVolume { std::abort(); }); },
-                    {"folder", "gave up"});
+                    {"folder", "library", "failed on it", "export it anew"});
     const auto readAndDie = []() -> RawVolume {
         noteFileBeingRead("folder/slice7");
         std::abort();

@@ -5,6 +5,7 @@
 
 #include "haptic_server/core/volume/index_box.h"
 #include "haptic_server/scans/densify/voxel_materials.h"
+#include "tests/unit/haptic_server/scans/import/expect_user_error.h"
 #include "tests/unit/haptic_server/scans/import/patient_sides.h"
 #include "tests/unit/haptic_server/scans/import/seg_nrrd.h"
 
@@ -94,6 +95,32 @@ TEST_F(Places, ofNrrdWithoutDirectionsBeginWhereItsAxesDo) {
                    head + "axis mins: 10 -20 30\ncenters: " + centers + "\n" + tail + data);
         expectRead("b.nrrd", meant);
         EXPECT_NO_THROW(expectSamePlaces(readPlainNrrd(folder_ / "b.nrrd", {}), meant));
+    }
+}
+
+// The sample has 5 x 4 x 3 voxels.
+TEST_F(Places, ofNrrdOfWhichTheExtentsContradictTheSpacingsAreRefused) {
+    struct Extents {
+        const char *centers, *maxs;
+        bool agree;
+    };
+    for (const Extents& extents :
+         {Extents{"centers: node node node\n", "4 6 8", true},
+          Extents{"centers: cell cell cell\n", "5 8 12", true}, Extents{"", "4 8 nan", true},
+          Extents{"centers: node node node\n", "5 8 12", false},
+          Extents{"centers: cell cell cell\n", "4 6 8", false}, Extents{"", "-4 6 8", false},
+          Extents{"", "4 6 4", false}}) {
+        const std::string head =
+            "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 5 4 3\nspacings: 1 2 4\naxis mins: 0 0 0\naxis "
+            "maxs: ";
+        writeBytes(folder_ / "b.nrrd",
+                   head + extents.maxs + "\n" + extents.centers + "encoding: raw\n\n" + std::string(60, 'x'));
+        SCOPED_TRACE(extents.centers + std::string(extents.maxs));
+        if (extents.agree)
+            EXPECT_NO_THROW(importVolumeHere(folder_ / "b.nrrd"));
+        else
+            expectUserError([&] { importVolumeHere(folder_ / "b.nrrd"); },
+                            {"b.nrrd", "axis maxs", "contradict", "spacings"});
     }
 }
 

@@ -136,6 +136,9 @@ TEST_F(SurfaceVolume, isInTheAxesThatItsFileNames) {
     const RawVolume unsaid = imported("a.ply", textPly(box, ""));
     const RawVolume lps = imported("a.ply", textPly(box, "comment SPACE=LPS\n"));
     const RawVolume ras = imported("a.ply", textPly(box, "comment SPACE=RAS\n"));
+    const std::string long_comment = "comment " + std::string(2000, 'x') + "\n";
+    const RawVolume late = imported("a.ply", textPly(box, long_comment + "comment SPACE=RAS\n"));
+    EXPECT_LT((middle(late) - Vector3d(-12, -23, 34)).norm(), 0.1);
     EXPECT_LT((middle(unsaid) - Vector3d(12, 23, 34)).norm(), 0.1);
     EXPECT_LT((middle(lps) - Vector3d(12, 23, 34)).norm(), 0.1);
     EXPECT_LT((middle(ras) - Vector3d(-12, -23, 34)).norm(), 0.1);
