@@ -52,9 +52,17 @@ DicomFile::DicomFile(const std::filesystem::path& path) : name_(path.string()) {
     const gdcm::Tag kPixelData(0x7fe0, 0x0010);
     const std::set<gdcm::Tag> pixels{gdcm::Tag(0x7fe0, 0x0008), gdcm::Tag(0x7fe0, 0x0009), kPixelData};
     reader_.SetFileName(path.c_str());
-    if (!reader_.ReadUpToTag(kPixelData, pixels))
+    if (!reader_.ReadUpToTag(kPixelData, pixels) && !readWhole())
         throw UserError(name_ + ": its header cannot be read; the DICOM file is damaged");
     layout_ = layoutOf(data(), name_);
+}
+
+// The library cannot stop within a deflated data set that has sequences.
+bool DicomFile::readWhole() {
+    if (syntax() != gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian) return false;
+    reader_.SetFile(*new gdcm::File);  // which the reader owns
+    reader_.SetFileName(name_.c_str());
+    return reader_.Read();
 }
 
 std::string DicomFile::dicomTag(const char* tag) const {

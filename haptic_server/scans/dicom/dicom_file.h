@@ -40,6 +40,8 @@ class DicomFile {
     std::string dicomTag(const char* tag) const;
 
   private:
+    bool readWhole();
+
     std::string name_;
     gdcm::Reader reader_;
     DicomPixelLayout layout_;

@@ -13,6 +13,15 @@ const gdcm::Tag kPlanePosition(0x0020, 0x9113);
 const gdcm::Tag kPlaneOrientation(0x0020, 0x9116);
 const gdcm::Tag kPixelMeasures(0x0028, 0x9110);
 
+constexpr size_t kFirst = 1;  // GDCM counts items from 1
+
+// Null when there are none.
+DicomItems itemsIn(const DicomItems& places, size_t number, const gdcm::Tag& group) {
+    if (!places || places->GetNumberOfItems() < number) return nullptr;
+    const DicomItems items = itemsOf(places->GetItem(number).GetNestedDataSet(), group);
+    return items && items->GetNumberOfItems() > 0 ? items : nullptr;
+}
+
 }  // namespace
 
 DicomItems itemsOf(const gdcm::DataSet& data, const gdcm::Tag& tag) {
@@ -33,13 +42,15 @@ size_t FunctionalGroups::frameCount() const {
     return per_frame_ ? per_frame_->GetNumberOfItems() : 0;
 }
 
+DicomItems FunctionalGroups::items(size_t frame, const gdcm::Tag& group) const {
+    const DicomItems own = itemsIn(per_frame_, frame + kFirst, group);
+    return own ? own : itemsIn(shared_, kFirst, group);
+}
+
 std::string FunctionalGroups::bytes(size_t frame, const gdcm::Tag& group, const gdcm::Tag& element) const {
-    constexpr size_t kFirst = 1;  // GDCM counts items from 1
     const auto in = [&](const DicomItems& places, size_t number) -> std::string {
-        if (!places || places->GetNumberOfItems() < number) return {};
-        const DicomItems items = itemsOf(places->GetItem(number).GetNestedDataSet(), group);
-        if (!items || items->GetNumberOfItems() == 0) return {};
-        return bytesOf(items->GetItem(kFirst).GetNestedDataSet(), element);
+        const DicomItems items = itemsIn(places, number, group);
+        return items ? bytesOf(items->GetItem(kFirst).GetNestedDataSet(), element) : "";
     };
     const std::string own = in(per_frame_, frame + kFirst);
     return own.empty() ? in(shared_, kFirst) : own;

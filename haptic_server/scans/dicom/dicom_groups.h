@@ -35,7 +35,8 @@ class FunctionalGroups {
   public:
     explicit FunctionalGroups(const gdcm::DataSet& data);
 
-    size_t frameCount() const;  // 0: the file has no groups per frame
+    size_t frameCount() const;                                     // 0: the file has no groups per frame
+    DicomItems items(size_t frame, const gdcm::Tag& group) const;  // null: there are none
     // Of an element in the only item of a group; empty when there is none.
     std::string bytes(size_t frame, const gdcm::Tag& group, const gdcm::Tag& element) const;
     std::string text(size_t frame, const gdcm::Tag& group, const gdcm::Tag& element) const;  // no padding

@@ -14,19 +14,15 @@
 #include "haptic_server/scans/dicom/dicom_pixels.h"
 #include "haptic_server/scans/dicom/dicom_scan.h"
 #include "haptic_server/scans/dicom/dicom_slice.h"
+#include "haptic_server/scans/dicom/real_world_scale.h"
 #include "haptic_server/scans/pixels/dicom_rescale.h"
 #include "haptic_server/scans/pixels/itk_image_file.h"
 
 namespace bonemill {
 namespace {
 
-struct DicomFrame {
-    DicomPlace place;
-    std::optional<DicomRescale> rescale;  // nothing: its functional groups do not say it
-    DicomTraits traits;                   // what its functional groups say of it
-};
-
 const gdcm::Tag kValueTransformation(0x0028, 0x9145);
+const gdcm::Tag kRealWorldMapping(0x0040, 0x9096);
 const gdcm::Tag kFrameContent(0x0020, 0x9111);
 const gdcm::Tag kMrDiffusion(0x0018, 0x9117);
 const gdcm::Tag kCtReconstruction(0x0018, 0x9314);
@@ -54,28 +50,28 @@ DicomTraits readTraits(const FunctionalGroups& groups, size_t frame) {
     return traits;
 }
 
-std::optional<DicomFrame> readFrame(const FunctionalGroups& groups, size_t frame, const std::string& name) {
-    const DicomPlaceTexts texts = groups.placeTexts(frame);
-    if (!texts.areComplete()) return std::nullopt;
-    return DicomFrame{
-        placeFromTexts(texts, kThreeDigits, name),
-        rescaleFromTexts(groups.text(frame, kValueTransformation, gdcm::Tag(0x0028, 0x1053)),
-                         groups.text(frame, kValueTransformation, gdcm::Tag(0x0028, 0x1052)), name),
-        readTraits(groups, frame)};
+// What stands outside of the functional groups is the place of a file's only picture.
+DicomPlaceTexts placeTextsOf(const DicomFile& image, const FunctionalGroups& groups, size_t frame) {
+    DicomPlaceTexts texts = groups.placeTexts(frame);
+    if (image.layout().frames > 1) return texts;
+    if (texts.position.empty()) texts.position = image.dicomTag("0020|0032");
+    if (texts.orientation.empty()) texts.orientation = image.dicomTag("0020|0037");
+    if (texts.pixel_spacing.empty()) texts.pixel_spacing = image.dicomTag("0028|0030");
+    return texts;
 }
 
-// There is one of every frame, from the functional groups of an enhanced image (per frame, else shared), and
-// none when the file does not say for each frame where it lies. Throws UserError naming file and frame when
-// what it says is no place or no scale.
-std::vector<DicomFrame> readFrames(const DicomFile& file) {
-    const FunctionalGroups groups(file.data());
-    std::vector<DicomFrame> frames;
-    for (size_t f = 0; f < groups.frameCount(); ++f) {
-        const auto frame = readFrame(groups, f, file.name() + " frame " + std::to_string(f + 1));
-        if (!frame) return {};
-        frames.push_back(*frame);
-    }
-    return frames;
+// What a frame says goes before what its file does, and a rescale before a mapping.
+std::optional<DicomRescale> rescaleOf(const DicomFile& image, const FunctionalGroups& groups, size_t frame,
+                                      const std::string& name) {
+    const auto of_frame =
+        rescaleFromTexts(groups.text(frame, kValueTransformation, gdcm::Tag(0x0028, 0x1053)),
+                         groups.text(frame, kValueTransformation, gdcm::Tag(0x0028, 0x1052)), name);
+    if (of_frame) return of_frame;
+    const auto of_file =
+        rescaleFromTexts(image.dicomTag("0028|1053"), image.dicomTag("0028|1052"), image.name());
+    if (of_file) return of_file;
+    const DicomItems mappings = groups.items(frame, kRealWorldMapping);
+    return realWorldScale(mappings ? mappings : itemsOf(image.data(), kRealWorldMapping), name);
 }
 
 constexpr int kMaxEdge = 16384;  // detectors of today have 4096; more is a damaged header
@@ -100,6 +96,8 @@ DicomSlice headerOf(const DicomFile& image, const std::filesystem::path& path) {
     slice.series_uid = image.dicomTag("0020|000e");
     slice.series_description = image.dicomTag("0008|103e");
     slice.modality = image.dicomTag("0008|0060");
+    slice.patient = image.dicomTag("0010|0020") + '\n' + image.dicomTag("0010|0010");
+    slice.space_uid = image.dicomTag("0020|0052");
     slice.traits = traitsOf(image);
     slice.contrast = image.dicomTag("0018|0010");
     const auto isEdge = [](int pixels) { return pixels >= 1 && pixels <= kMaxEdge; };
@@ -107,7 +105,6 @@ DicomSlice headerOf(const DicomFile& image, const std::filesystem::path& path) {
         throw UserError(path.string() + ": claims an image of absurd size; the header is damaged");
     slice.columns = layout.columns;
     slice.rows = layout.rows;
-    slice.rescale = rescaleFromTexts(image.dicomTag("0028|1053"), image.dicomTag("0028|1052"), path.string());
     return slice;
 }
 
@@ -119,24 +116,40 @@ void takeTraits(const DicomTraits& of_frame, DicomTraits& traits) {
         if (!(of_frame.*trait).empty()) traits.*trait = of_frame.*trait;
 }
 
-// Frames of which only some say their scale would not be alike.
-void checkRescales(const std::vector<DicomFrame>& frames, const DicomSlice& common) {
-    if (common.rescale) return;
-    const auto says = [](const DicomFrame& frame) { return frame.rescale.has_value(); };
-    const auto silent = std::ranges::find_if_not(frames, says);
-    if (silent != frames.end() && std::ranges::any_of(frames, says))
-        throw UserError(common.path.string() + " frame " + std::to_string(silent - frames.begin() + 1) +
-                        ": does not state its Rescale Slope and Intercept, other frames do; export it anew");
+void checkFrameCount(const FunctionalGroups& groups, const DicomFile& image) {
+    const size_t described = groups.frameCount(), frames = image.layout().frames;
+    if (described > 0 && described != frames)
+        throw UserError(image.name() + ": describes " + std::to_string(described) +
+                        " frames, but its Number of Frames is " + std::to_string(frames) +
+                        "; export it anew");
 }
 
-std::vector<DicomSlice> slicesOf(const std::vector<DicomFrame>& frames, const DicomSlice& common) {
-    checkRescales(frames, common);
-    std::vector<DicomSlice> slices(frames.size(), common);
-    for (size_t f = 0; f < frames.size(); ++f) {
+// Empty: the file says for each of its pictures where it lies.
+std::string whyNowhere(const DicomFile& image, const FunctionalGroups& groups) {
+    if (image.layout().frames == 1) {
+        const DicomPlaceTexts texts = placeTextsOf(image, groups, 0);
+        const bool is_somewhere = !texts.position.empty() && !texts.orientation.empty();
+        return is_somewhere ? "" : "images without a position in the patient";
+    }
+    for (size_t f = 0; f < image.layout().frames; ++f)
+        if (!groups.placeTexts(f).areComplete())
+            return "multi-frame images that do not say where each frame lies";
+    return {};
+}
+
+// Throws UserError naming file and frame when what it says is no place or no scale.
+std::vector<DicomSlice> slicesOf(const DicomFile& image, const FunctionalGroups& groups,
+                                 const DicomSlice& common) {
+    const size_t frames = image.layout().frames;
+    const double most_rounding = groups.frameCount() > 0 ? kThreeDigits : kTwoDigits;
+    std::vector<DicomSlice> slices(frames, common);
+    for (size_t f = 0; f < frames; ++f) {
+        const std::string name = image.name() + (frames > 1 ? " frame " + std::to_string(f + 1) : "");
         slices[f].frame = int(f);
-        static_cast<DicomPlace&>(slices[f]) = frames[f].place;
-        if (frames[f].rescale) slices[f].rescale = frames[f].rescale;
-        takeTraits(frames[f].traits, slices[f].traits);
+        static_cast<DicomPlace&>(slices[f]) =
+            placeFromTexts(placeTextsOf(image, groups, f), most_rounding, name);
+        slices[f].rescale = rescaleOf(image, groups, f, name);
+        takeTraits(readTraits(groups, f), slices[f].traits);
     }
     return slices;
 }
@@ -158,29 +171,19 @@ std::string whyNotGrey(const DicomFile& image) {
 std::vector<DicomSlice> readHeader(const std::filesystem::path& path, const DicomScan& scan,
                                    LeftOut& left_out) {
     const DicomFile image(path);
-    const size_t frames = image.layout().frames;
     if (const std::string reason = whyNotGrey(image); !reason.empty()) {
         left_out.add(reason, path);
         return {};
     }
-    if (frames == 1 && (image.dicomTag("0020|0032").empty() || image.dicomTag("0020|0037").empty())) {
-        left_out.add("images without a position in the patient", path);
+    const FunctionalGroups groups(image.data());
+    checkFrameCount(groups, image);
+    if (const std::string reason = whyNowhere(image, groups); !reason.empty()) {
+        left_out.add(reason, path);
         return {};
     }
-    DicomSlice slice = headerOf(image, path);
+    const DicomSlice common = headerOf(image, path);
     checkPixels(image, scan.pixel_bytes);
-    if (frames == 1) {
-        static_cast<DicomPlace&>(slice) = placeFromTexts(
-            {image.dicomTag("0020|0032"), image.dicomTag("0020|0037"), image.dicomTag("0028|0030")},
-            kTwoDigits, path.string());
-        return {slice};
-    }
-    const std::vector<DicomFrame> places = readFrames(image);
-    if (places.size() != frames) {
-        left_out.add("multi-frame images that do not say where each frame lies", path);
-        return {};
-    }
-    return slicesOf(places, slice);
+    return slicesOf(image, groups, common);
 }
 
 std::string reasonToLeaveOut(const DicomScan& scan) {

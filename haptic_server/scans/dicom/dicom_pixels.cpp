@@ -2,13 +2,13 @@
 
 #include <gdcmByteValue.h>
 #include <gdcmImage.h>
-#include <gdcmSequenceOfFragments.h>
 
 #include <utility>
 
 #include "common/base/user_error.h"
 #include "haptic_server/core/volume/forget_memory.h"
 #include "haptic_server/scans/confined/import_limits.h"
+#include "haptic_server/scans/dicom/coded_frames.h"
 #include "haptic_server/scans/dicom/dicom_groups.h"
 #include "haptic_server/scans/pixels/itk_image_file.h"
 
@@ -96,7 +96,13 @@ void DicomPixels::takeNative(const gdcm::TransferSyntax& syntax) {
     const gdcm::ByteValue* const stored = pixels.GetByteValue();
     takeCount(stored ? uint64_t(stored->GetLength()) : 0);
     bytes_ = {const_cast<char*>(stored->GetPointer()), size_t(layout_.neededBytes())};
-    if (syntax.GetSwapCode() == gdcm::SwapCode::BigEndian && layout_.bits.allocated == 32)
+    const bool is_big_endian = syntax.GetSwapCode() == gdcm::SwapCode::BigEndian;
+    if (is_big_endian && layout_.bits.allocated == 16 && pixels.GetVR() == gdcm::VR::OB)
+        throw UserError(
+            name_ +
+            ": its pixels have 16 bit but are written as bytes (VR OB) in a big-endian file, so that "
+            "their order is not known; convert it, such as with dcmconv +te");
+    if (is_big_endian && layout_.bits.allocated == 32)
         throw UserError(name_ +
                         ": its pixels have 32 bit in big-endian order, which is not read; convert it");
     // GDCM has turned the bytes of other files round.
@@ -106,18 +112,14 @@ void DicomPixels::takeNative(const gdcm::TransferSyntax& syntax) {
     bytes_ = unpacked_;
 }
 
-// The library gets a picture that it has no reason to change.
+// The library gets pictures that it has no reason to change.
 void DicomPixels::unpack(const gdcm::TransferSyntax& syntax) {
     const gdcm::DataElement& pixels = pixelsOf(reader_->GetFile().GetDataSet(), name_);
-    const gdcm::SequenceOfFragments* const fragments = pixels.GetSequenceOfFragments();
-    const size_t count = fragments ? fragments->GetNumberOfFragments() : 0;
-    if (count < layout_.frames)
-        throw UserError(name_ + ": Pixel Data has " + std::to_string(count) + " compressed parts, its " +
-                        std::to_string(layout_.frames) + " frames need one each at least; export it anew");
+    const bool is_rle = syntax == gdcm::TransferSyntax::RLELossless;
+    const CodedFrames frames = codedFramesOf(pixels.GetSequenceOfFragments(), layout_, is_rle, name_);
+    reader_.reset();
     const StoredBits& bits = layout_.bits;
-    const bool is_shifted = bits.high + 1 != bits.stored;
-    const bool is_packed = syntax == gdcm::TransferSyntax::RLELossless;  // whole words, whatever is in them
-    const auto used = uint16_t(is_shifted || is_packed ? bits.allocated : bits.stored);
+    const auto used = uint16_t(frames.bits > 0 ? frames.bits : bits.allocated);  // words in RLE
     gdcm::Image image;
     image.SetTransferSyntax(syntax);
     image.SetNumberOfDimensions(layout_.frames > 1 ? 3 : 2);
@@ -127,13 +129,14 @@ void DicomPixels::unpack(const gdcm::TransferSyntax& syntax) {
     image.SetPixelFormat(
         gdcm::PixelFormat(1, uint16_t(bits.allocated), used, uint16_t(used - 1), bits.is_signed));
     image.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
-    image.SetDataElement(pixels);
+    gdcm::DataElement pieces(kFramesElement);
+    pieces.SetValue(*frames.pieces);
+    image.SetDataElement(pieces);
     takeCount(image.GetBufferLength());
     unpacked_.resize(size_t(image.GetBufferLength()));
     if (!image.GetBuffer(unpacked_.data()))
         throw UserError(name_ + ": its compressed pixels cannot be unpacked (transfer syntax " +
                         syntax.GetString() + "); the file is damaged, or of a kind that is not read");
-    reader_.reset();
     bytes_ = std::span(unpacked_).first(size_t(layout_.neededBytes()));
 }
 

@@ -104,7 +104,8 @@ bool belongTogether(const DicomSlice& a, const DicomSlice& b) {
     const auto isNear = [](const auto& u, const auto& v, double most) {
         return (u - v).cwiseAbs().maxCoeff() <= most;
     };
-    return a.series_uid == b.series_uid && a.columns == b.columns && a.rows == b.rows &&
+    return a.series_uid == b.series_uid && a.patient == b.patient && a.space_uid == b.space_uid &&
+           a.modality == b.modality && a.columns == b.columns && a.rows == b.rows &&
            isNear(a.row_direction, b.row_direction, kSameDirection) &&
            isNear(a.column_direction, b.column_direction, kSameDirection) &&
            isNear(a.pixel_spacing_mm, b.pixel_spacing_mm, kSamePixelSpacingMm);
@@ -255,6 +256,17 @@ void noteDamage(std::vector<DicomStack>& stacks, const std::vector<DamagedFile>&
     }
 }
 
+// Slices of which only some say their scale would not be alike.
+void noteScales(DicomStack& stack) {
+    const auto says = [](const DicomSlice& slice) { return slice.rescale.has_value(); };
+    const auto silent = std::ranges::find_if_not(stack.slices, says);
+    if (silent == stack.slices.end() || std::ranges::none_of(stack.slices, says)) return;
+    const auto count = std::ranges::count_if(stack.slices, [&](const auto& slice) { return !says(slice); });
+    stack.problem += (stack.problem.empty() ? "" : "; ") + nameOfSlice(*silent) +
+                     " does not state its Rescale Slope and Intercept (" + std::to_string(count) + " of " +
+                     std::to_string(stack.slices.size()) + " slices do not); export the series anew";
+}
+
 // The parts of its series are named, other stacks listed.
 DicomChoice choiceOf(const std::vector<DicomStack>& stacks, const DicomStack& best) {
     DicomChoice choice;
@@ -305,6 +317,7 @@ std::vector<DicomStack> stacksOf(const std::vector<DicomSlice>& slices, const Is
         for (DicomStack& part : partsOf(group, strangersOf(group, groups), is_same_picture))
             stacks.push_back(std::move(part));
     countSharedNames(stacks);
+    for (DicomStack& stack : stacks) noteScales(stack);
     noteDamage(stacks, damaged);
     return stacks;
 }

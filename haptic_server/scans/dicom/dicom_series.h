@@ -27,10 +27,11 @@ struct DicomChoice {
     std::string damaged;     // for people: files of other series that cannot be read; else empty
 };
 
-// Slices of one series with the same orientation, size and pixel spacing as the first of them belong
-// together, and of those that overlap the ones of one acquisition or phase (dicom_parts.h). Series
-// come in the order of their UIDs. Stacks of a series that share a name are counted: "1/1", "1/2". There is
-// one slice at least. A stack whose series misses a damaged file, or may do so, has that as its problem.
+// Slices of one series with the same patient, Frame of Reference, modality, orientation, size and pixel
+// spacing as the first of them belong together, and of those that overlap the ones of one acquisition or
+// phase (dicom_parts.h). Series come in the order of their UIDs. Stacks of a series that share a name are
+// counted: "1/1", "1/2". There is one slice at least. A stack whose series misses a damaged file, or may do
+// so, or of whose slices only some state a scale, has that as its problem.
 std::vector<DicomStack> stacksOf(const std::vector<DicomSlice>& slices, const IsSamePicture& is_same_picture,
                                  const std::vector<DamagedFile>& damaged = {});
 

@@ -56,8 +56,10 @@ struct DicomSlice : DicomPlace {
     std::string series_uid;
     std::string series_description;
     std::string modality, contrast;  // as the header says; empty: nothing
+    std::string patient;             // Patient ID and Patient's Name
+    std::string space_uid;           // Frame of Reference: where the origin of all positions lies
     DicomTraits traits;
-    std::optional<DicomRescale> rescale;  // nothing: as the library says
+    std::optional<DicomRescale> rescale;  // nothing: the file does not say it
     int columns = 0;
     int rows = 0;
     int frame = 0;  // which image of the file

@@ -28,11 +28,6 @@ double placeAlong(const Eigen::Vector3d& normal, const DicomSlice& slice) {
     return normal.dot(slice.position_mm);
 }
 
-std::string nameOfSlice(const DicomSlice& slice) {
-    const std::string file = slice.path.filename().string();
-    return slice.frame == 0 ? file : file + " frame " + std::to_string(slice.frame + 1);
-}
-
 std::string nameAndPlace(const DicomSlice& slice, const Eigen::Vector3d& normal) {
     return nameOfSlice(slice) + printed(" at %.3f mm", placeAlong(normal, slice));
 }
@@ -66,7 +61,16 @@ std::vector<DicomSlice> strangersBetween(const DicomSlice& before, const DicomSl
     return found;
 }
 
+// Null: they are of one patient, place and modality.
+const char* otherSourceOf(const DicomSlice& stranger, const DicomSlice& first) {
+    if (stranger.patient != first.patient) return "is of another patient (Patient ID or Name)";
+    if (stranger.modality != first.modality) return "is of another modality";
+    if (stranger.space_uid != first.space_uid) return "has another Frame of Reference";
+    return nullptr;
+}
+
 std::string differenceOf(const DicomSlice& stranger, const DicomSlice& first) {
+    if (const char* const source = otherSourceOf(stranger, first)) return source;
     if (stranger.columns != first.columns || stranger.rows != first.rows)
         return printed("has %dx%d pixels, the others %dx%d", stranger.columns, stranger.rows, first.columns,
                        first.rows);
@@ -83,6 +87,14 @@ std::string differencesOf(const std::vector<DicomSlice>& strangers, const DicomS
         text += (s > 0 ? ", " : "") + nameOfSlice(strangers[s]) + " " + differenceOf(strangers[s], first);
     if (strangers.size() > kMostNamed) text += ", and so on: " + std::to_string(strangers.size()) + " slices";
     return text;
+}
+
+// Why a slice is alone that could lie among others of its series; empty: there are none.
+std::string othersOf(const DicomSlice& slice, const std::vector<DicomSlice>& strangers) {
+    std::vector<DicomSlice> others;
+    for (const DicomSlice& stranger : strangers)
+        if (otherSourceOf(stranger, slice)) others.push_back(stranger);
+    return others.empty() ? "" : "; of its series " + differencesOf(others, slice);
 }
 
 // There are two places at least, ascending.
@@ -345,6 +357,11 @@ void findPlaces(DicomStack& stack, const std::vector<DicomSlice>& strangers) {
 
 }  // namespace
 
+std::string nameOfSlice(const DicomSlice& slice) {
+    const std::string file = slice.path.filename().string();
+    return slice.frame == 0 ? file : file + " frame " + std::to_string(slice.frame + 1);
+}
+
 DicomStack arrangedStack(std::vector<DicomSlice> slices, const std::vector<DicomSlice>& strangers,
                          const IsSamePicture& is_same_picture) {
     DicomStack stack;
@@ -360,7 +377,7 @@ DicomStack arrangedStack(std::vector<DicomSlice> slices, const std::vector<Dicom
     if (!stack.problem.empty()) return stack;
     if (stack.slices.size() == 1)
         stack.problem = "a volume needs 2 or more slices; there is one (" +
-                        stack.slices.front().path.filename().string() + ")" +
+                        nameOfSlice(stack.slices.front()) + ")" + othersOf(stack.slices.front(), strangers) +
                         (stack.remark.empty() ? "" : "; " + stack.remark);
     else
         findPlaces(stack, strangers);

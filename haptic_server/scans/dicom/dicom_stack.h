@@ -23,6 +23,8 @@ struct DicomStack {
     std::string told_by;  // what told it from others of its series that overlap it; empty: there are none
 };
 
+std::string nameOfSlice(const DicomSlice& slice);  // for people: its file, and which frame of it
+
 // Orders the slices, drops copies, and finds out how the rest lies. Slices that lie as evenly as a scanner
 // rounds, and straight above each other, are taken as they are; those of a gantry tilted by up to 45 degrees,
 // or at other distances, are to be resampled. `strangers` are slices of the same series that do not fit in:

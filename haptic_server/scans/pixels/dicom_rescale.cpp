@@ -21,8 +21,7 @@ std::optional<double> decimalNumber(const std::string& padded) {
     return number;
 }
 
-double scaleNumber(const std::string& text, double fallback, const char* what, const std::string& image) {
-    if (text.empty()) return fallback;
+double scaleNumber(const std::string& text, const char* what, const std::string& image) {
     const auto numbers = decimalNumbers(text);
     if (!numbers || numbers->size() != 1)
         throw UserError(image + ": its " + what + " \"" + text + "\" is no number; the header is damaged");
@@ -53,8 +52,13 @@ std::optional<std::vector<double>> decimalNumbers(const std::string& text) {
 std::optional<DicomRescale> rescaleFromTexts(const std::string& slope, const std::string& intercept,
                                              const std::string& image) {
     if (slope.empty() && intercept.empty()) return std::nullopt;
-    const DicomRescale rescale{scaleNumber(slope, 1, "Rescale Slope", image),
-                               scaleNumber(intercept, 0, "Rescale Intercept", image)};
+    if (slope.empty() || intercept.empty())
+        throw UserError(
+            image + ": states a Rescale " +
+            (slope.empty() ? "Intercept without a Rescale Slope" : "Slope without a Rescale Intercept") +
+            "; export it anew with both");
+    const DicomRescale rescale{scaleNumber(slope, "Rescale Slope", image),
+                               scaleNumber(intercept, "Rescale Intercept", image)};
     if (rescale.slope == 0)
         throw UserError(image + ": its Rescale Slope is 0, which makes all values the same; export it anew");
     return rescale;

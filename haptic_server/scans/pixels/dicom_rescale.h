@@ -17,7 +17,7 @@ struct DicomRescale {
 };
 
 // Of the texts of Rescale Slope and Intercept; nothing when both are empty. Throws UserError naming `image`
-// when one of them is no number, or the slope is 0.
+// when one of them is missing or no number, or the slope is 0.
 std::optional<DicomRescale> rescaleFromTexts(const std::string& slope, const std::string& intercept,
                                              const std::string& image);
 

@@ -67,7 +67,7 @@ std::string functionalGroups(const DicomImage& image) {
         element(0x00209116, "SQ", item(element(0x00200037, "DS", image.orientation))) +
         element(0x00289110, "SQ",
                 item(element(0x00180050, "DS", "1") + element(0x00280030, "DS", image.pixel_spacing))) +
-        valueTransformation(image.shared_rescale);
+        valueTransformation(image.shared_rescale) + image.shared_groups;
     std::string frames;
     for (size_t f = 0; f < image.frame_positions.size(); ++f)
         frames += item(
@@ -90,12 +90,14 @@ std::string dicomBytes(const DicomImage& image) {
         element(0x00080018, "UI", image.sop_uid) + optionalElement(0x00080032, "TM", image.acquisition_time) +
         optionalElement(0x00080033, "TM", image.content_time) + element(0x00080060, "CS", image.modality) +
         optionalElement(0x0008103e, "LO", image.series_description) + element(0x00100010, "PN", "TEST^FILE") +
+        optionalElement(0x00100020, "LO", image.patient_id) +
         optionalElement(0x00180010, "LO", image.contrast) + optionalElement(0x00181210, "SH", image.kernel) +
         optionalElement(0x00189087, "FD", bytesOf(image.b_value)) + element(0x0020000d, "UI", "1.2.3") +
         element(0x0020000e, "UI", image.series_uid) +
         optionalElement(0x00200012, "IS", image.acquisition_number);
     if (!is_enhanced && !image.position.empty())
         bytes += element(0x00200032, "DS", image.position) + element(0x00200037, "DS", image.orientation);
+    bytes += optionalElement(0x00200052, "UI", image.space_uid);
     bytes += optionalElement(0x00200100, "IS", image.temporal_position);
     bytes += shortElement(0x00280002, image.samples_per_pixel) + element(0x00280004, "CS", image.photometric);
     if (image.samples_per_pixel > 1) bytes += shortElement(0x00280006, 0);

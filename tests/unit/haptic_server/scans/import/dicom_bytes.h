@@ -16,6 +16,7 @@ struct DicomImage {
     // None of these is written when it is empty.
     std::string series_description, kernel, contrast, image_type;
     std::string acquisition_number, temporal_position, acquisition_time, content_time;
+    std::string patient_id, space_uid;
     std::vector<double> b_value;       // one
     std::string sop_class;             // empty: CT, Enhanced CT or Secondary Capture, as the rest says
     std::string position = "0\\0\\0";  // empty: no Image Position
@@ -41,6 +42,7 @@ struct DicomImage {
     std::string frame_count;                   // empty: as many as have positions
     std::vector<std::string> frame_positions;  // not empty: an enhanced multi-frame file
     std::vector<int> frame_phases;             // temporal position of each frame; empty: none says it
+    std::string shared_groups;                 // other functional groups of all frames, as bytes
     std::string shared_rescale;                // of all frames, as below
     std::vector<std::string> frame_rescales;   // slope|intercept of each frame; empty: none says its own
 };

@@ -8,6 +8,7 @@
 #include "tests/unit/haptic_server/scans/import/dicom_bytes.h"
 #include "tests/unit/haptic_server/scans/import/dicom_elements.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"
+#include "tests/unit/haptic_server/scans/import/recoded_dicom.h"
 #include "tests/unit/haptic_server/scans/import/volume_files.h"
 
 namespace bonemill {
@@ -16,6 +17,9 @@ namespace {
 using gdcm::TransferSyntax;
 
 constexpr int kSlices = 3, kPixels = 48 * 40;
+constexpr TransferSyntax::TSType kCompressed[] = {
+    TransferSyntax::RLELossless, TransferSyntax::JPEGLosslessProcess14_1, TransferSyntax::JPEGLSLossless,
+    TransferSyntax::JPEG2000Lossless};
 
 class DicomPixelsTest : public testing::Test {
   protected:
@@ -97,8 +101,7 @@ TEST_F(DicomPixelsTest, moreThanOneByteToFillUpIsSaid) {
 }
 
 TEST_F(DicomPixelsTest, compressedPixelsThatAreFewerAreRefused) {
-    for (const auto syntax : {TransferSyntax::RLELossless, TransferSyntax::JPEGLosslessProcess14_1,
-                              TransferSyntax::JPEGLSLossless, TransferSyntax::JPEG2000Lossless})
+    for (const auto syntax : kCompressed)
         for (const bool is_multi_frame : {false, true}) {
             const int frames = is_multi_frame ? kSlices : 1;
             SCOPED_TRACE(TransferSyntax::GetTSString(syntax) +
@@ -124,6 +127,95 @@ TEST_F(DicomPixelsTest, compressedPixelsThatAreFewerAreRefused) {
         }
 }
 
+// GDCM writes values of 12 bit as words of 16, other programs do not.
+void sayTwelveBits(std::string& picture) {
+    for (const char* start_of_frame : {"\xff\xc3", "\xff\xf7"})
+        if (const size_t at = picture.find(start_of_frame); at != std::string::npos) picture[at + 4] = 12;
+    if (picture.starts_with("\xff\x4f")) picture[42] = 11;
+}
+
+// In RLE a picture's own bytes say only how many pixels of how many bytes there are.
+TEST_F(DicomPixelsTest, compressedPicturesThatContradictTheHeaderAreRefused) {
+    struct Lie {
+        const char* said;
+        bool is_of_rle, is_of_jpeg2000_only;
+        void (*tell)(DicomImage&);
+    };
+    const Lie kLies[] = {{"Rows x Columns", true, false, [](DicomImage& image) { image.rows -= 2; }},
+                         {"Rows x Columns", true, false, [](DicomImage& image) { image.columns += 2; }},
+                         {"Rows x Columns", false, false,
+                          [](DicomImage& image) {
+                              image.rows *= 2;
+                              image.columns /= 2;
+                          }},
+                         {"Bits Stored 16", false, false,
+                          [](DicomImage& image) {
+                              image.bits = 16;
+                              image.high = 15;
+                          }},
+                         {"Bits Stored 10", false, false,
+                          [](DicomImage& image) {
+                              image.bits = 10;
+                              image.high = 9;
+                          }},
+                         {"High Bit 15", false, false, [](DicomImage& image) { image.high = 15; }},
+                         {"Bits Allocated 8", true, false,
+                          [](DicomImage& image) {
+                              image.allocated = image.bits = 8;
+                              image.high = 7;
+                          }},
+                         {"Pixel Representation", false, true,
+                          [](DicomImage& image) { image.is_signed = !*image.is_signed; }}};
+    for (const auto syntax : kCompressed)
+        for (const Lie& lie : kLies) {
+            if (syntax == TransferSyntax::RLELossless && !lie.is_of_rle) continue;
+            if (syntax != TransferSyntax::JPEG2000Lossless && lie.is_of_jpeg2000_only) continue;
+            for (const bool is_multi_frame : {false, true}) {
+                SCOPED_TRACE(TransferSyntax::GetTSString(syntax) + std::string(" ") + lie.said);
+                write(
+                    [&](DicomImage& image, int) {
+                        compress(image, is_multi_frame ? kSlices : 1, syntax);
+                        for (std::string& picture : image.fragments) sayTwelveBits(picture);
+                        lie.tell(image);
+                    },
+                    is_multi_frame);
+                expectRefused({is_multi_frame ? "frames frame 1" : "slice0", lie.said, "compressed picture"});
+            }
+        }
+}
+
+TEST_F(DicomPixelsTest, compressedPicturesBeyondTheFramesAreRefusedAndSpreadOnesRead) {
+    for (const auto syntax : kCompressed) {
+        SCOPED_TRACE(TransferSyntax::GetTSString(syntax));
+        for (const bool is_at_end : {false, true}) {
+            const auto addOne = [&](DicomImage& image, int) {
+                compress(image, kSlices, syntax);
+                const std::string first = image.fragments.front();
+                image.fragments.insert(is_at_end ? image.fragments.end() : image.fragments.begin(), first);
+            };
+            write(addOne, true);
+            expectRefused({"frames", "holds 4 compressed pictures", "its 3 frames need"});
+        }
+        const auto spread = [&](DicomImage& image, int) {
+            compress(image, kSlices, syntax);
+            std::vector<std::string> halves;
+            for (const std::string& whole : image.fragments) {
+                halves.push_back(whole.substr(0, whole.size() / 4 * 2));
+                halves.push_back(whole.substr(whole.size() / 4 * 2));
+            }
+            image.fragments = halves;
+        };
+        write(spread, true);
+        if (syntax == TransferSyntax::RLELossless) {  // where each fragment is a picture
+            expectRefused({"frames", "holds 6 compressed pictures"});
+            continue;
+        }
+        const RawVolume raw = imported();
+        for (size_t n = 0; n < kSlices * kPixels; ++n)
+            ASSERT_EQ(raw.values[n], float(uint32_t(n) * 2654435761u >> 20));
+    }
+}
+
 TEST_F(DicomPixelsTest, bitsThatCannotBeAreRefused) {
     struct Bits {
         int allocated, stored, high;
@@ -137,6 +229,20 @@ TEST_F(DicomPixelsTest, bitsThatCannotBeAreRefused) {
         });
         expectRefused({"slice0", "Bits Allocated " + std::to_string(bits.allocated), "export it anew"});
     }
+}
+
+// Bytes have no order, words in big-endian files do.
+TEST_F(DicomPixelsTest, wordsThatAreSaidToBeBytesAreRefusedInBigEndianFiles) {
+    std::filesystem::create_directories(folder_ / "scan");
+    for (int k = 0; k < kSlices; ++k) {
+        DicomImage image = imageOf(1);
+        image.position = "0\\0\\" + std::to_string(k);
+        image.transfer_syntax = TransferSyntax::GetTSString(TransferSyntax::ExplicitVRBigEndian);
+        std::string bytes = dicom::recodedFile(dicomBytes(image), {.is_big_endian = true});
+        bytes.replace(bytes.rfind("OW"), 2, "OB");
+        writeBytes(folder_ / ("scan/slice" + std::to_string(k)), bytes);
+    }
+    expectRefused({"slice0", "16 bit", "OB", "big-endian", "convert"});
 }
 
 TEST_F(DicomPixelsTest, valuesOfATableAreRefusedForIt) {
