@@ -14,7 +14,8 @@ namespace bonemill {
 void addCaseOptions(CLI::App& app, CaseRequest& request) {
     app.add_option("scan", request.scan, "folder of a DICOM series or of images, or a file")->required();
     app.add_option("--out", request.out, "new folder for the case")->required()->type_name("DIR");
-    app.add_option("--series", request.series, "UID of the series; default: the one with the most slices");
+    app.add_option("--series", request.series,
+                   "UID of the series; default: the one that list-series recommends");
     app.add_option("--acquisition", request.acquisition,
                    "which of the series' acquisitions, phases or kernels, as list-series names them");
     app.add_option("--spacing-mm", request.spacing_mm,

@@ -27,7 +27,7 @@ struct CaseLabel {
 
 struct CaseRequest {
     std::string scan;                // file or folder
-    std::string series;              // UID; empty: the one with the most slices
+    std::string series;              // UID; empty: the one that list-series recommends
     std::string acquisition;         // of the series (DicomWish); empty: by rule
     std::vector<double> spacing_mm;  // of voxels whose file or folder does not say it
     std::string out;                 // folder that is made
