@@ -11,6 +11,9 @@ struct IndexBox {
     Eigen::Vector3i max = Eigen::Vector3i::Zero();
 
     bool isEmpty() const noexcept { return (min.array() > max.array()).any(); }
+    bool contains(const Eigen::Vector3i& index) const noexcept {
+        return (index.array() >= min.array()).all() && (index.array() <= max.array()).all();
+    }
     void include(const Eigen::Vector3i& index) noexcept {
         if (isEmpty()) {
             min = max = index;

@@ -310,4 +310,30 @@ RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region, co
     return out;
 }
 
+LayersAround::LayersAround(const RawVolume& scan, const VolumeGeometry& region, const ValueRange& band,
+                           double blur, int layers) {
+    IndexBox inner{Eigen::Vector3i::Zero(), region.dims.array() - 1};
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const bool is_high : {false, true}) {
+            IndexBox voxels = inner;
+            voxels.min[axis] = is_high ? inner.max[axis] + 1 : inner.min[axis] - layers;
+            voxels.max[axis] = voxels.min[axis] + layers - 1;
+            VolumeGeometry slab = region;
+            slab.dims = voxels.max - voxels.min + Eigen::Vector3i::Ones();
+            slab.X_WV.position =
+                region.X_WV * Eigen::Vector3d(region.spacing.cwiseProduct(voxels.min.cast<double>()));
+            slabs_.push_back({voxels, resampleRegion(scan, slab, band, blur).values});
+        }
+        inner.min[axis] -= layers;
+        inner.max[axis] += layers;
+    }
+}
+
+double LayersAround::at(const Eigen::Vector3i& voxel) const {
+    const auto slab = std::ranges::find_if(slabs_, [&](const Slab& s) { return s.voxels.contains(voxel); });
+    const IndexBox& voxels = slab->voxels;
+    return double(
+        slab->values[placeIn(voxels.max - voxels.min + Eigen::Vector3i::Ones(), voxel - voxels.min)]);
+}
+
 }  // namespace bonemill

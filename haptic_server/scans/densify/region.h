@@ -12,7 +12,9 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <span>
+#include <vector>
 
+#include "haptic_server/core/volume/index_box.h"
 #include "haptic_server/core/volume/raw_volume.h"
 
 namespace bonemill {
@@ -28,6 +30,23 @@ VolumeGeometry regionGeometry(const VolumeGeometry& scan, const Eigen::AlignedBo
 // 0: it stays.
 RawVolume resampleRegion(const RawVolume& scan, const VolumeGeometry& region, const ValueRange& band,
                          double blur = 0);
+
+// What resampleRegion() would make of the layers of voxels around the region.
+class LayersAround {
+  public:
+    LayersAround(const RawVolume& scan, const VolumeGeometry& region, const ValueRange& band, double blur,
+                 int layers);
+
+    // Of a voxel of the region's grid that lies in one of the layers.
+    double at(const Eigen::Vector3i& voxel) const;
+
+  private:
+    struct Slab {
+        IndexBox voxels;
+        RawValues values;
+    };
+    std::vector<Slab> slabs_;
+};
 
 // The cubic B-spline is one through samples one apart, mirrored at both ends. Its coefficients depend on
 // samples farther away by less than 1e-6 of their value.

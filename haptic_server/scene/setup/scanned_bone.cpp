@@ -189,7 +189,7 @@ ScannedBone wholeBone(const LoadedScene& loaded, Scan scan) {
 ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
     const VolumeGeometry whole = scan.raw.geometry;
     CutScan cut = cutRegion(loaded, std::move(scan.raw), scan.mapping, scan.remarks);
-    remarkMetal(loaded, scan.metal, whole, cut.surroundings.volume, scan.used, scan.remarks, scan.warnings);
+    remarkMetal(loaded, scan.metal, whole, cut.whole, scan.used, scan.remarks, scan.warnings);
     const bool lacks_axes = cut.region.lacks_patient_axes;
     const double iso = scan.mapping.iso_value;
     RawVolume at_surface{.geometry = cut.region.geometry, .values = {}, .description = {}};
@@ -203,11 +203,13 @@ ScannedBone boneOfRegion(const LoadedScene& loaded, Scan scan) {
     VoxelVolume volume = densifyNearBone(std::move(cut.region), scan.mapping, is_kept);
     removeSpecks(volume, whole);
     clearFarFromBone(volume, is_kept);
+    RegionRim rim(volume, [&](const Eigen::Vector3i& v) { return scan.mapping.density(cut.beyond.at(v)); });
     return {std::move(volume),
             scan.mapping,
             std::move(materials),
             std::move(inner),
-            std::make_shared<const Surroundings>(std::move(cut.surroundings)),
+            std::make_shared<const Surroundings>(
+                Surroundings{std::move(cut.whole), cut.X_VS, cut.bone, std::move(rim)}),
             lacks_axes,
             std::move(scan.remarks),
             std::move(scan.warnings)};

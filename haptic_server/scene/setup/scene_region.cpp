@@ -264,12 +264,12 @@ CutScan cutRegion(const LoadedScene& loaded, RawVolume scan, const DensityMappin
     takeAway(dropped, whole, coarse, scan);
     clearFarFromBone(whole);
     RawVolume region = resampled(loaded, scan, remarks);
-    const VolumeGeometry& fine = region.geometry;
-    const Eigen::Vector3d end = fine.spacing.cwiseProduct((fine.dims.array() - 1).matrix().cast<double>());
-    const Pose X_VS = fine.X_WV.inverse() * whole.geometry().X_WV;
+    const double blur = loaded.scene.volume().region().deblur_mm() * kMillimetre;
+    LayersAround beyond(scan, region.geometry, bandOf(scan), blur, RegionRim::kLayers);
+    const Pose X_VS = region.geometry.X_WV.inverse() * whole.geometry().X_WV;
     Eigen::AlignedBox3d bone = placesOf(boneBox(whole), whole.spacing());
     if (!bone.isEmpty()) bone = {X_VS * bone.min(), X_VS * bone.max()};  // X_VS keeps the axes' directions
-    return {std::move(region), {std::move(whole), X_VS, {Eigen::Vector3d::Zero(), end}, bone}};
+    return {std::move(region), std::move(beyond), std::move(whole), X_VS, bone};
 }
 
 bool hasCoarsePieces(const VolumeGeometry& scan) {

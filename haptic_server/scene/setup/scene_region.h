@@ -9,6 +9,7 @@
 #include "haptic_server/core/volume/index_box.h"
 #include "haptic_server/core/volume/surroundings.h"
 #include "haptic_server/scans/densify/densify.h"
+#include "haptic_server/scans/densify/region.h"
 #include "haptic_server/scans/find_bone/bone_pieces.h"
 
 namespace bonemill {
@@ -39,8 +40,11 @@ void remarkThinWalls(const LoadedScene& loaded, const RawVolume& scan, double is
 
 // The scan without the pieces that the scene drops, cut in two. Needs a scene with a volume.region.
 struct CutScan {
-    RawVolume region;  // resampled
-    Surroundings surroundings;
+    RawVolume region;     // resampled
+    LayersAround beyond;  // RegionRim::kLayers
+    VoxelVolume whole;    // with the scan's own voxels
+    Pose X_VS;            // Surroundings
+    Eigen::AlignedBox3d bone;
 };
 // What was done, and why so finely, is added to the remarks. Throws UserError.
 CutScan cutRegion(const LoadedScene& loaded, RawVolume scan, const DensityMapping& mapping,

@@ -126,7 +126,8 @@ class ReplayServer {
 
     void meshUntil(const std::stop_token& stop) {
         ShownBone shown(scene_.scene, simulation_);
-        MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_, shown.look());
+        MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_, shown.look(),
+                          simulation_.surroundings ? &simulation_.surroundings->rim : nullptr);
         const auto put = [this](NodeGroup&& group) { outbox_.put(std::move(group), monotonicNowNs()); };
         loop(stop, MeshRounds::kPeriod, [&] {
             for (bool is_more = true; is_more && !stop.stop_requested();) {

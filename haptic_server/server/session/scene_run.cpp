@@ -242,7 +242,8 @@ void SceneRun::publishRound() {
 
 void SceneRun::meshUntil(const std::stop_token& stop) {
     ShownBone shown(loaded_.scene, simulation_);
-    MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_, shown.look());
+    MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_, shown.look(),
+                      simulation_.surroundings ? &simulation_.surroundings->rim : nullptr);
     bool has_cut = false;
     const auto put = [&](NodeGroup&& group) {
         has_cut |= group.oldest_cut_ns != 0;

@@ -106,8 +106,7 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
     describeShades(shadesOf(shown, simulation.mapping), info);
     info.set_leaf_count(simulation.bone->lattice.leafCount());
     if (simulation.surroundings)  // their nodes are numbered behind those of the bone
-        info.set_leaf_count(info.leaf_count() +
-                            surroundingsLeafCount(simulation.surroundings->volume.geometry()));
+        info.set_leaf_count(info.leaf_count() + surroundingsLeafCount(*simulation.surroundings));
     return info;
 }
 

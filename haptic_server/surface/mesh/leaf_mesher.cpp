@@ -9,22 +9,15 @@ namespace {
 
 constexpr uint32_t kNoVertex = UINT32_MAX;
 
-// Steps from the low voxel to the iso-value, rounded to nearest; low and high lie on different sides of iso.
-int stepsToIso(Density low, Density high, Density iso, int steps_per_cell) noexcept {
-    static_assert(2 * uint64_t(kMaxDensity) * MeshGrid::kMaxStepsPerCell + kMaxDensity <= UINT32_MAX);
-    const uint32_t rise = uint32_t(std::abs(int(high) - int(low)));
-    const uint32_t to_iso = uint32_t(std::abs(int(iso) - int(low)));
-    const uint32_t steps = (2 * to_iso * uint32_t(steps_per_cell) + rise) / (2 * rise);
-    return std::clamp(int(steps), 1, steps_per_cell - 1);
-}
-
 }  // namespace
 
 LeafMesher::LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice, int most_steps_per_cell,
-                       const VertexLook& look)
+                       const VertexLook& look, const RegionRim* rim)
     : volume_(volume),
       lattice_(lattice),
       look_(look),
+      rim_(rim),
+      readable_(rim ? rim->readable() : IndexBox{Eigen::Vector3i::Constant(-1), volume.dims()}),
       grid_(volume, lattice, most_steps_per_cell),
       triangles_(cubeTriangles()),
       crossed_(lattice.leafCells()),
@@ -60,8 +53,8 @@ void LeafMesher::readVoxels(const IndexBox& cells) {
     stride_[1] = size_t(cells_.x()) + 3;
     stride_[2] = stride_[1] * (size_t(cells_.y()) + 3);
     density_.resize(stride_[2] * (size_t(cells_.z()) + 3) + kCellLanes);
-    const IndexBox voxels = IndexBox{cells.min.array() - 1, cells.max.array() + 2}.clamped(
-        Eigen::Vector3i::Constant(-1), volume_.dims());
+    const IndexBox around{cells.min.array() - 1, cells.max.array() + 2};
+    const IndexBox voxels = around.clamped(Eigen::Vector3i::Constant(-1), volume_.dims());
     volume_.forEachPart(voxels, [&](const IndexBox& part, size_t from) {
         const Eigen::Vector3i size = part.max - part.min + Eigen::Vector3i::Ones();
         Density* to = density_.data() + cornerIndex(part.min - first_voxel_);
@@ -72,6 +65,15 @@ void LeafMesher::readVoxels(const IndexBox& cells) {
                 Density* out = to + stride_[1] * size_t(j) + stride_[2] * size_t(k);
                 for (int i = 0; i < size.x(); ++i) out[i] = volume_.at(row + size_t(i));
             }
+    });
+    if (rim_) readRim(around.clamped(readable_.min, readable_.max));
+}
+
+void LeafMesher::readRim(const IndexBox& voxels) {
+    const IndexBox inner{Eigen::Vector3i::Zero(), volume_.dims().array() - 1};
+    if (inner.contains(voxels.min) && inner.contains(voxels.max)) return;
+    forEachIndex(voxels, [&](const Eigen::Vector3i& v) {
+        if (!inner.contains(v)) density_[cornerIndex(v - first_voxel_)] = rim_->at(v);
     });
 }
 
@@ -99,6 +101,7 @@ void LeafMesher::meshCells() {
 }
 
 void LeafMesher::emitCell(int config, const Eigen::Vector3i& cell) {
+    if (left_out_.contains(first_voxel_ + cell)) return;
     const CubeTriangles& triangles = triangles_[size_t(config)];
     for (int t = 0; t < triangles.count; ++t)
         for (const uint8_t edge : triangles.edges[size_t(t)]) {
@@ -128,7 +131,7 @@ void LeafMesher::addVertex(const Eigen::Vector3i& local, int axis) {
     const Eigen::Vector3i next = voxel + Eigen::Vector3i::Unit(axis);
     const float fraction = float(steps) / float(grid_.stepsPerCell());
     const auto gradientAt = [&](const Eigen::Vector3i& at, size_t corner) {
-        return smoothGradient(at, volume_.dims(), inverse_spacing_, density_.data() + corner, stride_);
+        return smoothGradient(at, readable_, inverse_spacing_, density_.data() + corner, stride_);
     };
     const Eigen::Vector3f gradient =
         gradientAt(voxel, low) * (1 - fraction) + gradientAt(next, high) * fraction;
@@ -146,7 +149,9 @@ void LeafMesher::addVertex(const Eigen::Vector3i& local, int axis) {
 uint8_t LeafMesher::shownAt(bool is_low_inside, const Eigen::Vector3i& low_voxel, int axis, size_t low,
                             const Eigen::Vector3f& normal, float fraction) const {
     const Eigen::Vector3i high_voxel = low_voxel + Eigen::Vector3i::Unit(axis);
-    const Eigen::Vector3i& inside = is_low_inside ? low_voxel : high_voxel;
+    // The rim's bone is of the zone and material of the voxel beside it.
+    const Eigen::Vector3i inside =
+        (is_low_inside ? low_voxel : high_voxel).array().max(0).min(volume_.dims().array() - 1);
     if (paint_)
         if (const uint8_t zone = paint_->between(inside, is_low_inside ? high_voxel : low_voxel)) return zone;
     const MaterialId material = look_.properties

@@ -13,6 +13,10 @@
 // looks like something less dense. A task's zones take its place where they have something to show
 // (zone_paint.h).
 //
+// Beyond the volume there is air, or, with a `rim`, the bone around it, which is shown as far as the first
+// layer of it: what the tick took away at a face leaves a wall there, and the surface ends where
+// SurroundingsJoint goes on, at the same vertices whatever the tick does.
+//
 // It is not RT-safe (it allocates).
 #pragma once
 
@@ -22,6 +26,7 @@
 #include "haptic_server/core/volume/bone_properties.h"
 #include "haptic_server/core/volume/crossed_cells.h"
 #include "haptic_server/core/volume/marching_cubes_table.h"
+#include "haptic_server/core/volume/region_rim.h"
 #include "haptic_server/surface/mesh/mesh_grid.h"
 #include "haptic_server/surface/mesh/scan_shade.h"
 #include "haptic_server/surface/mesh/zone_paint.h"
@@ -38,12 +43,16 @@ struct VertexLook {
 // must outlive it.
 class LeafMesher {
   public:
-    // most_steps_per_cell is as for MeshGrid.
+    // most_steps_per_cell is as for MeshGrid. The rim (null: none) must outlive this object.
     LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice,
-               int most_steps_per_cell = MeshGrid::kMaxStepsPerCell, const VertexLook& look = {});
+               int most_steps_per_cell = MeshGrid::kMaxStepsPerCell, const VertexLook& look = {},
+               const RegionRim* rim = nullptr);
 
     // From now on vertices show these zones; null: none. It must outlive this object.
     void setPaint(const ZonePaint* paint) noexcept { paint_ = paint; }
+
+    // From now on these cells make no surface.
+    void leaveOut(const IndexBox& cells) noexcept { left_out_ = cells; }
 
     // The revision is the leaf's version; the mesh is empty without surface. There is none if the voxels were
     // written while they were copied, which is the shorter part of the work.
@@ -51,6 +60,7 @@ class LeafMesher {
 
   private:
     void readVoxels(const IndexBox& cells);
+    void readRim(const IndexBox& voxels);
     bool hasSurface() const noexcept;
     void meshCells();
     void emitCell(int config, const Eigen::Vector3i& cell);
@@ -69,6 +79,9 @@ class LeafMesher {
     const VoxelVolume& volume_;
     const LeafLattice& lattice_;
     VertexLook look_;
+    const RegionRim* rim_;
+    IndexBox readable_;  // voxels; others have no density
+    IndexBox left_out_;  // cells
     const ZonePaint* paint_ = nullptr;
     MeshGrid grid_;
     const std::array<CubeTriangles, 256>& triangles_;

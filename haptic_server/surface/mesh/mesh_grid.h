@@ -12,9 +12,19 @@
 
 namespace bonemill {
 
+// Steps from the low voxel to the iso-value, rounded to nearest; low and high lie on different sides of iso.
+// At most kMaxStepsPerCell of MeshGrid per cell.
+inline int stepsToIso(Density low, Density high, Density iso, int steps_per_cell) noexcept {
+    const uint32_t rise = uint32_t(std::abs(int(high) - int(low)));
+    const uint32_t to_iso = uint32_t(std::abs(int(iso) - int(low)));
+    const uint32_t steps = (2 * to_iso * uint32_t(steps_per_cell) + rise) / (2 * rise);
+    return std::clamp(int(steps), 1, steps_per_cell - 1);
+}
+
 class MeshGrid {
   public:
-    static constexpr int kMaxStepsPerCell = 16383;  // 32 bits hold a density times that
+    static constexpr int kMaxStepsPerCell = 16383;  // 32 bits hold a density times that (stepsToIso)
+    static_assert(2 * uint64_t(kMaxDensity) * kMaxStepsPerCell + kMaxDensity <= UINT32_MAX);
     // This is streamed. The cell fills a high byte and the place in it a low one, which packs best.
     static constexpr int kStreamedStepsPerCell = 256;
 

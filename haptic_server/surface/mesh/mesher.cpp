@@ -23,9 +23,9 @@ bool isBeingWritten(uint32_t version) noexcept {
 }  // namespace
 
 Mesher::Mesher(const VoxelVolume& volume, const LeafLattice& lattice, int most_steps_per_cell,
-               const VertexLook& look)
+               const VertexLook& look, const RegionRim* rim)
     : lattice_(lattice),
-      leaf_mesher_(volume, lattice, most_steps_per_cell, look),
+      leaf_mesher_(volume, lattice, most_steps_per_cell, look, rim),
       meshed_version_(lattice.leafCount(), kNeverMeshed),
       has_mesh_(lattice.leafCount(), false) {}
 
@@ -103,8 +103,8 @@ constexpr int64_t kPassPeriodNs = 8 * kNsPerMillisecond;
 }  // namespace
 
 MeshRounds::MeshRounds(const VoxelVolume& volume, const LeafLattice& lattice, SpscRing<Cut>& cuts,
-                       const VertexLook& look)
-    : lattice_(lattice), cuts_(cuts), mesher_(volume, lattice, MeshGrid::kStreamedStepsPerCell, look) {}
+                       const VertexLook& look, const RegionRim* rim)
+    : lattice_(lattice), cuts_(cuts), mesher_(volume, lattice, MeshGrid::kStreamedStepsPerCell, look, rim) {}
 
 bool MeshRounds::round(const Sink& sink) {
     takeCuts();

@@ -22,9 +22,10 @@ namespace bonemill {
 // the version was odd or moved. It is not RT-safe, and one thread calls all members.
 class Mesher {
   public:
-    // All must outlive the mesher. most_steps_per_cell as for MeshGrid.
+    // All must outlive the mesher. most_steps_per_cell as for MeshGrid, the rim as for LeafMesher.
     Mesher(const VoxelVolume& volume, const LeafLattice& lattice,
-           int most_steps_per_cell = MeshGrid::kMaxStepsPerCell, const VertexLook& look = {});
+           int most_steps_per_cell = MeshGrid::kMaxStepsPerCell, const VertexLook& look = {},
+           const RegionRim* rim = nullptr);
 
     using Sink = std::function<void(NodeMesh&&)>;
     static constexpr uint32_t kAllLeaves = std::numeric_limits<uint32_t>::max();
@@ -75,7 +76,7 @@ class MeshRounds {
     // All must outlive this object. The ring holds the ticks' cuts, each pushed
     // after its voxels were written; a cut that finds it full is meshed all the same, only later.
     MeshRounds(const VoxelVolume& volume, const LeafLattice& lattice, SpscRing<Cut>& cuts,
-               const VertexLook& look = {});
+               const VertexLook& look = {}, const RegionRim* rim = nullptr);
 
     using Sink = std::function<void(NodeGroup&&)>;
 

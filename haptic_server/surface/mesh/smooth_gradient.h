@@ -10,18 +10,18 @@
 
 namespace bonemill {
 
-// Counts per m, V axes. `voxel` in -1 .. dims; `center` points at its density among voxels that lie `stride`
-// apart; those within 1 of it are read as far as they lie in -1 .. dims. The sums are integers: leaves that
-// share the voxel get the same gradient, bit for bit.
-inline Eigen::Vector3f smoothGradient(const Eigen::Vector3i& voxel, const Eigen::Vector3i& dims,
+// Counts per m, V axes. `center` points at the density of `voxel` among voxels that lie `stride` apart; those
+// within 1 of it are read as far as they are readable. The sums are integers: leaves that share the voxel get
+// the same gradient, bit for bit.
+inline Eigen::Vector3f smoothGradient(const Eigen::Vector3i& voxel, const IndexBox& readable,
                                       const Eigen::Vector3f& inverse_spacing, const Density* center,
                                       const size_t (&stride)[3]) noexcept {
     constexpr int kWeights[] = {3, 10, 3}, kWeight = 16;
     ptrdiff_t step[3][3];  // per axis: to the voxels before, at and after this one, at the border to itself
     for (int axis = 0; axis < 3; ++axis) {
-        step[axis][0] = voxel[axis] > -1 ? -ptrdiff_t(stride[axis]) : 0;
+        step[axis][0] = voxel[axis] > readable.min[axis] ? -ptrdiff_t(stride[axis]) : 0;
         step[axis][1] = 0;
-        step[axis][2] = voxel[axis] < dims[axis] ? ptrdiff_t(stride[axis]) : 0;
+        step[axis][2] = voxel[axis] < readable.max[axis] ? ptrdiff_t(stride[axis]) : 0;
     }
     Eigen::Vector3f gradient;
     for (int axis = 0; axis < 3; ++axis) {

@@ -3,28 +3,13 @@
 #include <meshoptimizer.h>
 
 #include "haptic_server/surface/mesh/leaf_mesher.h"
+#include "haptic_server/surface/mesh/surroundings_joint.h"
 
 namespace bonemill {
 namespace {
 
 constexpr int kLeafCells =
     32;  // large, for few things to draw; MeshGrid::kStreamedStepsPerCell of them fit 16 bits
-
-void leaveOutInside(NodeMesh& mesh, const Eigen::AlignedBox3d& box) {
-    std::vector<bool> is_inside;
-    for (const PackedVertex& v : mesh.vertices) {
-        const Eigen::Vector3f at =
-            mesh.origin + mesh.step.cwiseProduct(Eigen::Vector3f(float(v.x), float(v.y), float(v.z)));
-        is_inside.push_back(box.contains(at.cast<double>()));
-    }
-    std::vector<uint32_t> kept;
-    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-        const uint32_t* const corner = &mesh.indices[i];
-        if (is_inside[corner[0]] && is_inside[corner[1]] && is_inside[corner[2]]) continue;
-        kept.insert(kept.end(), corner, corner + 3);
-    }
-    mesh.indices = std::move(kept);
-}
 
 void keepUsed(NodeMesh& mesh) {
     const size_t count = mesh.vertices.size();
@@ -55,29 +40,48 @@ void simplify(NodeMesh& mesh, double most_moved) {
     keepUsed(mesh);
 }
 
-}  // namespace
-
-uint32_t surroundingsLeafCount(const VolumeGeometry& scan) {
+uint32_t scanLeafCount(const VolumeGeometry& scan) {
     return uint32_t(((scan.dims.array() + 1 + kLeafCells - 1) / kLeafCells).prod());
 }
 
-void meshSurroundings(const Surroundings& surroundings, uint32_t first_leaf, const ShadeScale& shades,
-                      const SurroundingsSink& sink) {
+// The scan's cells around the joint; false: the sink wants no more.
+bool meshScan(const Surroundings& surroundings, const IndexBox& joint, uint32_t first_leaf, ScanShade* shade,
+              const SurroundingsSink& sink) {
     const VoxelVolume& volume = surroundings.volume;
     const LeafLattice lattice(volume, Eigen::Vector3i::Constant(kLeafCells));
-    std::optional<ScanShade> shade;
-    if (shades.count > 0) shade.emplace(shades, volume.geometry(), Pose{}, volume.iso(), densitiesOf(volume));
-    LeafMesher mesher(volume, lattice, MeshGrid::kStreamedStepsPerCell, {nullptr, shade ? &*shade : nullptr});
+    LeafMesher mesher(volume, lattice, MeshGrid::kStreamedStepsPerCell, {nullptr, shade});
+    mesher.leaveOut(joint);
     for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
         if (!lattice.mayHoldSurface(leaf, volume.iso())) continue;
         std::optional<NodeMesh> mesh = mesher.mesh(leaf);
         if (!mesh || mesh->isEmpty()) continue;
         mesh->leaf += first_leaf;
         mesh->origin = (surroundings.X_VS * Eigen::Vector3d(mesh->origin.cast<double>())).cast<float>();
-        leaveOutInside(*mesh, surroundings.milled);
-        if (mesh->isEmpty()) continue;
         simplify(*mesh, kSurroundingsMoved * volume.spacing().minCoeff());
-        if (!sink(std::move(*mesh))) return;
+        if (!sink(std::move(*mesh))) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+uint32_t surroundingsLeafCount(const Surroundings& surroundings) {
+    return scanLeafCount(surroundings.volume.geometry()) +
+           SurroundingsJoint(surroundings, nullptr).partCount();
+}
+
+void meshSurroundings(const Surroundings& surroundings, uint32_t first_leaf, const ShadeScale& shades,
+                      const SurroundingsSink& sink) {
+    const VoxelVolume& volume = surroundings.volume;
+    std::optional<ScanShade> shade;
+    if (shades.count > 0) shade.emplace(shades, volume.geometry(), Pose{}, volume.iso(), densitiesOf(volume));
+    const SurroundingsJoint joint(surroundings, shade ? &*shade : nullptr);
+    if (!meshScan(surroundings, joint.cells(), first_leaf, shade ? &*shade : nullptr, sink)) return;
+    const uint32_t first_part = first_leaf + scanLeafCount(volume.geometry());
+    for (uint32_t part = 0; part < joint.partCount(); ++part) {
+        NodeMesh mesh = joint.mesh(part);
+        mesh.leaf = first_part + part;
+        if (!mesh.isEmpty() && !sink(std::move(mesh))) return;
     }
 }
 

@@ -1,10 +1,10 @@
 // Makes the surface of the bone around the part that is milled, for people to look at: node meshes like all
 // others, which never change.
 //
-// Marching cubes over the scan's own voxels; triangles that lie in the milled part as a whole are left out.
-// In each node meshoptimizer then takes triangles away while the surface moves by less than
-// kSurroundingsMoved voxels; the nodes' borders stay as they are, so that no crack opens. It is not RT-safe
-// (it allocates), but thread-safe.
+// Marching cubes over the scan's own voxels, and around the milled part what joins them to its surface
+// (surroundings_joint.h). In each node of the former meshoptimizer then takes triangles away while the
+// surface moves by less than kSurroundingsMoved voxels; the nodes' borders stay as they are, so that no crack
+// opens. It is not RT-safe (it allocates), but thread-safe.
 #pragma once
 
 #include <functional>
@@ -18,7 +18,7 @@ namespace bonemill {
 inline constexpr double kSurroundingsMoved = 0.15;
 
 // How many leaf numbers they take at most.
-uint32_t surroundingsLeafCount(const VolumeGeometry& scan);
+uint32_t surroundingsLeafCount(const Surroundings& surroundings);
 
 // The sink gets the meshes (V, m), numbered from first_leaf on, in these shades; empty ones do not come.
 // False from it ends the work.

@@ -27,8 +27,10 @@ std::shared_ptr<const Surroundings> balls() {
                 const Eigen::Vector3i in(i % 20 - 10, j % 20 - 10, k % 20 - 10);
                 volume.set(i, j, k, in.squaredNorm() < 36 ? kMaxDensity : Density(0));
             }
+    geometry.dims.setConstant(10);
+    RegionRim rim(VoxelVolume(geometry, 32768), [](const Eigen::Vector3i&) { return Density(0); });
     return std::make_shared<const Surroundings>(
-        Surroundings{std::move(volume), {}, Eigen::AlignedBox3d(), Eigen::AlignedBox3d()});
+        Surroundings{std::move(volume), {}, Eigen::AlignedBox3d(), std::move(rim)});
 }
 
 TEST(SurroundingsFeed, PutsNodesBehindThoseOfTheBone) {
@@ -43,7 +45,7 @@ TEST(SurroundingsFeed, PutsNodesBehindThoseOfTheBone) {
     EXPECT_TRUE(outbox.isEmpty());
     ASSERT_FALSE(leaves.empty());
     EXPECT_GE(*leaves.begin(), kFirstLeaf);
-    EXPECT_LT(*leaves.rbegin(), kFirstLeaf + surroundingsLeafCount(surroundings->volume.geometry()));
+    EXPECT_LT(*leaves.rbegin(), kFirstLeaf + surroundingsLeafCount(*surroundings));
     EXPECT_GT(leaves.size(), 20u);
 }
 

@@ -13,6 +13,7 @@ namespace bonemill {
 namespace {
 
 constexpr size_t kStride[] = {1, 3, 9};
+const IndexBox kReadable{Eigen::Vector3i::Constant(-1), Eigen::Vector3i::Constant(10)};
 
 TEST(SmoothGradient, IsThatOfALinearField) {
     Density field[27];
@@ -20,7 +21,7 @@ TEST(SmoothGradient, IsThatOfALinearField) {
         for (int j = 0; j < 3; ++j)
             for (int i = 0; i < 3; ++i) field[i + 3 * j + 9 * k] = Density(1000 + 7 * i + 50 * j + 400 * k);
     const Eigen::Vector3f inverse_spacing(1000, 2000, 500);
-    const Eigen::Vector3f g = smoothGradient({5, 5, 5}, {10, 10, 10}, inverse_spacing, field + 13, kStride);
+    const Eigen::Vector3f g = smoothGradient({5, 5, 5}, kReadable, inverse_spacing, field + 13, kStride);
     EXPECT_FLOAT_EQ(g.x(), 7 * 1000);
     EXPECT_FLOAT_EQ(g.y(), 50 * 2000);
     EXPECT_FLOAT_EQ(g.z(), 400 * 500);
@@ -33,7 +34,7 @@ TEST(SmoothGradient, AtTheBorderItIsOneSided) {
     field[13] = 0;
     field[14] = field[13 + 3] = field[13 + 9] = 500;
     field[14 + 3] = field[14 + 9] = field[13 + 12] = field[14 + 12] = 500;
-    const Eigen::Vector3f g = smoothGradient({-1, -1, -1}, {10, 10, 10}, {1, 1, 1}, field + 13, kStride);
+    const Eigen::Vector3f g = smoothGradient({-1, -1, -1}, kReadable, {1, 1, 1}, field + 13, kStride);
     EXPECT_GT(g.x(), 0);
     EXPECT_LT(g.x(), 501);
     EXPECT_FLOAT_EQ(g.x(), g.y());
