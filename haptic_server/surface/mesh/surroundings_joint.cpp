@@ -17,7 +17,7 @@ using Eigen::Vector3i;
 
 constexpr int kSteps = MeshGrid::kStreamedStepsPerCell;
 constexpr double kMostSteps = 65535;  // of PackedVertex
-constexpr int kMostPartCells = 8;     // for steps of some 0.1 um
+constexpr int kMostPartCells = 4;     // for steps of some 0.1 um
 constexpr double kLeastWidth = 0.5;   // of the joint, in cells of the scan
 constexpr int kLeastPlanes = 4;       // per axis: the two outermost ones, and one for each face of the region
 
@@ -262,28 +262,43 @@ SurroundingsJoint::SurroundingsJoint(const Surroundings& surroundings, ScanShade
             if (plane >= high - 1) on_rim = faces.max[axis];
             planes.rim.push_back(on_rim);
             planes.low.push_back(std::min(place, fine * on_rim));
+            planes.high.push_back(std::max(place, fine * on_rim));
         }
-        // At both ends a plane lies less than two cells from that of the rim, or half a fine one.
-        const double longest = (part_cells_ + 4) * coarse + 2 * fine;
-        const double rim_step = fine / kSteps;
-        step_[axis] = rim_step * std::exp2(std::ceil(std::log2(longest / (kMostSteps * rim_step))));
     }
     parts_ = (cells_.max - cells_.min).array() / part_cells_ + 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double rim_step = rim.spacing()[axis] / kSteps;
+        step_[axis] = rim_step * std::exp2(std::ceil(std::log2(longestPart(axis) / (kMostSteps * rim_step))));
+    }
 }
 
-// So many that a step of theirs is no longer than one of the rim.
+// So few that a step of theirs is no longer than one of the rim.
 int SurroundingsJoint::partCells() const noexcept {
     const double fine = surroundings_.rim.spacing().minCoeff(),
                  coarse = surroundings_.volume.spacing().maxCoeff();
     return std::clamp(int(kMostSteps / kSteps * fine / coarse) - 3, 1, kMostPartCells);
 }
 
+IndexBox SurroundingsJoint::cellsOf(const Vector3i& part) const noexcept {
+    const Vector3i first = cells_.min + part_cells_ * part;
+    return IndexBox{first, first.array() + part_cells_ - 1}.clamped(cells_.min, cells_.max);
+}
+
+double SurroundingsJoint::longestPart(int axis) const {
+    const Planes& planes = planes_[size_t(axis)];
+    double longest = 0;
+    for (int part = 0; part < parts_[axis]; ++part) {
+        const IndexBox cells = cellsOf(part * Vector3i::Unit(axis));
+        longest = std::max(longest, planes.high[size_t(cells.max[axis] + 1 - cells_.min[axis])] -
+                                        planes.low[size_t(cells.min[axis] - cells_.min[axis])]);
+    }
+    return longest + surroundings_.rim.spacing()[axis];  // it begins at a voxel of the rim
+}
+
 NodeMesh SurroundingsJoint::mesh(uint32_t part) const {
     const int n = int(part);
     const Vector3i index(n % parts_.x(), n / parts_.x() % parts_.y(), n / (parts_.x() * parts_.y()));
-    const Vector3i first = cells_.min + part_cells_ * index;
-    const IndexBox cells = IndexBox{first, first.array() + part_cells_ - 1}.clamped(cells_.min, cells_.max);
-    return JointPart(*this, cells).take();
+    return JointPart(*this, cellsOf(index)).take();
 }
 
 }  // namespace bonemill

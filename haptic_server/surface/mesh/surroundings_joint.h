@@ -7,7 +7,7 @@
 // alone decides, and the segments of a cell make loops, which are filled. So the surface has no holes,
 // whatever the voxels are: its vertices on the rim are those of LeafMesher with that rim, and those outside
 // are those of LeafMesher on the scan, normals included; only there they may differ by the rounding to
-// different steps, some 0.1 um.
+// different steps, less than 0.1 um where voxels of 1 mm meet some of 0.25 mm.
 //
 // It is not RT-safe (it allocates); for one thread at a time.
 #pragma once
@@ -37,10 +37,12 @@ class SurroundingsJoint {
     friend class JointPart;
 
     struct Planes {
-        std::vector<int> rim;     // per plane of the scan's voxels: that of the rim in its place
-        std::vector<double> low;  // V, m: where the lower one of the two lies
+        std::vector<int> rim;           // per plane of the scan's voxels: that of the rim in its place
+        std::vector<double> low, high;  // V, m: where the lower and the higher one of the two lie
     };
     int partCells() const noexcept;
+    IndexBox cellsOf(const Eigen::Vector3i& part) const noexcept;
+    double longestPart(int axis) const;  // m
 
     const Surroundings& surroundings_;
     ScanShade* shade_;
