@@ -27,10 +27,10 @@ inline double degreesBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b)
     return std::acos(std::clamp(a.normalized().dot(b.normalized()), -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
-// Vertices less than kSame apart are one: grids are rounded to different steps.
+// Vertices less than kSame apart are one: a mesh has its origin as float.
 class JoinedSurface {
   public:
-    static constexpr double kSame = 0.6e-6;  // m; steps of one grid are longer
+    static constexpr double kSame = 50e-9;  // m
 
     explicit JoinedSurface(std::span<const NodeMesh> meshes) {
         for (const NodeMesh& mesh : meshes) {

@@ -5,7 +5,6 @@
 #include <map>
 #include <utility>
 
-#include "haptic_server/surface/mesh/mesh_grid.h"
 #include "haptic_server/surface/mesh/smooth_gradient.h"
 
 namespace bonemill {
@@ -15,11 +14,8 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using Eigen::Vector3i;
 
-constexpr int kSteps = MeshGrid::kStreamedStepsPerCell;
-constexpr double kMostSteps = 65535;  // of PackedVertex
-constexpr int kMostPartCells = 4;     // for steps of some 0.1 um
-constexpr double kLeastWidth = 0.5;   // of the joint, in cells of the scan
-constexpr int kLeastPlanes = 4;       // per axis: the two outermost ones, and one for each face of the region
+constexpr double kLeastWidth = 0.5;  // of the joint, in cells of the scan
+constexpr int kLeastPlanes = 4;      // per axis: the two outermost ones, and one for each face of the region
 
 struct Node {
     Vector3i voxel;  // of the rim (V) or of the scan (S)
@@ -56,14 +52,11 @@ class JointPart {
   public:
     JointPart(const SurroundingsJoint& joint, const IndexBox& cells)
         : joint_(joint), scan_(joint.surroundings_.volume), rim_(joint.surroundings_.rim) {
-        const Vector3d& fine = rim_.spacing();
-        for (int axis = 0; axis < 3; ++axis) {
-            const double low =
-                joint.planes_[size_t(axis)].low[size_t(cells.min[axis] - joint.cells_.min[axis])];
-            origin_[axis] = fine[axis] * std::floor(low / fine[axis]);
-        }
-        mesh_.origin = origin_.cast<float>();
-        mesh_.step = joint.step_.cast<float>();
+        Vector3d low;
+        for (int axis = 0; axis < 3; ++axis)
+            low[axis] = joint.planes_[size_t(axis)].low[size_t(cells.min[axis] - joint.cells_.min[axis])];
+        first_step_ = joint.grid_.stepsAt(low).array() - 1;
+        joint.grid_.begin(mesh_, first_step_);
         forEachIndex(cells, [this](const Vector3i& cell) { addCell(cell); });
     }
     NodeMesh take() { return std::move(mesh_); }
@@ -209,15 +202,20 @@ class JointPart {
 
     uint32_t vertexOn(const Node& low, const Node& high) {
         const Density at_low = densityOf(low), at_high = densityOf(high);
-        const double share = double(stepsToIso(at_low, at_high, scan_.iso(), kSteps)) / kSteps;
+        const int steps = stepsToIso(at_low, at_high, scan_.iso(), RimGrid::kStepsPerCell);
+        const float share = float(steps) / RimGrid::kStepsPerCell;
+        const Vector3f gradient = gradientOf(low) * (1 - share) + gradientOf(high) * share;
         const Vector3d from = placeOf(low), way = placeOf(high) - from;
-        const Vector3f gradient = gradientOf(low) * float(1 - share) + gradientOf(high) * float(share);
         const Vector3f way_out = (at_low > at_high ? way : Vector3d(-way)).cast<float>();
-        return addVertex(from + share * way, gradient.isZero(0) ? way_out : Vector3f(-gradient));
+        const bool is_of_scan = !low.is_rim && !high.is_rim;
+        const Vector3d place = is_of_scan ? joint_.grid_.placeInScan(RimGrid::kStepsPerCell * low.voxel +
+                                                                     steps * (high.voxel - low.voxel))
+                                          : Vector3d(from + double(share) * way);
+        return addVertex(place, gradient.isZero(0) ? way_out : Vector3f(-gradient));
     }
 
     uint32_t addVertex(const Vector3d& place, const Vector3f& normal) {
-        const Vector3d steps = (place - origin_).cwiseQuotient(joint_.step_).array().round();
+        const Vector3i steps = joint_.grid_.stepsAt(place) - first_step_;
         const OctahedralNormal packed = encodeNormal(normal);
         mesh_.vertices.push_back(
             {uint16_t(steps.x()), uint16_t(steps.y()), uint16_t(steps.z()), packed.u, packed.v});
@@ -233,7 +231,7 @@ class JointPart {
     const SurroundingsJoint& joint_;
     const VoxelVolume& scan_;
     const RegionRim& rim_;
-    Vector3d origin_;  // V, m: of a voxel of the region's grid
+    Vector3i first_step_;
     NodeMesh mesh_;
     std::vector<Vector3d> places_;                                                    // per vertex; V, m
     std::vector<Vector3f> normals_;                                                   // per vertex; V, unit
@@ -242,7 +240,7 @@ class JointPart {
 };
 
 SurroundingsJoint::SurroundingsJoint(const Surroundings& surroundings, ScanShade* shade)
-    : surroundings_(surroundings), shade_(shade), part_cells_(partCells()) {
+    : surroundings_(surroundings), grid_(surroundings), shade_(shade) {
     const RegionRim& rim = surroundings.rim;
     const IndexBox faces = rim.region().grown(1);
     for (int axis = 0; axis < 3; ++axis) {
@@ -262,43 +260,18 @@ SurroundingsJoint::SurroundingsJoint(const Surroundings& surroundings, ScanShade
             if (plane >= high - 1) on_rim = faces.max[axis];
             planes.rim.push_back(on_rim);
             planes.low.push_back(std::min(place, fine * on_rim));
-            planes.high.push_back(std::max(place, fine * on_rim));
         }
     }
-    parts_ = (cells_.max - cells_.min).array() / part_cells_ + 1;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double rim_step = rim.spacing()[axis] / kSteps;
-        step_[axis] = rim_step * std::exp2(std::ceil(std::log2(longestPart(axis) / (kMostSteps * rim_step))));
-    }
-}
-
-// So few that a step of theirs is no longer than one of the rim.
-int SurroundingsJoint::partCells() const noexcept {
-    const double fine = surroundings_.rim.spacing().minCoeff(),
-                 coarse = surroundings_.volume.spacing().maxCoeff();
-    return std::clamp(int(kMostSteps / kSteps * fine / coarse) - 3, 1, kMostPartCells);
-}
-
-IndexBox SurroundingsJoint::cellsOf(const Vector3i& part) const noexcept {
-    const Vector3i first = cells_.min + part_cells_ * part;
-    return IndexBox{first, first.array() + part_cells_ - 1}.clamped(cells_.min, cells_.max);
-}
-
-double SurroundingsJoint::longestPart(int axis) const {
-    const Planes& planes = planes_[size_t(axis)];
-    double longest = 0;
-    for (int part = 0; part < parts_[axis]; ++part) {
-        const IndexBox cells = cellsOf(part * Vector3i::Unit(axis));
-        longest = std::max(longest, planes.high[size_t(cells.max[axis] + 1 - cells_.min[axis])] -
-                                        planes.low[size_t(cells.min[axis] - cells_.min[axis])]);
-    }
-    return longest + surroundings_.rim.spacing()[axis];  // it begins at a voxel of the rim
+    parts_ = (cells_.max - cells_.min).array() / grid_.partCells() + 1;
 }
 
 NodeMesh SurroundingsJoint::mesh(uint32_t part) const {
     const int n = int(part);
     const Vector3i index(n % parts_.x(), n / parts_.x() % parts_.y(), n / (parts_.x() * parts_.y()));
-    return JointPart(*this, cellsOf(index)).take();
+    const Vector3i first = cells_.min + grid_.partCells() * index;
+    const IndexBox cells =
+        IndexBox{first, first.array() + grid_.partCells() - 1}.clamped(cells_.min, cells_.max);
+    return JointPart(*this, cells).take();
 }
 
 }  // namespace bonemill

@@ -6,8 +6,8 @@
 // marching cubes (marching_cubes_table.h) the crossed edges of each face are joined by segments that the face
 // alone decides, and the segments of a cell make loops, which are filled. So the surface has no holes,
 // whatever the voxels are: its vertices on the rim are those of LeafMesher with that rim, and those outside
-// are those of LeafMesher on the scan, normals included; only there they may differ by the rounding to
-// different steps, less than 0.1 um where voxels of 1 mm meet some of 0.25 mm.
+// are those of LeafMesher on the scan once they are on
+// the RimGrid; normals included.
 //
 // It is not RT-safe (it allocates); for one thread at a time.
 #pragma once
@@ -17,6 +17,7 @@
 
 #include "common/geometry/node_mesh.h"
 #include "haptic_server/core/volume/surroundings.h"
+#include "haptic_server/surface/mesh/rim_grid.h"
 #include "haptic_server/surface/mesh/scan_shade.h"
 
 namespace bonemill {
@@ -29,6 +30,8 @@ class SurroundingsJoint {
     // Cells of the scan in whose place are the region and the joint.
     const IndexBox& cells() const noexcept { return cells_; }
 
+    const RimGrid& grid() const noexcept { return grid_; }
+
     // It is made in parts.
     uint32_t partCount() const noexcept { return uint32_t(parts_.prod()); }
     NodeMesh mesh(uint32_t part) const;  // V, m; leaf and revision are 0; may be empty
@@ -37,20 +40,16 @@ class SurroundingsJoint {
     friend class JointPart;
 
     struct Planes {
-        std::vector<int> rim;           // per plane of the scan's voxels: that of the rim in its place
-        std::vector<double> low, high;  // V, m: where the lower and the higher one of the two lie
+        std::vector<int> rim;     // per plane of the scan's voxels: that of the rim in its place
+        std::vector<double> low;  // V, m: where the lower one of the two lies
     };
-    int partCells() const noexcept;
-    IndexBox cellsOf(const Eigen::Vector3i& part) const noexcept;
-    double longestPart(int axis) const;  // m
 
     const Surroundings& surroundings_;
+    RimGrid grid_;
     ScanShade* shade_;
     IndexBox cells_;                // of the scan, S indices
     std::array<Planes, 3> planes_;  // per axis, from cells_.min on
-    int part_cells_;                // per axis
     Eigen::Vector3i parts_;         // per axis
-    Eigen::Vector3d step_;          // m
 };
 
 }  // namespace bonemill

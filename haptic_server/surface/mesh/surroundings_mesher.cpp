@@ -8,9 +8,6 @@
 namespace bonemill {
 namespace {
 
-constexpr int kLeafCells =
-    32;  // large, for few things to draw; MeshGrid::kStreamedStepsPerCell of them fit 16 bits
-
 void keepUsed(NodeMesh& mesh) {
     const size_t count = mesh.vertices.size();
     std::vector<unsigned int> place(count);
@@ -40,23 +37,36 @@ void simplify(NodeMesh& mesh, double most_moved) {
     keepUsed(mesh);
 }
 
-uint32_t scanLeafCount(const VolumeGeometry& scan) {
-    return uint32_t(((scan.dims.array() + 1 + kLeafCells - 1) / kLeafCells).prod());
+uint32_t scanLeafCount(const VolumeGeometry& scan, const RimGrid& grid) {
+    return uint32_t(((scan.dims.array() + 1 + grid.partCells() - 1) / grid.partCells()).prod());
+}
+
+void moveTo(const RimGrid& grid, const Eigen::Vector3i& first_cell, NodeMesh& mesh) {
+    const Eigen::Vector3i first_scan_step = first_cell * RimGrid::kStepsPerCell;
+    const Eigen::Vector3i first_step = grid.stepsAt(grid.placeInScan(first_scan_step));
+    grid.begin(mesh, first_step);
+    for (PackedVertex& v : mesh.vertices) {
+        const Eigen::Vector3i scan_steps = first_scan_step + Eigen::Vector3i(v.x, v.y, v.z);
+        const Eigen::Vector3i steps = grid.stepsAt(grid.placeInScan(scan_steps)) - first_step;
+        v.x = uint16_t(steps.x());
+        v.y = uint16_t(steps.y());
+        v.z = uint16_t(steps.z());
+    }
 }
 
 // The scan's cells around the joint; false: the sink wants no more.
-bool meshScan(const Surroundings& surroundings, const IndexBox& joint, uint32_t first_leaf, ScanShade* shade,
-              const SurroundingsSink& sink) {
+bool meshScan(const Surroundings& surroundings, const SurroundingsJoint& joint, uint32_t first_leaf,
+              ScanShade* shade, const SurroundingsSink& sink) {
     const VoxelVolume& volume = surroundings.volume;
-    const LeafLattice lattice(volume, Eigen::Vector3i::Constant(kLeafCells));
+    const LeafLattice lattice(volume, Eigen::Vector3i::Constant(joint.grid().partCells()));
     LeafMesher mesher(volume, lattice, MeshGrid::kStreamedStepsPerCell, {nullptr, shade});
-    mesher.leaveOut(joint);
+    mesher.leaveOut(joint.cells());
     for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
         if (!lattice.mayHoldSurface(leaf, volume.iso())) continue;
         std::optional<NodeMesh> mesh = mesher.mesh(leaf);
         if (!mesh || mesh->isEmpty()) continue;
         mesh->leaf += first_leaf;
-        mesh->origin = (surroundings.X_VS * Eigen::Vector3d(mesh->origin.cast<double>())).cast<float>();
+        moveTo(joint.grid(), lattice.cellsOf(leaf).min, *mesh);
         simplify(*mesh, kSurroundingsMoved * volume.spacing().minCoeff());
         if (!sink(std::move(*mesh))) return false;
     }
@@ -66,8 +76,8 @@ bool meshScan(const Surroundings& surroundings, const IndexBox& joint, uint32_t 
 }  // namespace
 
 uint32_t surroundingsLeafCount(const Surroundings& surroundings) {
-    return scanLeafCount(surroundings.volume.geometry()) +
-           SurroundingsJoint(surroundings, nullptr).partCount();
+    const SurroundingsJoint joint(surroundings, nullptr);
+    return scanLeafCount(surroundings.volume.geometry(), joint.grid()) + joint.partCount();
 }
 
 void meshSurroundings(const Surroundings& surroundings, uint32_t first_leaf, const ShadeScale& shades,
@@ -76,8 +86,8 @@ void meshSurroundings(const Surroundings& surroundings, uint32_t first_leaf, con
     std::optional<ScanShade> shade;
     if (shades.count > 0) shade.emplace(shades, volume.geometry(), Pose{}, volume.iso(), densitiesOf(volume));
     const SurroundingsJoint joint(surroundings, shade ? &*shade : nullptr);
-    if (!meshScan(surroundings, joint.cells(), first_leaf, shade ? &*shade : nullptr, sink)) return;
-    const uint32_t first_part = first_leaf + scanLeafCount(volume.geometry());
+    if (!meshScan(surroundings, joint, first_leaf, shade ? &*shade : nullptr, sink)) return;
+    const uint32_t first_part = first_leaf + scanLeafCount(volume.geometry(), joint.grid());
     for (uint32_t part = 0; part < joint.partCount(); ++part) {
         NodeMesh mesh = joint.mesh(part);
         mesh.leaf = first_part + part;
