@@ -6,8 +6,8 @@
 // marching cubes (marching_cubes_table.h) the crossed edges of each face are joined by segments that the face
 // alone decides, and the segments of a cell make loops, which are filled. So the surface has no holes,
 // whatever the voxels are: its vertices on the rim are those of LeafMesher with that rim, and those outside
-// are those of LeafMesher on the scan once they are on
-// the RimGrid; normals included.
+// are those of LeafMesher on the scan once these are
+// on the RimGrid, normals included.
 //
 // It is not RT-safe (it allocates); for one thread at a time.
 #pragma once
