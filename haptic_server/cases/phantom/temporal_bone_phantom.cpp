@@ -153,8 +153,7 @@ class Cube {
 
     // What is drawn later covers what was drawn before it.
     double huOf(const Vector3d& p, const TemporalDistances& d, double blur) const {
-        const double lateral = p.x() - shapes_.sideOf(p.y(), p.z());
-        double hu = mixed(kMuscleHu, kAirHu, share(lateral + 2.5, blur));
+        double hu = kAirHu;  // the specimen is cleaned of muscle, so that its surface lies half-way to bone
         const double bone = share(-of(d, kOuter), blur);
         const double behind_plates = behindPlates(p, d, shapes_.measures());
         if (bone > 0) hu = mixed(hu, boneHu(p, d, behind_plates), bone);
