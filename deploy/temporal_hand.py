@@ -17,7 +17,7 @@ DEEPEST_MM = 14.0
 CORTEX_MM, ANTRUM_MM = 3.0, 8.5
 # A layer is this thick where all of it is bone, and where all is air.
 SOLID_MM, HOLLOW_MM = 0.42, 0.95
-ISO_HU = 300
+ISO_HU = 150
 
 
 class Volume:
