@@ -42,7 +42,7 @@ class Volume:
 class Structures:
     """Tells whether a burr keeps clear of what must be spared."""
 
-    EDGE = 5.0
+    EDGE = 2.0
 
     def __init__(self, labels, side):
         self.cubes = {}
@@ -103,7 +103,8 @@ def layer_mm(scan, side, places):
 
 
 def strokes(scan, labels, side):
-    """(depth, places) of each layer down to the antrum: up and down in a zigzag along the sinus, and back below the tegmen."""
+    """(depth, places) of each layer down to the antrum: up and down in a zigzag along the sinus, back below the
+    tegmen, and down the canal wall or the sinus."""
     structures = Structures(labels, side)
     depth, is_forwards = 0.3, True
     while depth <= DEEPEST_MM:
@@ -120,7 +121,7 @@ def strokes(scan, labels, side):
                 ways.append(ends)
         if not ways:
             return
-        yield depth, [ends[n % 2] for n, ends in enumerate(ways)] + [ways[-1][1], ways[0][1]]
+        yield depth, [ends[n % 2] for n, ends in enumerate(ways)] + [ways[-1][1], *reversed(ways[0])]
         is_forwards = not is_forwards
         depth += layer_mm(scan, side, [between(way, n / 6) for way in ways for n in range(7)])
 
