@@ -27,7 +27,7 @@ class MakeTemporalBone : public testing::Test {
                           "--difficulty", made.difficulty});
     }
     std::string nameOf(const Case& made) const {
-        return "temporal_bone_" + made.difficulty + "_" + made.side + "_" + made.seed;
+        return "bone_" + made.seed + "_" + made.side + "_" + made.difficulty;
     }
 
     test::TemporaryFolder folder_;
