@@ -5,9 +5,12 @@
 namespace bonemill {
 namespace {
 
-constexpr double kShownStep = 0.15;     // s: a quick picture draws all that is wet anew when it changes
-constexpr double kFilmStep = 1.0 / 15;  // s: blood and drying are slow
-constexpr double kCellsPerRadius = 4;   // of the burr
+// A quick picture draws all that is wet anew when it changes: not sooner than that, nor than some times as
+// long as the slowest picture since then took, so that others come between.
+constexpr double kShownStep = 0.15;  // s
+constexpr double kShownRest = 3;
+constexpr double kFilmStep = 1.0 / 15;              // s: blood and drying are slow
+constexpr double kCellsPerRadius = 4;               // of the burr
 constexpr double kMinCell = 1e-4, kMaxCell = 6e-4;  // m
 constexpr double kTrailTime = 0.6;                  // s that a mesh may come after its cut
 constexpr size_t kMaxTrail = 64;
@@ -75,6 +78,7 @@ void VisualEffects::forget() {
 void VisualEffects::advance(double dt) {
     if (!(dt > 0)) return;
     left_ += std::min(dt, kLongestAdvance);
+    slowest_picture_ = std::max(slowest_picture_, std::min(dt, kLongestAdvance));
     if (spin_) spin_->advance(dt, input_.spin_speed);
     for (; left_ >= kStep; left_ -= kStep) step();
 }
@@ -87,9 +91,9 @@ void VisualEffects::step() {
     if (irrigation_) wash(kStep);
     if (!film_) return;
     shown_time_ += kStep;
-    if (shown_time_ >= kShownStep) {
+    if (shown_time_ >= std::max(kShownStep, kShownRest * slowest_picture_)) {
         film_->markDue();
-        shown_time_ = 0;
+        shown_time_ = slowest_picture_ = 0;
     }
     film_time_ += kStep;
     if (film_time_ < kFilmStep) return;

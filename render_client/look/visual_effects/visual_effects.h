@@ -60,7 +60,7 @@ class VisualEffects {
     BoneSurface surface_;
     EffectInput input_;
     std::vector<Trail> trail_;  // of the burr while it cut
-    double time_ = 0, left_ = 0, film_time_ = 0, shown_time_ = 0;
+    double time_ = 0, left_ = 0, film_time_ = 0, shown_time_ = 0, slowest_picture_ = 0;
 };
 
 }  // namespace bonemill

@@ -61,6 +61,27 @@ TEST(VisualEffects, whatIsNotListedDoesNotExist) {
     EXPECT_FALSE(effects.film() || effects.bleeding() || effects.irrigation() || effects.spin());
 }
 
+// Quick pictures with a new film are slow: the more so, the more others come between.
+TEST(VisualEffects, slowPicturesOfTheFilmLeaveTimeToOthers) {
+    const auto shownIn = [](double quick, double slow) {
+        VisualEffects effects(everything(), kRadius);
+        effects.film()->takeDue();
+        int shown = 0;
+        bool was_slow = false;
+        for (double time = 0; time < 6;) {
+            const double took = was_slow ? slow : quick;
+            effects.advance(took);
+            time += took;
+            was_slow = effects.film()->takeDue();
+            shown += was_slow;
+        }
+        return shown;
+    };
+    EXPECT_NEAR(shownIn(0.02, 0.02), 40, 2);
+    EXPECT_NEAR(shownIn(0.02, 0.2), 10, 1);
+    EXPECT_NEAR(shownIn(0.02, 0.25), 8, 1);
+}
+
 TEST(BoneDust, leavesInProportionFliesAndSettlesOnTheBone) {
     scene::Effects wish;
     wish.mutable_bone_dust()->set_grains_per_mm3(100);
