@@ -21,9 +21,9 @@ constexpr size_t kLookupsOfHeat = 2;   // of them, that dead bone leaves to the 
 constexpr int64_t kMaxBricksToRevisit = 512;
 // They are in K: a brick whose border is warmer than that opens its neighbour; one that is cooler all over is
 // closed when it has been open for a while. Cold matters less.
-constexpr float kWarm = 0.01f, kCold = -2, kSettledCold = -0.5f;
-constexpr double kShortestLife = 1;        // s
-constexpr double kSpareForSources = 0.25;  // of the pool, that heat on its way does not take
+constexpr float kWarm = 0.01f, kCold = -1, kSettledCold = -0.5f;
+constexpr double kShortestLife = 1;    // s
+constexpr double kLeastWeight = 0.02;  // of a cube that heat is spread to
 
 const std::array<Eigen::Vector3i, 6> kSides = {
     {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
@@ -51,6 +51,8 @@ HeatGrid::HeatGrid(const HeatConfig& config, const VoxelVolume& bone, double dt)
                (config.heat_capacity * config.cell);
     };
     wet_rate_ = rate(config.wet_transfer);
+    // The bone's surface lies half a cube from its middle, with the film on its other side.
+    wet_share_ = 1 / (1 + std::max(config.wet_transfer, 0.0) * config.cell / (2 * config.conductivity));
     dry_rate_ = rate(config.dry_transfer);
     directory_.assign(size_t(bricks_.prod()), kNone);
     const double in_time = kPoolShare * double(most_turns_) * longest_ / dt;
@@ -105,9 +107,7 @@ HeatGrid::Brick* HeatGrid::findOrOpen(const Eigen::Vector3i& index) noexcept {
 void HeatGrid::lookUpBone(Brick& brick) noexcept {
     --lookups_;
     brick.is_stale = false;
-    constexpr int kAround = kEdge + 2;
     std::array<bool, kAround * kAround * kAround> is_bone{};
-    constexpr Eigen::Index kX = 1, kY = kAround, kZ = kAround * kAround;
     int voxels[3][kAround];
     for (int axis = 0; axis < 3; ++axis)
         for (int n = 0; n < kAround; ++n) voxels[axis][n] = voxelAt(brick.index[axis] * kEdge + n - 1, axis);
@@ -125,30 +125,65 @@ void HeatGrid::lookUpBone(Brick& brick) noexcept {
             const int n = cellIndex(c);
             if (*at != bool(brick.is_bone[n])) brick.excess[n] = brick.hot_time[n] = 0;
             brick.is_bone[n] = *at;
-            brick.open_faces[n] =
-                *at ? uint8_t(!at[-kX] + !at[kX] + !at[-kY] + !at[kY] + !at[-kZ] + !at[kZ]) : uint8_t(0);
+            brick.open_area[n] = *at ? openArea(at) : uint8_t(0);
             if (!*at) dead_.remove(brick.index, n);
         });
 }
 
-bool HeatGrid::putInto(const Eigen::Vector3i& cell, double heat) noexcept {
+// Whether this is bone in an open brick: it opens what is not yet.
+bool HeatGrid::isBoneAt(const Eigen::Vector3i& cell) noexcept {
     if ((cell.array() < 0).any()) return false;
     Brick* brick = findOrOpen(cell.unaryExpr([](int v) { return v >> kShift; }));
     if (!brick) return false;
     if (brick->is_stale && lookups_ > 0) lookUpBone(*brick);
+    return brick->is_bone[cellIndex(cell)];
+}
+
+bool HeatGrid::putInto(const Eigen::Vector3i& cell, double heat) noexcept {
+    if (!isBoneAt(cell)) return false;
+    Brick* brick = find(cell.unaryExpr([](int v) { return v >> kShift; }));
     const int n = cellIndex(cell);
-    if (!brick->is_bone[n]) return false;
+    if (brick->open_area[n] > 0 && isWet(*brick, n, middleOf(cell))) heat *= wet_share_;
     brick->excess[n] += float(heat / cell_capacity_);
     float& hottest = hottestOf(*brick);
     hottest = std::max(hottest, brick->excess[n]);
     return true;
 }
 
+// Into the cube of bone that a place is in and those beside it across the axis, the more the nearer their
+// middles are: how the place lies among them does not count.
+bool HeatGrid::spread(const Eigen::Vector3d& p_V, int axis, double heat) noexcept {
+    const Eigen::Vector3i cell = cellAt(p_V);
+    if (!isBoneAt(cell)) return false;
+    const Eigen::Array2i across((axis + 1) % 3, (axis + 2) % 3);
+    const Eigen::Vector3d off = (p_V - middleOf(cell)) / config_.cell;
+    std::array<Eigen::Vector3i, 4> cells;
+    std::array<double, 4> weights;
+    double sum = 0;
+    for (size_t n = 0; n < 4; ++n) {
+        cells[n] = cell;
+        weights[n] = 1;
+        for (int side = 0; side < 2; ++side) {
+            const double share = std::abs(off[across[side]]);
+            const bool is_next = n >> side & 1;
+            if (is_next) cells[n][across[side]] += off[across[side]] < 0 ? -1 : 1;
+            weights[n] *= is_next ? share : 1 - share;
+        }
+        if (weights[n] < kLeastWeight || (n > 0 && !isBoneAt(cells[n]))) weights[n] = 0;
+        sum += weights[n];
+    }
+    for (size_t n = 0; n < 4; ++n)
+        if (weights[n] > 0) putInto(cells[n], heat * weights[n] / sum);
+    return true;
+}
+
 void HeatGrid::addHeat(const Eigen::Vector3d& p_V, const Eigen::Vector3d& inward_V, double heat) noexcept {
     BONEMILL_ASSERT(heat >= 0 && std::abs(inward_V.squaredNorm() - 1) < 1e-6);
+    int axis = 0;
+    inward_V.cwiseAbs().maxCoeff(&axis);
     // Cubes that are half bone count as bone or as none: the next one inwards may be the first.
     for (const double depth : {0.25, 0.75, 1.25})
-        if (putInto(cellAt(p_V + depth * config_.cell * inward_V), heat)) return;
+        if (spread(p_V + depth * config_.cell * inward_V, axis, heat)) return;
     const Eigen::Vector3i cell = cellAt(p_V);
     for (const Eigen::Vector3i& side : kSides)
         if (putInto(cell + side, heat)) return;
@@ -182,29 +217,12 @@ void HeatGrid::forget() noexcept {
     dead_.forget();
 }
 
-void HeatGrid::irrigate(const Eigen::Vector3d& center_V, double radius,
-                        const Eigen::Vector3d& p_VN) noexcept {
-    wet_center_V_ = center_V;
-    wet_radius_ = radius;
-    p_VN_ = p_VN;
-}
-
-// Nothing stands between the cube in whose middle p_V lies and the nozzle. The cubes around are the surface
-// itself, and those far from it are taken for air: that bounds the time.
-bool HeatGrid::isReached(const Eigen::Vector3d& p_V) const noexcept {
-    constexpr double kFirst = 1.5, kFarthest = 128;  // cubes
-    const Eigen::Vector3d way = p_VN_ - p_V;
-    const double cubes = way.norm() / config_.cell;
-    for (double n = kFirst; n < std::min(cubes, kFarthest); ++n)
-        if (isBone(cellAt(p_V + n / cubes * way))) return false;
-    return true;
-}
-
 void HeatGrid::step(bool has_time) noexcept {
     now_ += dt_;
     lookups_ = kLookupsPerStep;
     turns_due_ = std::min(turns_due_ + double(active_.size()) * dt_ / turn_, double(most_turns_));
     if (!has_time) return;
+    if (wet_radius_ > 0) openWet();
     lookups_ -=
         dead_.review(kLookupsPerStep - kLookupsOfHeat, [&](const auto& cell) { return isBone(cell); });
     for (; turns_due_ >= 1 && !active_.empty(); --turns_due_) {
@@ -269,36 +287,6 @@ void HeatGrid::conduct(Brick& brick, double elapsed) noexcept {
         }
     }
     for (int n = 0; n < kCells; ++n) brick.excess[n] += gain[size_t(n)];
-}
-
-void HeatGrid::cool(Brick& brick, double elapsed) noexcept {
-    std::array<float, 7> wet, dry;  // what is left of a difference, by the number of open faces
-    for (int faces = 0; faces < 7; ++faces) {
-        wet[size_t(faces)] = float(pinned::exp(-faces * wet_rate_ * elapsed));
-        dry[size_t(faces)] = float(pinned::exp(-faces * dry_rate_ * elapsed));
-    }
-    const float wet_excess = float(config_.irrigation_temperature - config_.body_temperature);
-    const float left_by_blood = float(pinned::exp(-config_.perfusion * elapsed));
-    const Eigen::Vector3d first = (brick.index * kEdge).cast<double>() * config_.cell - bone_.spacing() / 2;
-    brick.turn = uint8_t((brick.turn + 1) % kTurnsPerLook);
-    float& hottest = hottestOf(brick) = brick.coldest = 0;
-    for (int n = 0; n < kCells; ++n) {
-        if (!brick.is_bone[n]) continue;
-        float& excess = brick.excess[n];
-        if (const uint8_t faces = brick.open_faces[n]; faces > 0) {
-            const Eigen::Array3d cell(n & (kEdge - 1), n >> kShift & (kEdge - 1), n >> (2 * kShift));
-            const Eigen::Vector3d p_V = first + ((cell + 0.5) * config_.cell).matrix();
-            const bool is_near = (p_V - wet_center_V_).squaredNorm() < wet_radius_ * wet_radius_;
-            if (is_near && n % kTurnsPerLook == brick.turn) brick.is_reached[n] = isReached(p_V);
-            if (is_near && brick.is_reached[n])
-                excess = wet_excess + (excess - wet_excess) * wet[faces];
-            else
-                excess *= dry[faces];
-        }
-        excess *= left_by_blood;
-        hottest = std::max(hottest, excess);
-        brick.coldest = std::min(brick.coldest, excess);
-    }
 }
 
 // Notes what the brick's bone has gone through since its last turn.

@@ -3,7 +3,8 @@
 //
 // The finite volumes are explicit: heat that goes through a face leaves one cube and comes to the other, so
 // that none is lost but at the bone's surface and to the blood. A cube is bone or it is not, by the voxel at
-// its middle. Bricks take turns, each with the time that has gone by since its last turn, a few in each step.
+// its middle; its faces to the air count by the surface's slope, for stairs have more area than it. Bricks
+// take turns, each with the time that has gone by since its last turn, a few in each step.
 //
 // The frame is V. Construction allocates; all else is RT-safe, for the tick thread only.
 #pragma once
@@ -19,11 +20,13 @@ namespace bonemill {
 
 class HeatGrid {
   public:
+    static constexpr int kPartsOfFace = 4;  // in which area is counted
+
     // Keeps a reference to the bone. dt is the time of a step, in s.
     HeatGrid(const HeatConfig& config, const VoxelVolume& bone, double dt);
 
-    // Puts heat (J) into the bone at its surface; inward_V is of unit length and points into the bone. What
-    // finds no bone there is gone.
+    // Puts heat (J) into the bone at its surface; inward_V is of unit length and points into the bone. Water
+    // there takes its share at once. What finds no bone is gone.
     void addHeat(const Eigen::Vector3d& p_V, const Eigen::Vector3d& inward_V, double heat) noexcept;
     // Voxels in this box may have become bone or air. What is cut away takes its heat with it.
     void noteChange(const IndexBox& voxels) noexcept;
@@ -31,7 +34,8 @@ class HeatGrid {
     // All bone is as warm as the body again, and none is dead. Time and irrigation go on.
     void forget() noexcept;
     // From now on the bone's surface is irrigated within `radius` (m) of here where no bone stands between it
-    // and the nozzle; 0 means nowhere. A place that comes into the jet is wet within kTurnsPerLook turns.
+    // and the nozzle; 0 means nowhere. A place that comes into the jet is wet within kTurnsPerLook turns,
+    // one that nothing has warmed within half a second, when all bricks around have been looked at.
     void irrigate(const Eigen::Vector3d& center_V, double radius, const Eigen::Vector3d& p_VN) noexcept;
     // Time goes on by dt. Bricks take their turns, or they wait for the next step.
     void step(bool has_time = true) noexcept;
@@ -49,6 +53,9 @@ class HeatGrid {
     static constexpr int kShift = DeadCells::kShift, kEdge = DeadCells::kEdge, kCells = DeadCells::kCells;
     static constexpr uint32_t kNone = ~uint32_t(0);
     static constexpr int kOutside = -1;
+    static constexpr int kAround = kEdge + 2;  // cubes that a look at a brick sees along an axis
+    static constexpr Eigen::Index kX = 1, kY = kAround, kZ = kAround * kAround;
+    static constexpr double kSpareForSources = 0.25;  // of the pool, that heat on its way does not take
     static constexpr int kTurnsPerLook = 4;
 
     struct Brick {
@@ -59,7 +66,7 @@ class HeatGrid {
         float excess[kCells];      // temperature above the body's
         float hot_time[kCells];    // s above necrosis without a break
         uint8_t is_bone[kCells];
-        uint8_t open_faces[kCells];  // of bone, towards air
+        uint8_t open_area[kCells];   // of bone, towards air; kPartsOfFace make a cube's face
         uint8_t is_reached[kCells];  // by the jet, when it was looked at last
         uint8_t turn;                // which of kTurnsPerLook it is
     };
@@ -75,10 +82,20 @@ class HeatGrid {
     Eigen::Vector3i cellAt(const Eigen::Vector3d& p_V) const noexcept;
     int voxelAt(int cell, int axis) const noexcept;
     bool isBone(const Eigen::Vector3i& cell) const noexcept;
+    Eigen::Vector3d middleOf(const Eigen::Vector3i& cell) const noexcept {
+        return (cell.cast<double>().array() + 0.5).matrix() * config_.cell - bone_.spacing() / 2;
+    }
     bool isReached(const Eigen::Vector3d& p_V) const noexcept;
     Brick* find(const Eigen::Vector3i& brick) noexcept;
     Brick* findOrOpen(const Eigen::Vector3i& brick) noexcept;
     bool putInto(const Eigen::Vector3i& cell, double heat) noexcept;
+    bool spread(const Eigen::Vector3d& p_V, int axis, double heat) noexcept;
+    bool isBoneAt(const Eigen::Vector3i& cell) noexcept;
+    bool isWet(const Brick& brick, int cell, const Eigen::Vector3d& p_V) const noexcept {
+        return (p_V - wet_center_V_).squaredNorm() < wet_radius_ * wet_radius_ && brick.is_reached[cell];
+    }
+    void openWet() noexcept;
+    static uint8_t openArea(const bool* at) noexcept;
     void lookUpBone(Brick& brick) noexcept;
     void conduct(Brick& brick, double elapsed) noexcept;
     void openNeighbours(Brick& brick) noexcept;
@@ -99,6 +116,9 @@ class HeatGrid {
     double turn_;                 // s: of a turn while there are few bricks
     size_t most_turns_;           // in a step
     double wet_rate_, dry_rate_;  // 1/s, of a face
+    double wet_share_;            // of the heat that comes to a wet surface, which goes into the bone
+    int64_t wet_looks_ = 0;
+    double next_wet_look_ = 0;  // s
     double necrosis_excess_;
     double now_ = 0;
     double turns_due_ = 0;

@@ -14,7 +14,7 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMaxSources = 256;  // in a tick; of more contacts every nth takes the heat of n, in turn
+constexpr size_t kMaxSources = 64;  // in a tick; of more contacts every nth takes the heat of n, in turn
 
 class Thermal final : public HapticEffect {
   public:

@@ -40,6 +40,7 @@ TEST(Thermal, PowerIsFrictionTimesRubbingSpeed) {
 // What cannot cut heats by its own friction, and by the share of a burr's edges, of grains or of a drill.
 TEST(Thermal, RubbingHasItsOwnShareOfTheHeat) {
     HotBench cutting;
+    cutting.config.effects.thermal->heat.wet_transfer = 0;
     const TickRecord cut = cutting.press(kButtonRemove, 300).back();
     const double by_cutting = test::kThermal.heat_share * double(cut.effects.cutting_power);
     for (const BurrGrit grit : {BurrGrit::kFluted, BurrGrit::kDiamond, BurrGrit::kDrill}) {
@@ -51,6 +52,7 @@ TEST(Thermal, RubbingHasItsOwnShareOfTheHeat) {
         rubbing.config.tool.burr.grit = grit;
         rubbing.config.tool.burr.rubbing_friction = 0.4;
         ThermalConfig& thermal = *rubbing.config.effects.thermal;
+        thermal.heat.wet_transfer = 0;
         thermal.heat_share = 0;
         thermal.rubbing_heat_share = grit == BurrGrit::kFluted ? kShare : 0;
         thermal.diamond_rubbing_heat_share = grit == BurrGrit::kDiamond ? kShare : 0;
