@@ -13,6 +13,7 @@ namespace {
 constexpr double kStableShare = 1.0 / 6;  // of a difference, through each of a cube's six faces, explicit
 constexpr double kLongestShare = 0.9 * kStableShare;
 constexpr double kShortestTurn = 0.02;  // s: quicker turns would show nobody more
+constexpr double kColdTurn = 0.1;       // s
 constexpr double kTurnsPerSecond = 4000;
 constexpr double kPoolShare = 0.8;  // of the bricks that could have their turn in time
 constexpr size_t kMostBricks = 1024, kMostDeadBricks = 16384;
@@ -41,6 +42,7 @@ HeatGrid::HeatGrid(const HeatConfig& config, const VoxelVolume& bone, double dt)
       per_time_(config.conductivity / (config.heat_capacity * config.cell * config.cell)),
       longest_(kLongestShare / per_time_),
       turn_(std::min(kShortestTurn, longest_ / 2)),
+      cold_turn_(std::min(kColdTurn, longest_ / 2)),
       most_turns_(size_t(std::max(1.0, std::round(kTurnsPerSecond * dt)))),
       necrosis_excess_(config.necrosis_temperature - config.body_temperature),
       dead_(bricks_, kMostDeadBricks) {
@@ -231,6 +233,11 @@ void HeatGrid::step(bool has_time) noexcept {
         if (brick.is_stale) {
             if (lookups_ == 0) return;
             lookUpBone(brick);
+        }
+        // Nothing is hot in it: the little that changes can wait.
+        if (hottestOf(brick) < kWarm && now_ - brick.last_time < cold_turn_) {
+            ++next_;
+            continue;
         }
         const double elapsed = std::min(now_ - brick.last_time, longest_);
         brick.last_time = now_;

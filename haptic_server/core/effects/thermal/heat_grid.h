@@ -114,6 +114,7 @@ class HeatGrid {
     double per_time_;             // share of a temperature difference that crosses a face per time, 1/s
     double longest_;              // s: of a stable turn
     double turn_;                 // s: of a turn while there are few bricks
+    double cold_turn_;            // s: of a turn where nothing is hot
     size_t most_turns_;           // in a step
     double wet_rate_, dry_rate_;  // 1/s, of a face
     double wet_share_;            // of the heat that comes to a wet surface, which goes into the bone
