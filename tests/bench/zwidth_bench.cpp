@@ -200,6 +200,12 @@ std::vector<ZwidthRow> measureAll(const char* only_variant, double only_rate) {
 }  // namespace bonemill::test
 
 int main(int argc, char** argv) {
+    if (argc % 2 == 0) {
+        std::puts(
+            "zwidth_bench [--out DIR] [--variant NAME] [--rate HZ]: the Z-width by loop rate, see "
+            "docs/research/stability.md");
+        return 2;
+    }
     const auto valueOf = [&](const char* option) -> const char* {
         for (int i = 1; i + 1 < argc; ++i)
             if (std::strcmp(argv[i], option) == 0) return argv[i + 1];

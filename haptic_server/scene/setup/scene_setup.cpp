@@ -1,5 +1,6 @@
 #include "haptic_server/scene/setup/scene_setup.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/base/units.h"
@@ -73,7 +74,8 @@ void warnOfCoarseShell(Simulation& simulation, const SceneTool& tool) {
 // The coupling's pull is limited by what the burr carries.
 void warnOfThinTool(Simulation& simulation, const scene::Scene& scene, const SceneTool& tool) {
     const GradientConfig& config = simulation.tick.gradient;
-    const double radius = tool.built.model.field(simulation.accuracy).thinnestRadius();
+    double radius = tool.built.model.field(simulation.accuracy).thinnestRadius();
+    if (tool.burr.kind == BurrKind::kCone) radius = std::min(radius, tool.burr.tip_radius);
     if (simulation.accuracy.law != ContactLaw::kGradient || radius >= tool.burr.radius) return;
     const double wall = thinnestWall(scene, simulation.bone->volume.spacing().minCoeff());
     const double carried = wallForce(config.contact, radius, wall);
@@ -131,6 +133,24 @@ void warnOfCoarseVoxels(Simulation& simulation, const SceneTool& tool) {
         " mm radius: time_removal makes a groove half as deep as that larger by some " +
         textOf(std::round(100 * excess)) + " %; with voxels of at most " +
         textOf(std::floor(fine_voxel * 1e5) / 100) + " mm it is less than 10 %");
+}
+
+void warnOfNoBone(Simulation& simulation) {
+    if (simulation.tick.effects.add_material) return;
+    const BoneModel& bone = *simulation.bone;
+    for (uint32_t leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
+        if (bone.lattice.range(0, leaf).max >= bone.volume.iso()) return;
+    simulation.warnings.push_back(
+        "the volume has no bone: none of its values reaches volume.iso_value; "
+        "leave it out to have one proposed");
+}
+
+void warnOfColdRemoval(Simulation& simulation) {
+    const EffectConfigs& effects = simulation.tick.effects;
+    if (!effects.thermal || !effects.time_removal) return;
+    simulation.warnings.push_back(
+        "time_removal makes no heat of what it removes, so that thermal warms bone by "
+        "rubbing alone; use energy_removal where heat is judged");
 }
 
 // The tools lack what needs the volume.
@@ -283,6 +303,8 @@ Simulation makeSimulation(const LoadedScene& loaded) {
         std::make_unique<BoneModel>(std::move(scanned.volume), leaf_cells, shellConfigOf(scene));
     simulation.task = judgedTaskOf(loaded, simulation.bone->volume, simulation.tick.effects.properties);
     warnOfLargeLeaves(simulation);
+    warnOfNoBone(simulation);
+    warnOfColdRemoval(simulation);
     fitToolsToBone(simulation, scene);
     return simulation;
 }

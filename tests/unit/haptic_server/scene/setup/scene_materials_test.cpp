@@ -38,10 +38,10 @@ class SceneMaterials : public testing::Test {
     static bool isNerve(const Eigen::Vector3i& v) {
         return v.y() >= 8 && v.y() < 10 && v.z() >= 5 && v.z() < 7;
     }
-    LoadedScene sceneOf(const std::string& labels, const std::string& text) const {
+    LoadedScene sceneOf(const std::string& labels, const std::string& text, int iso = 500) const {
         std::ofstream(folder_ / "s.textproto")
-            << "volume { path: 'bone.nrrd' iso_value: 500 window_low: 0 window_high: 3000\n label_path: '"
-            << labels << "' }\n"
+            << "volume { path: 'bone.nrrd' iso_value: " << iso
+            << " window_low: 0 window_high: 3000\n label_path: '" << labels << "' }\n"
             << text;
         return loadScene(folder_ / "s.textproto");
     }
@@ -103,6 +103,32 @@ TEST_F(SceneMaterials, ThatNoVoxelHasAreSaidSo) {
     EXPECT_TRUE(std::ranges::any_of(simulation.warnings, [](const std::string& warning) {
         return warning.find("no voxel is of material 'vessel'") != std::string::npos;
     }));
+}
+
+// Each of these runs, and means something else than people think.
+TEST_F(SceneMaterials, WhatASceneDoesNotMeanIsSaid) {
+    const auto isSaid = [&](const std::string& text, int iso, const std::string& words) {
+        const Simulation simulation = makeSimulation(sceneOf("", text, iso));
+        return std::ranges::any_of(simulation.warnings, [&](const std::string& warning) {
+            return warning.find(words) != std::string::npos;
+        });
+    };
+    const std::string none = "the volume has no bone", cold = "time_removal makes no heat",
+                      thin = "the tool's thinnest part has a radius of 0.05 mm";
+    const std::string burr =
+        "tool { speed_rpm: 20000 burr_radius_mm: 1 shape { sphere { radius_mm: 1 } } }\n";
+    const auto cone = [](const std::string& tip) {
+        return "tool { burr_kind: CONE burr_radius_mm: 1 burr_tip_radius_mm: " + tip +
+               " burr_length_mm: 6 shape { cone { from_mm { y: -3 } to_mm { y: 3 } from_radius_mm: " + tip +
+               " to_radius_mm: 1 } } }";
+    };
+    EXPECT_TRUE(isSaid("", 2500, none));
+    EXPECT_FALSE(isSaid("", 500, none));
+    EXPECT_FALSE(isSaid("effects { add_material {} }", 2500, none));
+    EXPECT_TRUE(isSaid(burr + "effects { time_removal {} thermal {} }", 500, cold));
+    EXPECT_FALSE(isSaid(burr + "effects { energy_removal {} thermal {} }", 500, cold));
+    EXPECT_TRUE(isSaid(cone("0.05"), 500, thin));
+    EXPECT_FALSE(isSaid(cone("0.9"), 500, "thinnest part"));
 }
 
 TEST_F(SceneMaterials, LabelsOfAnotherGridAreResampledAndThatIsSaid) {
