@@ -30,10 +30,10 @@ class DeadCells {
     // This brick's bone, or all bone, may be gone: review() will look.
     void noteChange(const Eigen::Vector3i& brick) noexcept;
     void noteChangeEverywhere() noexcept { markStale(0, used_); }
-    // Cells of which isBone(cell in the grid) is false are not counted any more. It looks at no more than
+    // Cells of which is_bone(cell in the grid) is false are not counted any more. It looks at no more than
     // most_lookups bricks' bone and returns how many they were.
     template <class IsBone>
-    size_t review(size_t most_lookups, IsBone&& isBone) noexcept {
+    size_t review(size_t most_lookups, IsBone&& is_bone) noexcept {
         size_t lookups = 0;
         for (size_t n = 0; n < kMostSeen && stale_ > 0 && lookups < most_lookups; ++n) {
             next_ = next_ + 1 < used_ ? next_ + 1 : 0;
@@ -45,7 +45,7 @@ class DeadCells {
             for (int cell = 0; cell < kCells; ++cell) {
                 const Eigen::Vector3i place(cell & (kEdge - 1), cell >> kShift & (kEdge - 1),
                                             cell >> (2 * kShift));
-                if (!brick.is_dead[size_t(cell)] || isBone(brick.index * kEdge + place)) continue;
+                if (!brick.is_dead[size_t(cell)] || is_bone(brick.index * kEdge + place)) continue;
                 brick.is_dead[size_t(cell)] = false;
                 --count_;
             }
