@@ -153,6 +153,19 @@ void warnOfColdRemoval(Simulation& simulation) {
         "rubbing alone; use energy_removal where heat is judged");
 }
 
+// A tick has time for some bricks of cubes only (docs/teach/effects.md, thermal).
+constexpr double kFinestHeat = 0.35e-3;  // m
+
+void warnOfFineHeat(Simulation& simulation) {
+    const auto& thermal = simulation.tick.effects.thermal;
+    if (!thermal || thermal->heat.cell >= kFinestHeat) return;
+    simulation.warnings.push_back(
+        "effects.thermal.cell_mm of " + textOf(thermal->heat.cell / kMillimetre) +
+        " is too fine for a hot region wider than some 8 mm, which stays too hot then; "
+        "use " +
+        textOf(kFinestHeat / kMillimetre) + " or more");
+}
+
 // The tools lack what needs the volume.
 std::vector<SceneTool> buildTools(const LoadedScene& loaded) {
     const std::vector<std::string> names = toolNamesOf(loaded.scene);
@@ -305,6 +318,7 @@ Simulation makeSimulation(const LoadedScene& loaded) {
     warnOfLargeLeaves(simulation);
     warnOfNoBone(simulation);
     warnOfColdRemoval(simulation);
+    warnOfFineHeat(simulation);
     fitToolsToBone(simulation, scene);
     return simulation;
 }

@@ -127,6 +127,9 @@ TEST_F(SceneMaterials, WhatASceneDoesNotMeanIsSaid) {
     EXPECT_FALSE(isSaid("effects { add_material {} }", 2500, none));
     EXPECT_TRUE(isSaid(burr + "effects { time_removal {} thermal {} }", 500, cold));
     EXPECT_FALSE(isSaid(burr + "effects { energy_removal {} thermal {} }", 500, cold));
+    const std::string fine = "is too fine for a hot region";
+    EXPECT_TRUE(isSaid(burr + "effects { energy_removal {} thermal { cell_mm: 0.25 } }", 500, fine));
+    EXPECT_FALSE(isSaid(burr + "effects { energy_removal {} thermal { cell_mm: 0.35 } }", 500, fine));
     EXPECT_TRUE(isSaid(cone("0.05"), 500, thin));
     EXPECT_FALSE(isSaid(cone("0.9"), 500, "thinnest part"));
 }
