@@ -51,11 +51,10 @@ void HeatGrid::openWet() noexcept {
     if (now_ + dt_ / 2 < next_wet_look_) return;
     next_wet_look_ = now_ + kWetLookPeriod;
     ++wet_looks_;
-    const Eigen::Vector3i first = cellAt(wet_center_V_ - Eigen::Vector3d::Constant(wet_radius_)),
-                          last = cellAt(wet_center_V_ + Eigen::Vector3d::Constant(wet_radius_));
-    const auto brickOf = [](int cell) { return cell >> kShift; };
-    const IndexBox box = IndexBox{first.unaryExpr(brickOf), last.unaryExpr(brickOf)}.clamped(
-        Eigen::Vector3i::Zero(), bricks_.array() - 1);
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(wet_radius_);
+    const IndexBox box =
+        IndexBox{brickOfCell(cellAt(wet_center_V_ - reach)), brickOfCell(cellAt(wet_center_V_ + reach))}
+            .clamped(Eigen::Vector3i::Zero(), bricks_.array() - 1);
     if (box.isEmpty() || double(free_.size()) < kSpareForSources * double(pool_.size())) return;
     const Eigen::Vector3i size = box.max - box.min + Eigen::Vector3i::Ones();
     const int64_t n = wet_looks_ % box.count();

@@ -132,34 +132,33 @@ void HeatGrid::lookUpBone(Brick& brick) noexcept {
         });
 }
 
-// Whether this is bone in an open brick: it opens what is not yet.
-bool HeatGrid::isBoneAt(const Eigen::Vector3i& cell) noexcept {
-    if ((cell.array() < 0).any()) return false;
-    Brick* brick = findOrOpen(cell.unaryExpr([](int v) { return v >> kShift; }));
-    if (!brick) return false;
+// The brick of a cube of bone, which it opens where there is room; null: it is no bone, or there is none.
+HeatGrid::Brick* HeatGrid::boneAt(const Eigen::Vector3i& cell) noexcept {
+    if ((cell.array() < 0).any()) return nullptr;
+    Brick* brick = findOrOpen(brickOfCell(cell));
+    if (!brick) return nullptr;
     if (brick->is_stale && lookups_ > 0) lookUpBone(*brick);
-    return brick->is_bone[cellIndex(cell)];
+    return brick->is_bone[cellIndex(cell)] ? brick : nullptr;
 }
 
-bool HeatGrid::putInto(const Eigen::Vector3i& cell, double heat) noexcept {
-    if (!isBoneAt(cell)) return false;
-    Brick* brick = find(cell.unaryExpr([](int v) { return v >> kShift; }));
+void HeatGrid::putInto(Brick& brick, const Eigen::Vector3i& cell, double heat) noexcept {
     const int n = cellIndex(cell);
-    if (brick->open_area[n] > 0 && isWet(*brick, n, middleOf(cell))) heat *= wet_share_;
-    brick->excess[n] += float(heat / cell_capacity_);
-    float& hottest = hottestOf(*brick);
-    hottest = std::max(hottest, brick->excess[n]);
-    return true;
+    if (brick.open_area[n] > 0 && isWet(brick, n, middleOf(cell))) heat *= wet_share_;
+    brick.excess[n] += float(heat / cell_capacity_);
+    float& hottest = hottestOf(brick);
+    hottest = std::max(hottest, brick.excess[n]);
 }
 
 // Into the cube of bone that a place is in and those beside it across the axis, the more the nearer their
 // middles are: how the place lies among them does not count.
 bool HeatGrid::spread(const Eigen::Vector3d& p_V, int axis, double heat) noexcept {
     const Eigen::Vector3i cell = cellAt(p_V);
-    if (!isBoneAt(cell)) return false;
+    Brick* const brick = boneAt(cell);
+    if (!brick) return false;
     const Eigen::Array2i across((axis + 1) % 3, (axis + 2) % 3);
     const Eigen::Vector3d off = (p_V - middleOf(cell)) / config_.cell;
     std::array<Eigen::Vector3i, 4> cells;
+    std::array<Brick*, 4> bricks;
     std::array<double, 4> weights;
     double sum = 0;
     for (size_t n = 0; n < 4; ++n) {
@@ -171,11 +170,12 @@ bool HeatGrid::spread(const Eigen::Vector3d& p_V, int axis, double heat) noexcep
             if (is_next) cells[n][across[side]] += off[across[side]] < 0 ? -1 : 1;
             weights[n] *= is_next ? share : 1 - share;
         }
-        if (weights[n] < kLeastWeight || (n > 0 && !isBoneAt(cells[n]))) weights[n] = 0;
+        if (weights[n] >= kLeastWeight) bricks[n] = n > 0 ? boneAt(cells[n]) : brick;
+        if (weights[n] < kLeastWeight || !bricks[n]) weights[n] = 0;
         sum += weights[n];
     }
     for (size_t n = 0; n < 4; ++n)
-        if (weights[n] > 0) putInto(cells[n], heat * weights[n] / sum);
+        if (weights[n] > 0) putInto(*bricks[n], cells[n], heat * weights[n] / sum);
     return true;
 }
 
@@ -188,7 +188,7 @@ void HeatGrid::addHeat(const Eigen::Vector3d& p_V, const Eigen::Vector3d& inward
         if (spread(p_V + depth * config_.cell * inward_V, axis, heat)) return;
     const Eigen::Vector3i cell = cellAt(p_V);
     for (const Eigen::Vector3i& side : kSides)
-        if (putInto(cell + side, heat)) return;
+        if (Brick* const brick = boneAt(cell + side)) return putInto(*brick, cell + side, heat);
 }
 
 void HeatGrid::noteChange(const IndexBox& voxels) noexcept {
@@ -196,7 +196,7 @@ void HeatGrid::noteChange(const IndexBox& voxels) noexcept {
     const auto brickOf = [&](const Eigen::Vector3i& voxel, int grown) {
         const Eigen::Vector3i cell =
             cellAt(bone_.spacing().cwiseProduct(voxel.cast<double>())).array() + grown;
-        return Eigen::Vector3i(cell.unaryExpr([](int v) { return v >> kShift; }));
+        return brickOfCell(cell);
     };
     const IndexBox box{brickOf(voxels.min, -1), brickOf(voxels.max, +1)};
     if (box.count() > kMaxBricksToRevisit) return noteChangeEverywhere();
@@ -323,7 +323,7 @@ void HeatGrid::close(size_t place) noexcept {
 double HeatGrid::temperatureAt(const Eigen::Vector3d& p_V) const noexcept {
     const Eigen::Vector3i cell = cellAt(p_V);
     if ((cell.array() < 0).any()) return config_.body_temperature;
-    Brick* brick = const_cast<HeatGrid*>(this)->find(cell.unaryExpr([](int v) { return v >> kShift; }));
+    Brick* brick = const_cast<HeatGrid*>(this)->find(brickOfCell(cell));
     return config_.body_temperature + (brick ? double(brick->excess[cellIndex(cell)]) : 0.0);
 }
 

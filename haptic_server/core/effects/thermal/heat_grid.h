@@ -75,6 +75,9 @@ class HeatGrid {
     bool isInside(const Eigen::Vector3i& brick) const noexcept {
         return (brick.array() >= 0).all() && (brick.array() < bricks_.array()).all();
     }
+    static Eigen::Vector3i brickOfCell(const Eigen::Vector3i& cell) noexcept {
+        return cell.unaryExpr([](int v) { return v >> kShift; });
+    }
     static int cellIndex(const Eigen::Vector3i& cell) noexcept {
         constexpr int kMask = kEdge - 1;
         return (cell.x() & kMask) + kEdge * ((cell.y() & kMask) + kEdge * (cell.z() & kMask));
@@ -88,9 +91,9 @@ class HeatGrid {
     bool isReached(const Eigen::Vector3d& p_V) const noexcept;
     Brick* find(const Eigen::Vector3i& brick) noexcept;
     Brick* findOrOpen(const Eigen::Vector3i& brick) noexcept;
-    bool putInto(const Eigen::Vector3i& cell, double heat) noexcept;
+    Brick* boneAt(const Eigen::Vector3i& cell) noexcept;
+    void putInto(Brick& brick, const Eigen::Vector3i& cell, double heat) noexcept;
     bool spread(const Eigen::Vector3d& p_V, int axis, double heat) noexcept;
-    bool isBoneAt(const Eigen::Vector3i& cell) noexcept;
     bool isWet(const Brick& brick, int cell, const Eigen::Vector3d& p_V) const noexcept {
         return (p_V - wet_center_V_).squaredNorm() < wet_radius_ * wet_radius_ && brick.is_reached[cell];
     }
