@@ -157,6 +157,10 @@ uint64_t sceneHashOf(const scene::Scene& scene) {
     return hash;
 }
 
+const std::string& titleOf(const scene::Scene& scene) {
+    return scene.title().empty() ? scene.name() : scene.title();
+}
+
 fs::path resolvePath(const LoadedScene& loaded, const std::string& path_in_scene) {
     return (loaded.directory / path_in_scene).lexically_normal();
 }

@@ -26,6 +26,9 @@ LoadedScene loadScene(const std::filesystem::path& file);
 // and daemon of a session compare it. It is stable from release to release only as long as the schema is.
 uint64_t sceneHashOf(const scene::Scene& scene);
 
+// People read this in lists, over the picture and in reports: the scene's title, or without one its name.
+const std::string& titleOf(const scene::Scene& scene);
+
 // A path written in the scene points there: absolute paths stay, relative ones start at the
 // scene file's folder.
 std::filesystem::path resolvePath(const LoadedScene& loaded, const std::string& path_in_scene);

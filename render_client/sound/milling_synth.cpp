@@ -15,10 +15,10 @@ constexpr double kRubbing = 0.12;    // share of the cutting noise that force al
 constexpr double kFullForce = 10;    // N of that
 constexpr double kLoaded = 1.0;      // motor's level in contact; out of contact idle_level
 constexpr double kMotorLevel = 0.30, kCuttingLevel = 0.85;
-constexpr double kSlowestTurn = 8;                        // Hz below which the motor is not heard
-constexpr double kNoiseMiddle = 2600, kNoiseWidth = 0.9;  // Hz, and 1/Q of the band-pass
+constexpr double kSlowestTurn = 8;                           // Hz below which the motor is not heard
+constexpr double kNoiseWidth = 0.9, kThinNoiseWidth = 0.45;  // 1/Q of the band-pass
 constexpr double kToothDepth = 0.7;
-constexpr int kToneBlock = 32;  // samples between two looks at the tones' levels
+constexpr int kToneBlock = 32;  // samples between two looks at the tones' levels and the band
 
 // These are multiples of the rotation frequency and their strength: the rotor, its harmonics, and
 // the whine of the gear.
@@ -36,7 +36,7 @@ double weightOf(double time, int samples) {
 }
 
 const double kWeight = weightOf(MillingSynth::kSmoothing, 1), kToneWeight = weightOf(0.01, 1);
-const double kPitch = 2 * std::sin(M_PI * kNoiseMiddle / MillingSynth::kSampleRate);  // of the filter
+const double kBandWeight = weightOf(MillingSynth::kSmoothing, kToneBlock);
 
 }  // namespace
 
@@ -60,6 +60,8 @@ void MillingSynth::setLoad(const SoundLoad& load, bool is_heard) noexcept {
     const double rubbing = kRubbing * std::min(1.0, force / kFullForce);
     const double cutting = std::min(1.0, std::sqrt(power / full_power_));
     targets_.cutting = level * kCuttingLevel * turning * std::max(cutting, rubbing);
+    const double wall = std::isfinite(load.wall) ? load.wall : kThinWall;
+    targets_.thinness = std::clamp(1 - wall / kThinWall, 0.0, 1.0);
 }
 
 // A tone that would be too high is gone before it gets there.
@@ -68,6 +70,13 @@ void MillingSynth::updateTones() noexcept {
         const double pitch = frequency_ * kPartials[i].multiple;
         wanted_levels_[i] = kPartials[i].strength * std::clamp(2 * (1 - pitch / kHighest), 0.0, 1.0);
     }
+}
+
+void MillingSynth::updateBand() noexcept {
+    thinness_ += kBandWeight * (targets_.thinness - thinness_);
+    const double middle = kNoiseMiddle * std::pow(kThinNoiseMiddle / kNoiseMiddle, thinness_);
+    pitch_ = 2 * std::sin(M_PI * middle / kSampleRate);
+    width_ = kNoiseWidth + (kThinNoiseWidth - kNoiseWidth) * thinness_;
 }
 
 double MillingSynth::noise() noexcept {
@@ -92,8 +101,8 @@ float MillingSynth::nextSample() noexcept {
     tooth_phase_ += turn * flutes_;
     tooth_phase_ -= std::floor(tooth_phase_);
     // This is Chamberlin's state variable filter (Dodge, Jerse: Computer Music, 1997).
-    low_ += kPitch * band_;
-    band_ += kPitch * (noise() - low_ - kNoiseWidth * band_);
+    low_ += pitch_ * band_;
+    band_ += pitch_ * (noise() - low_ - width_ * band_);
     const double tooth = 1 - kToothDepth * 0.5 * (1 + std::cos(kTurn * tooth_phase_));
     const double sum = motor_ * tones + cutting_ * tooth * band_;
     return float(std::tanh(sum));
@@ -103,6 +112,7 @@ void MillingSynth::render(std::span<float> samples) noexcept {
     for (float& sample : samples) {
         if (to_update_ == 0) {
             updateTones();
+            updateBand();
             to_update_ = kToneBlock;
         }
         --to_update_;

@@ -2,8 +2,10 @@
 //
 // The motor has harmonics of the rotation frequency f = |Ω|/2π, up to kHighest, and two gear tones above
 // them; it gets louder with the speed. Cutting is band-passed noise, its strength modulated at the tooth
-// passing frequency flutes·f, and gets louder with the square root of the cutting power. All levels and the
-// frequency follow their targets with kSmoothing, and every tone keeps its phase, so nothing clicks.
+// passing frequency flutes·f, and gets louder with the square root of the cutting power. Where the bone
+// under the burr is thinner than kThinWall, the band rises and narrows: surgeons listen for that before they
+// break through. All levels and the frequencies follow their targets with kSmoothing, and every tone keeps
+// its phase, so nothing clicks.
 //
 // Units are rad/s, N, W; samples lie in -1 .. 1. It is for one thread, and RT-safe after construction
 // (no memory, no lock). The same settings and loads at the same samples give the same samples, in blocks
@@ -24,6 +26,7 @@ struct SoundLoad {
     double spin_speed = 0;     // rad/s, either way
     double burr_force = 0;     // N
     double cutting_power = 0;  // W
+    double wall = 1;           // m of bone left before a protected structure
 };
 
 class MillingSynth {
@@ -31,6 +34,8 @@ class MillingSynth {
     static constexpr int kSampleRate = 48000;    // Hz
     static constexpr double kSmoothing = 0.025;  // s
     static constexpr double kHighest = 16000;    // Hz of a tone
+    static constexpr double kThinWall = 2e-3;    // m, from which on a wall sounds higher
+    static constexpr double kNoiseMiddle = 2600, kThinNoiseMiddle = 4700;  // Hz: thick, and no wall left
 
     explicit MillingSynth(const scene::MillingSound& wish);
 
@@ -45,17 +50,19 @@ class MillingSynth {
     struct Targets {
         double frequency = 0;  // Hz
         double motor = 0, cutting = 0;
+        double thinness = 0;  // 0 .. 1
     };
     void updateTones() noexcept;
+    void updateBand() noexcept;
     float nextSample() noexcept;
     double noise() noexcept;
 
     double volume_, idle_level_, full_frequency_, full_power_, flutes_;
     Targets targets_;
-    double frequency_ = 0, motor_ = 0, cutting_ = 0;
+    double frequency_ = 0, motor_ = 0, cutting_ = 0, thinness_ = 0;
     std::array<double, kTones> phases_{}, levels_{}, wanted_levels_{};  // phases in turns
     double tooth_phase_ = 0;
-    double low_ = 0, band_ = 0;  // of the state variable filter
+    double low_ = 0, band_ = 0, pitch_ = 0, width_ = 0;  // of the state variable filter
     uint32_t random_ = 0x9e3779b9u;
     size_t to_update_ = 0;  // samples until the levels of the tones follow again
 };

@@ -1,6 +1,6 @@
 // Plays a scripted load of the spindle, heard and seen:
 //   sound_show DIR    writes milling_sound.wav and, by gnuplot, milling_sound.png into DIR
-// The load is a run-up, idle, light contact, heavy contact, a stall, and free again.
+// The load is a run-up, idle, light contact, heavy contact, a stall, free again, and a wall milled through.
 #include <cmath>
 #include <complex>
 #include <cstdio>
@@ -20,13 +20,14 @@ namespace {
 constexpr size_t kWindow = 4096, kHop = 1600;
 constexpr double kShownHz = 6000;
 
-// The script says by hand what a spindle does: (s, rpm, N, W), linear in between.
+// The script says by hand what a spindle does: (s, rpm, N, W, mm of wall), linear in between.
 constexpr struct {
-    double time, rpm, force, power;
-} kScript[] = {{0, 0, 0, 0},       {1.2, 30000, 0, 0}, {3, 30000, 0, 0}, {3.1, 28500, 1, 2},
-               {5.5, 28500, 1, 2}, {5.7, 22000, 6, 9}, {8, 22000, 6, 9}, {8.2, 9000, 12, 10},
-               {8.8, 0, 14, 0},    {9.8, 0, 14, 0},    {10, 0, 0, 0},    {11, 30000, 0, 0},
-               {12, 30000, 0, 0}};
+    double time, rpm, force, power, wall_mm;
+} kScript[] = {{0, 0, 0, 0, 9},       {1.2, 30000, 0, 0, 9},  {3, 30000, 0, 0, 9}, {3.1, 28500, 1, 2, 9},
+               {5.5, 28500, 1, 2, 9}, {5.7, 22000, 6, 9, 9},  {8, 22000, 6, 9, 9}, {8.2, 9000, 12, 10, 9},
+               {8.8, 0, 14, 0, 9},    {9.8, 0, 14, 0, 9},     {10, 0, 0, 0, 9},    {11, 30000, 0, 0, 9},
+               {12, 30000, 0, 0, 3},  {12.2, 28500, 1, 2, 3}, {16, 28500, 1, 2, 0}};
+constexpr double kLength = 16;  // s
 
 SoundLoad loadAt(double time) {
     size_t n = 0;
@@ -34,13 +35,14 @@ SoundLoad loadAt(double time) {
     const auto &a = kScript[n], &b = kScript[n + 1];
     const double part = (time - a.time) / (b.time - a.time);
     const auto between = [&](double low, double high) { return low + part * (high - low); };
-    return {between(a.rpm, b.rpm) * 2 * M_PI / 60, between(a.force, b.force), between(a.power, b.power)};
+    return {between(a.rpm, b.rpm) * 2 * M_PI / 60, between(a.force, b.force), between(a.power, b.power),
+            between(a.wall_mm, b.wall_mm) / 1000};
 }
 
 std::vector<float> play() {
     MillingSynth synth{scene::MillingSound()};
     constexpr size_t kBlock = MillingSynth::kSampleRate / 60;
-    std::vector<float> samples(12 * MillingSynth::kSampleRate);
+    std::vector<float> samples(size_t(kLength) * MillingSynth::kSampleRate);
     for (size_t at = 0; at < samples.size(); at += kBlock) {
         synth.setLoad(loadAt(double(at) / MillingSynth::kSampleRate));
         synth.render(std::span(samples).subspan(at, kBlock));
@@ -70,14 +72,14 @@ void plot(const std::filesystem::path& folder) {
     script << "set terminal pngcairo size 1100,520 font 'DejaVu Sans,11'\nset output "
               "'milling_sound.png'\nset xlabel 'time (s)'\nset ylabel 'frequency (Hz)'\nset cblabel 'dB of "
               "full scale'\n"
-              "set xrange [0:11.9]\nset yrange [0:6000]\nset cbrange [-90:-15]\n"
+              "set xrange [0:15.9]\nset yrange [0:6000]\nset cbrange [-90:-15]\n"
               "set palette defined (0 '#10141c', 0.35 '#1f4e79', 0.65 '#d9822b', 1 '#fff3c4')\n"
               "set label 1 'run-up' at 0.2,5700 tc rgb 'white' front\nset label 2 'idle' at 1.8,5700 tc rgb "
               "'white' front\n"
               "set label 3 'light contact' at 3.4,5700 tc rgb 'white' front\n"
               "set label 4 'heavy contact' at 5.9,5700 tc rgb 'white' front\n"
               "set label 5 'stall' at 8.9,5700 tc rgb 'white' front\nset label 6 'free again' at 10.3,5700 "
-              "tc rgb 'white' front\n"
+              "tc rgb 'white' front\nset label 7 'wall of 3 to 0 mm' at 12.6,5700 tc rgb 'white' front\n"
               "plot 'milling_sound.dat' using 1:2:3 with image notitle\n";
     script.close();
     runGnuplot(folder / "milling_sound.gp");

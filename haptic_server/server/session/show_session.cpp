@@ -89,6 +89,7 @@ DensityScale scaleOf(const DensityMapping& mapping) {
 topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulation) {
     topics::SceneInfo info;
     info.set_name(scene.name());
+    info.set_title(titleOf(scene));
     const Pose& X_WV = simulation.bone->volume.geometry().X_WV;
     const Eigen::Quaterniond& q = X_WV.rotation;
     assign(info.mutable_p_wv_m(), X_WV.position);

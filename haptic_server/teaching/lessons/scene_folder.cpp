@@ -67,9 +67,7 @@ void describe(const fs::path& file, ListedScene& listed) {
         listed.files.push_back(std::move(read));
     }
     const scene::Scene& scene = loaded.scene;
-    choice.set_title(!scene.title().empty()  ? scene.title()
-                     : !scene.name().empty() ? scene.name()
-                                             : choice.id());
+    if (!titleOf(scene).empty()) choice.set_title(titleOf(scene));
     choice.set_task(scene.task());
     choice.set_expected_s(kSecondsPerMinute * scene.expected_minutes());
     for (const std::string& tool : toolNamesOf(scene)) choice.add_tools(tool);

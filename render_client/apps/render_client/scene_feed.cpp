@@ -47,9 +47,11 @@ void SoundFeed::update(const std::optional<topics::SceneInfo>& info,
                        const std::optional<topics::ToolState>& tool, bool is_heard, double seconds) {
     if (info) follow(info->viewer_effects());
     SoundLoad load;
-    if (tool)
-        load = {tool->effects().spin_speed(), tool->effects().burr_force_n(),
-                tool->effects().cutting_power_w()};
+    if (tool) {
+        const auto& effects = tool->effects();
+        load = {effects.spin_speed(), effects.burr_force_n(), effects.cutting_power_w()};
+        if (effects.has_protected_distance_m()) load.wall = effects.protected_distance_m();
+    }
     if (player_) player_->setLoad(load, is_heard);
     if (wav_synth_) wav_synth_->setLoad(load, is_heard);
     if (wav_) writeWav(seconds);

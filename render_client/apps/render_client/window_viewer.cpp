@@ -153,7 +153,6 @@ class WindowViewer {
         scene_.setMouse(mouseOverScene(width, height));
         scene_.setFrameRate(frame_rate_.perSecond());
         scene_.setModes(modeTexts(scene_.settings(), controls_.isDrawing()));
-        scene_.setTitle(session.lesson ? sceneTitle(*session.lesson, session.lesson->scene_id()) : "");
         scene_.draw(width, height, scaleOfText(width, height));
         painter_.paint(panel_, width, height);
         if (wishes.save_picture) savePicture(width, height);

@@ -199,6 +199,12 @@ HudTone stateTone(const HudInput& input) {
     return HudTone::kPlain;
 }
 
+std::string shownTitle(const HudInput& input) {
+    if (input.info && !input.info->title().empty()) return input.info->title();
+    if (input.info && !input.info->name().empty()) return input.info->name();
+    return input.status ? input.status->scene() : "bonemill";
+}
+
 void removeFigures(Hud& hud) {
     hud.title.clear();
     hud.rows.clear();
@@ -236,10 +242,7 @@ std::optional<HudNotice> alertOf(const HudInput& input) {
 
 Hud makeHud(const HudInput& input) {
     Hud hud;
-    hud.title = !input.title.empty()                        ? input.title
-                : input.info && !input.info->name().empty() ? input.info->name()
-                : input.status                              ? input.status->scene()
-                                                            : "bonemill";
+    hud.title = shownTitle(input);
     hud.state = stateText(input);
     hud.state_tone = stateTone(input);
     if (input.sought) hud.lock = input.sought->lock;

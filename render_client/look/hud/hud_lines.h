@@ -42,7 +42,6 @@ struct HudInput {
     std::optional<topics::Status> status;
     std::optional<topics::ToolState> tool;
     Connection connection = Connection::kNoServer;
-    std::string title;                        // of the scene in a lesson; empty: what the server calls it
     std::vector<std::string> modes;           // Hud::modes
     std::optional<std::string> other_server;  // what a second server of the session calls its scene
     size_t node_count = 0;                    // nodes the viewer holds

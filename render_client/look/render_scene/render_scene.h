@@ -68,7 +68,6 @@ class RenderScene {
     void setNotice(std::optional<HudNotice> notice) { hud_input_.notice = std::move(notice); }
 
     // Takes what people call the scene in a lesson; empty where there is none.
-    void setTitle(std::string title) { hud_input_.title = std::move(title); }
     // Takes how the bone is looked at, where that is not the usual way, and how to leave it.
     void setModes(std::vector<std::string> modes) { hud_input_.modes = std::move(modes); }
 

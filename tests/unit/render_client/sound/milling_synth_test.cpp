@@ -96,6 +96,56 @@ TEST(MillingSynth, cuttingIsNoiseAtTheToothsPace) {
     EXPECT_GT(amplitudeAt(samples, 2400), 2 * amplitudeAt(samples, 2250));
 }
 
+// Returns the strength of a noise about a frequency (Hz), the mean of many short pieces.
+double strengthAbout(std::span<const float> samples, double frequency) {
+    constexpr size_t kPiece = 480;  // 100 Hz
+    double sum = 0;
+    for (size_t at = 0; at + kPiece <= samples.size(); at += kPiece) {
+        const double amplitude = test::amplitudeAt(samples.subspan(at, kPiece), frequency, kRate);
+        sum += amplitude * amplitude;
+    }
+    return sum;
+}
+
+double middleOfNoise(double wall) {
+    scene::MillingSound wish;
+    wish.set_idle_level(0);
+    MillingSynth synth(wish);
+    const SoundLoad load{speedOf(1000), 1, 1, wall};
+    play(synth, load, 0.5);
+    auto samples = play(synth, load, 6);
+    double best = 0, most = 0;
+    for (double f = 1500; f < 8000; f *= 1.06)
+        if (const double strength = strengthAbout(samples, f); strength > most) most = strength, best = f;
+    return best;
+}
+
+TEST(MillingSynth, aThinWallSoundsHigherBeforeTheBurrBreaksThrough) {
+    const double thick = MillingSynth::kNoiseMiddle, thin = MillingSynth::kThinNoiseMiddle;
+    EXPECT_NEAR(middleOfNoise(1) / thick, 1, 0.2);  // the motor's tones lie beside it
+    EXPECT_NEAR(middleOfNoise(MillingSynth::kThinWall / 2) / std::sqrt(thick * thin), 1, 0.15);
+    EXPECT_NEAR(middleOfNoise(0) / thin, 1, 0.1);
+}
+
+TEST(MillingSynth, theToothsPaceIsTurnsTimesFlutes) {
+    for (const double turns : {300.0, 700.0, 1100.0})
+        for (const uint32_t flutes : {2u, 5u}) {
+            scene::MillingSound wish;
+            wish.set_idle_level(0);
+            wish.set_flutes(flutes);
+            MillingSynth synth(wish);
+            const SoundLoad load{speedOf(turns), 0, 2};
+            play(synth, load, 0.5);
+            auto samples = play(synth, load, 2);
+            for (float& s : samples) s *= s;
+            const double pace = turns * flutes;
+            EXPECT_GT(amplitudeAt(samples, pace), 1.5 * amplitudeAt(samples, 0.93 * pace))
+                << turns << ' ' << flutes;
+            EXPECT_GT(amplitudeAt(samples, pace), 1.5 * amplitudeAt(samples, 1.07 * pace))
+                << turns << ' ' << flutes;
+        }
+}
+
 TEST(MillingSynth, neverClicks) {
     scene::MillingSound wish;
     wish.set_volume(1);
@@ -107,7 +157,7 @@ TEST(MillingSynth, neverClicks) {
     std::vector<float> all;
     // Speed, contact and hearing all jump every 10 ms.
     for (int n = 0; n < 150; ++n) {
-        const SoundLoad load{speedOf(n % 3 ? 500 : 40), n % 2 ? 10.0 : 0, n % 5 ? 10.0 : 0};
+        const SoundLoad load{speedOf(n % 3 ? 500 : 40), n % 2 ? 10.0 : 0, n % 5 ? 10.0 : 0, n % 4 ? 1.0 : 0};
         const auto block = play(synth, load, 0.01, n % 7 != 0);
         all.insert(all.end(), block.begin(), block.end());
     }
@@ -130,8 +180,9 @@ TEST(MillingSynth, staysBoundedWhateverItHears) {
     MillingSynth synth{scene::MillingSound()};
     const double nan = std::numeric_limits<double>::quiet_NaN(),
                  inf = std::numeric_limits<double>::infinity();
-    for (const SoundLoad& load : {SoundLoad{nan, nan, nan}, SoundLoad{inf, -inf, inf},
-                                  SoundLoad{1e300, 1e300, 1e300}, SoundLoad{-25000, -5, -5}})
+    for (const SoundLoad& load :
+         {SoundLoad{nan, nan, nan, inf}, SoundLoad{inf, -inf, inf}, SoundLoad{1e300, 1e300, 1e300},
+          SoundLoad{-25000, -5, -5, -1}, SoundLoad{3000, 5, 5, nan}})
         for (const float s : play(synth, load, 0.2)) ASSERT_LE(std::abs(s), 1);
     EXPECT_GT(rms(play(synth, {speedOf(300), 2, 2}, 1)), 0.01);
 }

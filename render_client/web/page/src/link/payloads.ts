@@ -60,6 +60,7 @@ export function sceneOf(payload: Uint8Array): SceneView {
     epoch: String(info.epoch),
     revision: info.revision,
     name: info.name,
+    title: info.title || info.name,
     X_WV: { p: vector(info.pWVM), q: quaternion(info.qWV) },
     boneLow: vector(info.boneMinM),
     boneHigh: vector(info.boneMaxM),

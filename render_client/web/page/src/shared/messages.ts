@@ -37,6 +37,7 @@ export interface SceneView {
   epoch: string;
   revision: number;
   name: string;
+  title: string;
   X_WV: Pose;
   boneLow: Vec3;  // V, m
   boneHigh: Vec3;

@@ -9,7 +9,9 @@ const kRubbing = 0.12;  // share of the cutting noise that force alone makes
 const kFullForce = 10;  // N of that
 const kMotorLevel = 0.3, kCuttingLevel = 0.85;
 const kSlowestTurn = 8;  // Hz below which the motor is not heard
-const kNoiseMiddle = 2600, kNoiseWidth = 0.9;  // Hz, and 1/Q of the band-pass
+const kThinWall = 2e-3;  // m, from which on a wall sounds higher
+const kNoiseMiddle = 2600, kThinNoiseMiddle = 4700;  // Hz of the band-pass: thick, and no wall left
+const kNoiseWidth = 0.9, kThinNoiseWidth = 0.45;  // 1/Q of the band-pass
 const kToothDepth = 0.7;
 const kToneBlock = 32;
 const kTurn = 2 * Math.PI;
@@ -20,6 +22,7 @@ export interface SoundLoad {
   spinSpeed: number;  // rad/s, either way
   burrForceN: number;
   cuttingPowerW: number;
+  wallM?: number;  // of bone left before a protected structure
 }
 
 const clamp = (value: number, low: number, high: number) => Math.min(Math.max(value, low), high);
@@ -29,8 +32,11 @@ export class MillingSynth {
   frequency = 0;  // of the rotation now, Hz
   private readonly weight: number;
   private readonly toneWeight: number;
-  private readonly pitch: number;
-  private target = { frequency: 0, motor: 0, cutting: 0 };
+  private readonly bandWeight: number;
+  private target = { frequency: 0, motor: 0, cutting: 0, thinness: 0 };
+  private thinness = 0;
+  private pitch = 0;
+  private width = 0;
   private motor = 0;
   private cutting = 0;
   private readonly phases = new Float64Array(kPartials.length);
@@ -43,10 +49,10 @@ export class MillingSynth {
   private toUpdate = 0;
 
   constructor(private readonly wish: SoundWish, private readonly sampleRate: number) {
-    const weightOf = (time: number) => 1 - Math.exp(-1 / (time * sampleRate));
-    this.weight = weightOf(kSmoothing);
-    this.toneWeight = weightOf(0.01);
-    this.pitch = 2 * Math.sin((Math.PI * kNoiseMiddle) / sampleRate);
+    const weightOf = (time: number, samples: number) => 1 - Math.exp(-samples / (time * sampleRate));
+    this.weight = weightOf(kSmoothing, 1);
+    this.toneWeight = weightOf(0.01, 1);
+    this.bandWeight = weightOf(kSmoothing, kToneBlock);
   }
 
   setLoad(load: SoundLoad, is_heard: boolean): void {
@@ -62,6 +68,7 @@ export class MillingSynth {
       frequency,
       motor: level * kMotorLevel * speed * (wish.idleLevel + (1 - wish.idleLevel) * contact),
       cutting: level * kCuttingLevel * turning * Math.max(cutting, rubbing),
+      thinness: clamp(1 - (Number.isFinite(load.wallM) ? load.wallM! : kThinWall) / kThinWall, 0, 1),
     };
   }
 
@@ -69,6 +76,7 @@ export class MillingSynth {
     for (let i = 0; i < samples.length; ++i) {
       if (this.toUpdate-- === 0) {
         this.updateTones();
+        this.updateBand();
         this.toUpdate = kToneBlock - 1;
       }
       samples[i] = this.next();
@@ -80,6 +88,13 @@ export class MillingSynth {
     kPartials.forEach(([multiple, strength], i) => {
       this.wanted[i] = strength * clamp(2 * (1 - (this.frequency * multiple) / kHighest), 0, 1);
     });
+  }
+
+  private updateBand(): void {
+    this.thinness += this.bandWeight * (this.target.thinness - this.thinness);
+    const middle = kNoiseMiddle * (kThinNoiseMiddle / kNoiseMiddle) ** this.thinness;
+    this.pitch = 2 * Math.sin((Math.PI * middle) / this.sampleRate);
+    this.width = kNoiseWidth + (kThinNoiseWidth - kNoiseWidth) * this.thinness;
   }
 
   private noise(): number {
@@ -105,7 +120,7 @@ export class MillingSynth {
     this.toothPhase = (this.toothPhase + turn * this.wish.flutes) % 1;
     // This is Chamberlin's state variable filter (Dodge, Jerse: Computer Music, 1997).
     this.low += this.pitch * this.band;
-    this.band += this.pitch * (this.noise() - this.low - kNoiseWidth * this.band);
+    this.band += this.pitch * (this.noise() - this.low - this.width * this.band);
     const tooth = 1 - kToothDepth * 0.5 * (1 + Math.cos(kTurn * this.toothPhase));
     return Math.tanh(this.motor * tones + this.cutting * tooth * this.band);
   }

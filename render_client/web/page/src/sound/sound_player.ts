@@ -36,6 +36,7 @@ export class SoundPlayer {
     const effects = session.tool?.effects;
     const load = {
       spinSpeed: effects?.spinSpeed ?? 0, burrForceN: effects?.burrForceN ?? 0, cuttingPowerW: effects?.cuttingPowerW ?? 0,
+      wallM: effects?.protectedDistanceM,
     };
     this.node.port.postMessage({ load, isHeard: session.isLive && !session.hasEnded });
   }

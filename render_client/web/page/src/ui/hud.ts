@@ -27,7 +27,7 @@ export class Hud {
   update(session: Session, settings: ViewSettings, rate: number, nodes: number, triangles: number): void {
     const now = Date.now(), { events, structure } = session.alert(now);
     setShown(byId('figures'), settings.showsFigures);
-    setText(byId('title'), session.scene?.name || session.status?.scene || 'bonemill');
+    setText(byId('title'), session.scene?.title || session.status?.scene || 'bonemill');
     const state = stateText(session), clock = session.status ? `, ${clockText(session.status.sessionS)}` : '';
     const is_counting = state.value === 'live' && session.status !== undefined;
     const waits = is_counting && session.status?.ticks === 0;

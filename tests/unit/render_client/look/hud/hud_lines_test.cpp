@@ -133,10 +133,10 @@ TEST(Hud, SaysHowItStandsWithTheServer) {
     EXPECT_EQ(makeHud(input).state_tone, HudTone::kAlarm);
 }
 
-TEST(Hud, TheScenesTitleInALessonGoesBeforeItsFilesName) {
+TEST(Hud, TheScenesTitleGoesBeforeItsName) {
     HudInput input = liveInput();
     const std::string name = makeHud(input).title;
-    input.title = "Straight bore, molar";
+    input.info->set_title("Straight bore, molar");
     EXPECT_EQ(makeHud(input).title, "Straight bore, molar");
     EXPECT_NE(name, "Straight bore, molar");
     input.modes = {"Cut Y on (Y: off)"};
