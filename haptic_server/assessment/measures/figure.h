@@ -69,6 +69,7 @@ struct SubScore {
 // There is one only where the teacher gave weights.
 struct Total {
     double score = 0;  // 0 to 1
+    double done = 1;   // share of the target that was reached, 0 to 1
     int weights_version = 0;
     std::string weights_hash;  // 16 hexadecimal digits of what the scene says of weights and limits
 };
@@ -115,9 +116,17 @@ struct Definition {
     int version;
     const char* label;
     const char* unit;
+    bool is_first = false;  // among the figures that people look at first
 };
 
 std::span<const Definition> techniqueDefinitions();
+
+// Of these figures those that people look at first, without what the assessment shows already as a gate or a
+// score; at most kMostFirst.
+inline constexpr size_t kMostFirst = 10;
+std::vector<const Figure*> firstFigures(const Assessment& assessment);
+// All the others, likewise.
+std::vector<const Figure*> otherFigures(const Assessment& assessment);
 
 // Adds the figure of this definition, whose value is in the definition's unit; `of` is the burr, structure or
 // range that it is about, if it is about one. A value that is not finite has nothing to say and is left out.

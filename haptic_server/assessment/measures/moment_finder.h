@@ -43,8 +43,9 @@ inline std::vector<Moment> worstOf(std::vector<Moment> moments, size_t count) {
 
 class MomentFinder {
   public:
-    static constexpr double kHardForce = 10;  // N: counts as the limit where the scene has none
-    static constexpr double kPause = 0.5;     // s: what goes on after less is the same moment
+    static constexpr double kHardForce = 10;    // N: counts as the limit where the scene has none
+    static constexpr double kLeastForce = 0.2;  // N: who presses less has not pressed
+    static constexpr double kPause = 0.5;       // s: what goes on after less is the same moment
 
     explicit MomentFinder(const TechniqueScene& scene)
         : scene_(scene),
@@ -87,9 +88,14 @@ class MomentFinder {
         Spell touch, damage;
         double damaged = 0;  // m³ in all
     };
+    // With what the burr lies on as the attempt begins the trainee has done nothing yet.
     void addForce(const TickStep& step) {
         if (force_.is_on && step.t() - force_.last_s > kPause) endForce();
-        if (step.isInContact()) extend(force_, step.t(), step.force());
+        if (!step.isInContact()) {
+            was_free_ = true;
+            return;
+        }
+        if (was_free_) extend(force_, step.t(), step.force());
     }
     void addHeat(const TickStep& step) {
         if (heat_.is_on && step.t() - heat_.last_s > kPause) endHeat();
@@ -117,6 +123,7 @@ class MomentFinder {
     }
     void endForce() {
         force_.is_on = false;
+        if (force_.worst < kLeastForce) return;
         moments_.add(
             {force_.worst_s, "force", rounded(force_.worst) + " N on the bone", force_.worst / force_limit_});
     }
@@ -153,6 +160,7 @@ class MomentFinder {
     TechniqueScene scene_;
     double force_limit_;
     Spell force_, heat_;
+    bool was_free_ = false;
     std::vector<Structure> structures_;
     double damaged_ = 0;  // m³ of all structures
     WorstMoments moments_;

@@ -7,6 +7,8 @@
 namespace bonemill {
 namespace {
 
+constexpr double kPercent = 100;
+
 std::string numberOf(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", value);
@@ -43,6 +45,31 @@ double scoreOf(const ScoreRule& rule, double value) {
     return std::clamp((value - rule.worst) / (rule.best - rule.worst), 0.0, 1.0);
 }
 
+// The share of what was to be removed: where gates ask for it, the mean over them of how near they are.
+double shareDone(const JudgedTask& task, const Figures& figures) {
+    double sum = 0;
+    int asked = 0;
+    for (const GateRule& rule : task.gates) {
+        if (rule.is_most || rule.limit <= 0 || rule.figure_id.find(".removed") == std::string::npos) continue;
+        const Figure* figure = findFigure(figures, rule.figure_id);
+        if (figure) sum += std::clamp(figure->value / rule.limit, 0.0, 1.0);
+        ++asked;
+    }
+    if (asked > 0) return sum / asked;
+    if (const Figure* target = findFigure(figures, "target.removed"))
+        return std::clamp(target->value / kPercent, 0.0, 1.0);
+    const Figure* removed = findFigure(figures, "product.removed_volume");
+    return removed && removed->value > 0 ? 1 : 0;
+}
+
+double totalOf(double mean, double done, const std::vector<GateResult>& gates) {
+    const auto passed = double(std::ranges::count(gates, true, &GateResult::is_passed));
+    const double quality = mean * done;
+    if (gates.empty()) return quality;
+    if (passed == double(gates.size())) return kPassMark + (1 - kPassMark) * quality;
+    return kPassMark * quality * passed / double(gates.size());
+}
+
 }  // namespace
 
 Assessment judge(const JudgedTask& task, Figures figures) {
@@ -63,8 +90,10 @@ Assessment judge(const JudgedTask& task, Figures figures) {
         sum += score.weight * score.score;
         assessment.sub_scores.push_back(std::move(score));
     }
+    const double done = shareDone(task, figures);
     if (weights > 0)
-        assessment.total = Total{.score = sum / weights,
+        assessment.total = Total{.score = totalOf(sum / weights, done, assessment.gates),
+                                 .done = done,
                                  .weights_version = task.weights_version,
                                  .weights_hash = task.weights_hash};
     assessment.figures = std::move(figures);

@@ -95,7 +95,13 @@ struct JudgedTask {
 
 // Turns figures into a judgement, by a task's gates and scales: gates first, then sub-scores, and a total
 // only where the teacher gave weights. A gate on a figure that was not measured is not passed. A sub-score on
-// one is left out; its weight then counts with a score of 0, so that what was not done gains nothing.
+// one is left out; its weight then counts with a score of 0.
+//
+// The total of an attempt that passes all gates lies between kPassMark and 1, that of another one below it: q
+// is the sub-scores' mean by weight times the share of the target that was reached, and 0 where nothing was
+// done; a failed attempt gets q times the share of gates that hold, of what is below kPassMark.
+inline constexpr double kPassMark = 0.5;
+inline constexpr int kTotalFormula = 2;  // counts the definitions of the total: it is in the weights' hash
 Assessment judge(const JudgedTask& task, Figures figures);
 
 }  // namespace bonemill

@@ -89,6 +89,7 @@ nlohmann::json assessmentJson(const Assessment& assessment) {
                                       {"weight", score.weight}});
     if (assessment.total)
         json["total"] = {{"score", assessment.total->score},
+                         {"done", assessment.total->done},
                          {"weights_version", assessment.total->weights_version},
                          {"weights_hash", assessment.total->weights_hash}};
     for (const Figure& figure : assessment.figures) json["figures"][figure.id] = figure.value;

@@ -211,7 +211,7 @@ class TaskReader {
         *task.mutable_gate() = message_.gate();
         *task.mutable_sub_score() = message_.sub_score();
         task.set_weights_version(message_.weights_version());
-        return sceneHashOf(rules);
+        return sceneHashOf(rules) + uint64_t(kTotalFormula);
     }
 
     const LoadedScene& loaded_;

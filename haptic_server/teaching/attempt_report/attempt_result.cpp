@@ -127,9 +127,9 @@ Assessment readAssessment(const ReadJson& json) {
     for (const ReadJson& sub : boundedList(json, "sub_scores"))
         assessment.sub_scores.push_back(readSubScore(sub));
     if (json.contains("total"))
-        assessment.total =
-            Total{numberOf(json.at("total"), "score"), json.at("total").at("weights_version").get<int>(),
-                  json.at("total").at("weights_hash").get<std::string>()};
+        assessment.total = Total{numberOf(json.at("total"), "score"), json.at("total").value("done", 1.0),
+                                 json.at("total").at("weights_version").get<int>(),
+                                 json.at("total").at("weights_hash").get<std::string>()};
     for (const ReadJson& table : boundedList(json, "series")) assessment.series.push_back(readTable(table));
     for (const ReadJson& moment : boundedList(json, "moments"))
         assessment.moments.push_back(readMoment(moment));
@@ -187,6 +187,7 @@ std::string resultJson(const AttemptResult& result) {
     if (!assessment.gates.empty()) json["passed"] = assessment.hasPassed();
     if (const std::optional<Total>& total = assessment.total)
         json["total"] = {{"score", total->score},
+                         {"done", total->done},
                          {"weights_version", total->weights_version},
                          {"weights_hash", total->weights_hash}};
     json["figures"] = listOf(assessment.figures, figureJson);

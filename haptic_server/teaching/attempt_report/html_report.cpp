@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "haptic_server/assessment/measures/moment_finder.h"
 #include "haptic_server/teaching/attempt_report/charts.h"
@@ -41,8 +42,9 @@ svg .dot{fill:#fff;stroke:#14508c;stroke-width:1.2}svg .dot.last{fill:#14508c}
 .moments td{padding:.2mm 1.2mm}.moments .mark{color:#9b1c1c;font-weight:600;width:5mm}
 code{font:7pt ui-monospace,monospace;color:#59626c}
 .charts{display:flex;flex-wrap:wrap;gap:3mm}.charts figure{width:60mm}
-.all{columns:3;column-gap:4mm;break-inside:auto}.all h2{column-span:all}
-.figures{font-size:5.6pt;line-height:1.12}.figures td:first-child{width:100%}.figures tr{break-inside:avoid}.figures td{padding:.05mm .4mm;border-bottom:.1mm solid #e6e9ec}
+.all{columns:3;column-gap:4mm;break-inside:auto}.first{columns:2;column-gap:6mm}
+summary{cursor:pointer;font-weight:600;color:#59626c}
+.first .figures{font-size:8pt}.all .figures{font-size:5.6pt;line-height:1.12}.figures td:first-child{width:100%}.figures tr{break-inside:avoid}.figures td{padding:.05mm .4mm;border-bottom:.1mm solid #e6e9ec}
 .figures .id{color:#8a929b}.far{font-weight:700}
 footer{margin-top:1.5mm;font-size:6pt;color:#59626c}
 @media screen{body{padding:8mm}}
@@ -100,7 +102,8 @@ std::string totalOf(const Assessment& assessment) {
     if (!assessment.total) return "";
     const Total& total = *assessment.total;
     return element("p",
-                   "Total " + element("b", roundedText(100 * total.score) + " of 100") +
+                   "Total " + element("b", roundedText(100 * total.score) + " of 100") + "; " +
+                       roundedText(100 * total.done) + " % of the target was reached" +
                        " with the teacher's weights, version " + std::to_string(total.weights_version) +
                        " (" + escaped(total.weights_hash) + ")",
                    "class='total'");
@@ -213,23 +216,35 @@ std::string zOf(const std::optional<ExpertComparison>& comparison, const std::st
     return element("td", text, std::abs(found->z) > 2 ? "class='n far'" : "class='n'");
 }
 
-std::string figuresOf(const AttemptResult& result, const ReportExtras& extras) {
+std::string figureTable(std::span<const Figure* const> figures, const ReportExtras& extras) {
     std::string rows;
-    size_t shown = 0;
-    for (const Figure& figure : result.assessment.figures) {
-        if (++shown > kMaxShownFigures) break;
-        rows += element("tr", element("td", escaped(figure.label)) +
-                                  element("td", escaped(valueText(figure.value, figure.unit)), "class='n'") +
-                                  zOf(extras.comparison, figure.id) +
-                                  element("td", "@" + std::to_string(figure.version),
-                                          "class='id' title='" + escaped(figure.id) + "@" +
-                                              std::to_string(figure.version) + "'"));
-    }
+    for (const Figure* figure : figures.first(std::min(figures.size(), kMaxShownFigures)))
+        rows +=
+            element("tr", element("td", escaped(figure->label)) +
+                              element("td", escaped(valueText(figure->value, figure->unit)), "class='n'") +
+                              zOf(extras.comparison, figure->id) +
+                              element("td", "@" + std::to_string(figure->version),
+                                      "class='id' title='" + escaped(figure->id) + "@" +
+                                          std::to_string(figure->version) + "'"));
+    return element("table", rows, "class='figures'");
+}
+
+// What matters first, and the rest folded; gates and scores have theirs already.
+std::string figuresOf(const AttemptResult& result, const ReportExtras& extras) {
+    const std::vector<const Figure*> first = firstFigures(result.assessment),
+                                     others = otherFigures(result.assessment);
     const std::string z = extras.comparison ? " · z: standard deviations from the experts' mean" : "";
-    return element("section",
-                   element("h2", "All figures, with their definitions' versions" + z) +
-                       element("table", rows, "class='figures'"),
-                   "class='all'");
+    std::string out;
+    if (!first.empty())
+        out += element("section", element("h2", "How it was done" + z) +
+                                      element("div", figureTable(first, extras), "class='first'"));
+    if (!others.empty())
+        out += element("section",
+                       element("details", element("summary",
+                                                  "All other figures, with their "
+                                                  "definitions' versions") +
+                                              element("div", figureTable(others, extras), "class='all'")));
+    return out;
 }
 
 std::string footOf(const AttemptResult& result) {

@@ -1,5 +1,8 @@
 #include "render_client/look/hud/device_lines.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "common/device_messages/device_messages.h"
 #include "render_client/look/hud/figure_text.h"
 
@@ -88,8 +91,16 @@ std::string stiffnessText(const topics::Device& device) {
 
 BurrWork burrWorkOf(const topics::ToolState& tool) {
     if (tool.waits_for_release()) return BurrWork::kIdle;
-    if (tool.buttons() & kButtonRemove) return BurrWork::kRemoving;
+    const bool is_at_bone = tool.contacts() > 0 || tool.effects().removed_mm3() > 0;
+    if (tool.buttons() & kButtonRemove) return is_at_bone ? BurrWork::kRemoving : BurrWork::kTurning;
     return tool.buttons() & kButtonAdd ? BurrWork::kAdding : BurrWork::kIdle;
+}
+
+double burrLoadOf(const topics::ToolState& tool) {
+    const auto& force = tool.force_n();
+    double pressed = force.size() == 3 ? std::hypot(force[0], force[1], force[2]) : 0;
+    if (tool.effects().has_burr_force_n()) pressed = tool.effects().burr_force_n();
+    return std::isfinite(pressed) ? std::clamp(pressed / kFullLoad, 0.0, 1.0) : 0;
 }
 
 std::vector<HudRow> deviceRows(const topics::Device& device, const topics::ToolState* tool) {

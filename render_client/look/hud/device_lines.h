@@ -10,11 +10,15 @@
 
 namespace bonemill {
 
-// Says what the burr does to the bone, from the tool's buttons and what keeps it from milling.
-enum class BurrWork { kIdle, kRemoving, kAdding };
+// Says what the burr does to the bone, from the tool's buttons, what keeps it from milling, and whether there
+// is bone: in the air it only turns.
+enum class BurrWork { kIdle, kTurning, kRemoving, kAdding };
 
 // It removes while both buttons are down.
 BurrWork burrWorkOf(const topics::ToolState& tool);
+// How hard it works, 0 to 1: all where it presses with kFullLoad.
+inline constexpr double kFullLoad = 2;  // N
+double burrLoadOf(const topics::ToolState& tool);
 
 // In all of them `tool`, which is newer than `device`, has the last word on the state; it may be null.
 

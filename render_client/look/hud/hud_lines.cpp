@@ -106,6 +106,8 @@ HudRow burrRow(const topics::ToolState& tool, bool is_paused, uint32_t events) {
     switch (burrWorkOf(tool)) {
         case BurrWork::kRemoving:
             return {"Burr", "removing", HudTone::kWarning};
+        case BurrWork::kTurning:
+            return {"Burr", "turning"};
         case BurrWork::kAdding:
             return {"Burr", "adding", HudTone::kWarning};
         case BurrWork::kIdle:

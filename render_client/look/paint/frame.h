@@ -82,6 +82,7 @@ struct FrameView {
     std::optional<BurrGap> gap;            // nothing: not shown
     bool shows_handpiece = true;
     BurrWork burr_work = BurrWork::kIdle;
+    double burr_load = 0;  // 0 to 1
     CutPlanes cuts_W;
     std::optional<double> bone_opacity;  // empty: opaque
     std::vector<StructureLook> structures;

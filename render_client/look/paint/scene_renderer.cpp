@@ -223,7 +223,8 @@ PixelBox SceneRenderer::movingPixels(const Frame& frame, const FrameView& view, 
 std::vector<float> SceneRenderer::stillLike(const Frame& frame, const FrameView& view, const ToolMesh& tool) {
     const bool has_effects = view.effects && (view.effects->turn || !view.effects->particles.empty());
     if (has_effects) return {};
-    std::vector<float> numbers{float(view.burr_work), float(view.burr_radius), float(tool.revision()),
+    std::vector<float> numbers{float(view.burr_work),         float(view.burr_load),
+                               float(view.burr_radius),       float(tool.revision()),
                                float(view.pointers_W.size()), float(view.pull.has_value())};
     const auto append = [&numbers](const auto& matrix) {
         const auto f = matrix.template cast<float>().eval();

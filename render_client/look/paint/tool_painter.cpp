@@ -29,13 +29,16 @@ Placed place(const Frame& frame, const Particle& particle, int height) {
     return {from, from + X * particle.streak_V, std::max(particle.radius, least)};
 }
 
-// The burr has a light of its own while it works: orange where it removes, blue where it adds.
-Eigen::Vector3f glowOf(BurrWork work) {
+// The burr has a light of its own while it works: orange where it removes, the brighter the harder it
+// presses, blue where it adds.
+Eigen::Vector3f glowOf(BurrWork work, double load) {
+    constexpr float kFaintest = 0.35f;
     switch (work) {
         case BurrWork::kRemoving:
-            return {1.9f, 0.30f, 0.02f};
+            return (kFaintest + (1 - kFaintest) * float(load)) * Eigen::Vector3f(1.9f, 0.30f, 0.02f);
         case BurrWork::kAdding:
             return {0.05f, 0.75f, 1.1f};
+        case BurrWork::kTurning:
         case BurrWork::kIdle:
             break;
     }
@@ -137,7 +140,7 @@ void ToolPainter::drawTool(const Frame& frame, const FrameView& view, const Tool
     frame.setLight(gl_, program, shadow_texture);
     program.set("camera_from_model", *frame.X_CT);
     program.set("burr_radius", float(view.burr_radius));
-    program.set("milling_glow", glowOf(view.burr_work));
+    program.set("milling_glow", glowOf(view.burr_work, view.burr_load));
     if (spins) {
         program.set("spin_angle", view.effects->turn->angle);
         program.set("spin_sweep", view.effects->turn->sweep);

@@ -244,6 +244,7 @@ void RenderScene::showTool(FrameView& view) const {
     view.X_WT_device = readPose(tool.p_wt_device_m(), tool.q_wt_device());
     view.X_WT_expert = readPose(tool.p_wt_expert_m(), tool.q_wt_expert());
     view.burr_work = burrWorkOf(tool);
+    view.burr_load = burrLoadOf(tool);
     view.shows_handpiece = settings_.show_handpiece && settings_.quality == Quality::kFull;
     const auto force_W = readVector(tool.force_n());
     if (settings_.show_force) view.f_T_W = force_W;

@@ -5,7 +5,7 @@ import { Pace } from './pace';
 import type { Session } from './session';
 import type { Place, ToolHold } from './tool_hold';
 import { Labels, type Label } from './ui/labels';
-import { workOf } from './ui/words';
+import { loadOf, workOf } from './ui/words';
 import { endoscopeCamera, Orbit, type Camera } from './view/camera';
 import { openCanvas } from './view/gl';
 import { nearStructures } from './view/near_structures';
@@ -185,6 +185,7 @@ export class Stage {
       forceN: settings.showsForce ? tool?.forceN : undefined,
       wish: this.hold.isHolding ? this.hold.wish.p : undefined,
       work: workOf(tool),
+      load: loadOf(tool),
       cuts: settings.cuts,
       opacity: settings.isTransparent ? settings.opacity : undefined,
       structures: this.structureLooks(),

@@ -81,6 +81,7 @@ export function sceneOf(payload: Uint8Array): SceneView {
 function effectsOf(state: wire.EffectState): EffectView {
   return {
     events: state.events,
+    removedMm3: state.removedMm3,
     spinSpeed: state.spinSpeed,
     burrForceN: state.burrForceN,
     cuttingPowerW: state.cuttingPowerW,
@@ -100,6 +101,7 @@ export function toolOf(payload: Uint8Array): ToolView {
     epoch: String(state.epoch),
     tick: String(state.tick),
     X_WT: { p: vector(state.pWTM), q: quaternion(state.qWT) },
+    contacts: state.contacts,
     X_WT_device: { p: vector(state.pWTDeviceM), q: quaternion(state.qWTDevice) },
     X_WT_expert: state.pWTExpertM.length > 0 ? { p: vector(state.pWTExpertM), q: quaternion(state.qWTExpert) } : undefined,
     forceN: vector(state.forceN),

@@ -50,8 +50,12 @@ export interface SceneView {
   sound?: SoundWish;
 }
 
+// What the burr does to the bone.
+export type Work = 'idle' | 'turning' | 'removing' | 'adding';
+
 export interface EffectView {
   events: number;
+  removedMm3: number;  // since the tool state before
   spinSpeed?: number;
   burrForceN?: number;
   cuttingPowerW?: number;
@@ -68,6 +72,7 @@ export interface ToolView {
   epoch: string;
   tick: string;
   X_WT: Pose;
+  contacts: number;
   X_WT_device: Pose;
   X_WT_expert?: Pose;  // where an expert's tool was
   forceN: Vec3;

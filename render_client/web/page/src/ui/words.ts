@@ -1,6 +1,6 @@
 // What the session says in words: states, stops, faults, alerts; those of the native viewer (render_client/look/hud).
 import { figureText, readableText, shortened } from '../shared/format';
-import { Role, type DeviceView, type EffectView, type SceneView, type ToolView, type TrainingView } from '../shared/messages';
+import { Role, type DeviceView, type EffectView, type SceneView, type ToolView, type TrainingView, type Work } from '../shared/messages';
 import type { Session } from '../session';
 
 export type Tone = 'plain' | 'good' | 'warning' | 'alarm';
@@ -53,9 +53,17 @@ export function structureName(id: number, scene?: SceneView): string {
   return material ? material.name || `material ${id}` : 'protected';
 }
 
-export function workOf(tool?: ToolView): 'idle' | 'removing' | 'adding' {
+// In the air the burr only turns.
+export function workOf(tool?: ToolView): Work {
   if (!tool || tool.waitsForRelease) return 'idle';
-  return tool.buttons & 1 ? 'removing' : tool.buttons & 2 ? 'adding' : 'idle';
+  if (tool.buttons & 1) return tool.contacts > 0 || (tool.effects?.removedMm3 ?? 0) > 0 ? 'removing' : 'turning';
+  return tool.buttons & 2 ? 'adding' : 'idle';
+}
+
+// How hard the burr works, 0 to 1: all where it presses with 2 N.
+export function loadOf(tool?: ToolView): number {
+  const pressed = tool ? (tool.effects?.burrForceN ?? Math.hypot(...tool.forceN)) : 0;
+  return Number.isFinite(pressed) ? Math.min(Math.max(pressed / 2, 0), 1) : 0;
 }
 
 export function deviceStateText(device: DeviceView): string {
@@ -98,7 +106,7 @@ export function taskRows(session: Session, events: number): Row[] {
     if (events & Event.Stalled) rows.push({ label: 'Burr', value: 'stalled', tone: 'alarm' });
     else if (status?.isMillingPaused) rows.push({ label: 'Burr', value: 'paused', tone: 'warning' });
     else if (tool.waitsForRelease && tool.buttons !== 0) rows.push({ label: 'Burr', value: 'release the pedal', tone: 'warning' });
-    else rows.push({ label: 'Burr', value: work, tone: work === 'idle' ? 'plain' : 'warning' });
+    else rows.push({ label: 'Burr', value: work, tone: work === 'idle' || work === 'turning' ? 'plain' : 'warning' });
   }
   if (status) {
     const mm3 = status.removedMm3;

@@ -3,6 +3,7 @@ import {
   boxAround, centreOf, cornersOf, inverseRigid, matrixOf, norm, normalized, placed, product, radiusOf, sub,
   transformed, cross, dot, scale, type Box, type Mat4, type Pose, type Vec3,
 } from '../math/linear';
+import type { Work } from '../shared/messages';
 import { cameraFromWorld, clipFromCamera, depthRange, halfTangent, type Camera, type DepthRange } from './camera';
 
 export type StructureMode = 'behind' | 'exposed' | 'off';
@@ -41,7 +42,8 @@ export interface PictureView {
   toolReach: number;  // m, of the tool's points from its origin
   forceN?: Vec3;  // W
   wish?: Vec3;  // W: the mouse that holds the tool wants it there
-  work: 'idle' | 'removing' | 'adding';
+  work: Work;
+  load: number;  // of the burr, 0 to 1
   cuts: CutPlane[];  // across W's x, y, z
   opacity?: number;  // of transparent bone; none: opaque
   structures: StructureLook[];

@@ -2,14 +2,20 @@
 import ghost_fragment from '#shaders/ghost_fragment.glsl';
 import tool_fragment from '#shaders/tool_fragment.glsl';
 import tool_vertex from '#shaders/tool_vertex.glsl';
-import { matrixOf, norm, product, type Mat4, type Pose, type Vec3 } from '../math/linear';
+import { matrixOf, norm, product, scale, type Mat4, type Pose, type Vec3 } from '../math/linear';
 import type { ToolMesh } from '../shared/messages';
 import { cameraFromWorld } from './camera';
 import { Program, type Gl } from './gl';
 import type { Frame, PictureView } from './picture_view';
 
-// The burr has a light of its own while it works: orange where it removes, blue where it adds.
-const kGlow: Record<PictureView['work'], Vec3> = { idle: [0, 0, 0], removing: [1.9, 0.3, 0.02], adding: [0.05, 0.75, 1.1] };
+// The burr has a light of its own while it works: orange where it removes, the brighter the harder it presses, blue
+// where it adds.
+const kFaintest = 0.35;
+const kGlow: Record<PictureView['work'], Vec3> = { idle: [0, 0, 0], turning: [0, 0, 0], removing: [1.9, 0.3, 0.02], adding: [0.05, 0.75, 1.1] };
+
+function glowOf({ work, load }: PictureView): Vec3 {
+  return work === 'removing' ? scale(kGlow.removing, kFaintest + (1 - kFaintest) * load) : kGlow[work];
+}
 
 export class ToolPainter {
   reach = 0;  // m, of the farthest point from T's origin
@@ -64,7 +70,7 @@ export class ToolPainter {
       key_direction: frame.keyDirection,
       light_reach: frame.lightReach,
       burr_radius: view.burrRadius,
-      milling_glow: kGlow[view.work],
+      milling_glow: glowOf(view),
     });
     this.draw();
   }

@@ -184,6 +184,22 @@ TEST(Technique, TheHardestPressOfEachContactIsAMoment) {
     EXPECT_EQ(moments[1].text, "8 N on the bone");
 }
 
+TEST(Technique, WhatTheBurrLiesOnAtTheBeginningIsNoMoment) {
+    HandMadeSession session;
+    session.seconds = 6;
+    session.contact = [](double t) { return t < 1 || t > 3; };
+    session.force = [](double t) { return t < 1 ? 9 : t < 4 ? 0.1 : 2; };
+    Technique technique({});
+    session.measure(technique);
+    const std::vector<Moment> moments = technique.moments();
+    ASSERT_EQ(moments.size(), 1);
+    EXPECT_EQ(moments[0].text, "2 N on the bone");
+    session.force = [](double) { return 0.1; };
+    Technique gentle({});
+    session.measure(gentle);
+    EXPECT_TRUE(gentle.moments().empty());
+}
+
 // docs/measurements.md has what --gtest_output=xml tells of it.
 TEST(Technique, AnHourTakesNoMoreMemoryThanItsTables) {
     HandMadeSession session;

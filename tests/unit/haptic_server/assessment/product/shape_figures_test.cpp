@@ -235,10 +235,53 @@ TEST(Judge, gatesScalesAndTheTotal) {
     EXPECT_EQ(result.sub_scores[1].score, 0.75);
     EXPECT_EQ(result.sub_scores[2].score, 1);
     ASSERT_TRUE(result.total);
-    EXPECT_EQ(result.total->score, 0.75);
+    EXPECT_EQ(result.total->score, 0) << "nothing was removed";
     EXPECT_EQ(result.total->weights_version, 7);
+    task.gates.clear();
+    Figures with_work = figures;
+    with_work.push_back({"product.removed_volume", 1, "Removed", 12, "mm3"});
+    EXPECT_EQ(judge(task, with_work).total->score, 0.75);
     task.scores[0].weight = task.scores[1].weight = 0;
     EXPECT_FALSE(judge(task, figures).total);
+}
+
+// An attempt: how much of the target is gone (%), what of the nerve and of the wall (mm³), and the over-cut
+// (mm).
+struct Deed {
+    const char* name;
+    double removed, nerve, wall, overcut;
+};
+
+double totalOf(const Deed& deed) {
+    JudgedTask task;
+    task.gates = {{.figure_id = "target.removed", .label = "", .limit = 80, .is_most = false},
+                  {.figure_id = "structure.lost_volume:nerve", .label = "", .limit = 0, .is_most = true},
+                  {.figure_id = "container_sides.removed_volume", .label = "", .limit = 1, .is_most = true}};
+    task.scores = {{.figure_id = "target.removed", .label = "", .worst = 60, .best = 98, .weight = 2},
+                   {.figure_id = "overcut.p95", .label = "", .worst = 1, .best = 0.2, .weight = 2}};
+    return judge(task, {{"target.removed", 1, "Target", deed.removed, "percent"},
+                        {"structure.lost_volume:nerve", 1, "Nerve", deed.nerve, "mm3"},
+                        {"container_sides.removed_volume", 1, "Wall", deed.wall, "mm3"},
+                        {"overcut.p95", 1, "Over-cut", deed.overcut, "mm"}})
+        .total->score;
+}
+
+TEST(Judge, theTotalRanksAttemptsAsATeacherWould) {
+    constexpr Deed kDeeds[] = {{"idle", 0, 0, 0, 0},
+                               {"rough: all is gone, and the nerve and the wall with it", 100, 2, 5, 0.9},
+                               {"timid: half of it", 45, 0, 0, 0.1},
+                               {"good", 90, 0, 0.5, 0.4},
+                               {"expert", 98, 0, 0, 0.2}};
+    double before = -1;
+    for (const Deed& deed : kDeeds) {
+        EXPECT_GT(totalOf(deed), before) << deed.name;
+        before = totalOf(deed);
+    }
+    EXPECT_EQ(totalOf(kDeeds[0]), 0);
+    EXPECT_EQ(totalOf(kDeeds[4]), 1);
+    EXPECT_LT(totalOf(kDeeds[2]), kPassMark);
+    EXPECT_GE(totalOf({"just passed", 80, 0, 1, 1}), kPassMark);
+    EXPECT_LT(totalOf({"all but the nerve", 100, 0.01, 0, 0}), kPassMark);
 }
 
 }  // namespace

@@ -64,13 +64,18 @@ TEST(HtmlReport, ShowsGatesBeforeScoresAndScoresBeforeFigures) {
     const std::string html = htmlReport(test::typicalResult(), {});
     const size_t verdict = html.find("Not passed: 1 of 2 gates"), gates = html.find("<h2>Gates</h2>"),
                  scores = html.find("<h2>Scores</h2>"), total = html.find("47 of 100"),
-                 all = html.find("All figures");
+                 first = html.find("How it was done"), all = html.find("All other figures");
     EXPECT_LT(verdict, gates);
     EXPECT_LT(gates, scores);
     EXPECT_LT(scores, total);
-    EXPECT_LT(total, all);
+    EXPECT_LT(total, first);
+    EXPECT_LT(first, all);
     EXPECT_NE(all, std::string::npos);
-    EXPECT_NE(html.find("damage.volume:nerve@1"), std::string::npos);
+    EXPECT_NE(html.find("97 % of the target was reached"), std::string::npos);
+    EXPECT_LT(html.find("force.median@1"), all);
+    EXPECT_GT(html.find("time.pedal@1"), all);
+    for (const char* once : {"damage.volume:nerve@1", "force.max@1"})
+        EXPECT_EQ(html.find(once), std::string::npos) << "gates and scores show it already: " << once;
     EXPECT_NE(html.find("6.25 N"), std::string::npos);
     EXPECT_NE(html.find("10 → 2 N"), std::string::npos) << "the limits of a score";
 }
@@ -101,7 +106,7 @@ TEST(HtmlReport, NamesAreNoMarkup) {
     AttemptResult result = test::typicalResult("<script>alert(1)</script>");
     result.scene_title = "</title><img src='http://a.b/'>";
     result.assessment.moments[0].text = "<b>";
-    result.assessment.figures[0].label = "\"><i>";
+    result.assessment.figures[3].label = "\"><i>";
     const std::string html = htmlReport(result, {});
     EXPECT_EQ(wellFormed(withoutStyle(html)), "");
     for (const char* mark : {"<script", "<img", "<b>b", "<i>"})

@@ -24,13 +24,14 @@ inline AttemptResult typicalResult(const std::string& pseudonym = "P07", uint32_
     result.journal = "session.mcap";
     Assessment& assessment = result.assessment;
     assessment.figures = {figure("force.max", 6.25, "N"), figure("damage.volume:nerve", 0.8, "mm3"),
-                          figure("time.session", 61.5, "s")};
+                          figure("time.session", 61.5, "s"), figure("force.median", 2.1, "N"),
+                          figure("time.pedal", 31.5, "s")};
     assessment.gates = {{"damage:nerve", "The nerve is whole", "damage.volume:nerve", 0, true, false,
                          "0.8 mm³ of the nerve were cut; 0 are allowed"},
                         {"target", "Most of the target is gone", "target.removed", 90, false, true,
                          "97 % are gone; 90 are asked"}};
     assessment.sub_scores = {{"force", "Pressure", assessment.figures[0], 10, 2, 0.47, 1}};
-    assessment.total = Total{0.47, 2, "0123456789abcdef"};
+    assessment.total = Total{0.47, 0.97, 2, "0123456789abcdef"};
     SeriesTable seconds{"second", {"t", "Time", "s", {}}, {}};
     Series force{"force", "Force", "N", {}}, peak{"force_max", "Peak", "N", {}},
         removed{"removed", "Removed", "mm3", {}}, distance{"distance", "Distance", "mm", {}};

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "render_client/look/hud/device_lines.h"
 #include "tests/support/hud_rows.h"
 
 namespace bonemill {
@@ -61,6 +62,25 @@ TEST(Hud, ShowsWhatTheServerMeasuresWithUnits) {
     EXPECT_EQ(find(hud, "Removed")->value, "12.3 mm\u00b3");
     EXPECT_EQ(find(hud, "Accuracy")->value, "thesis_2012");
     EXPECT_EQ(find(hud, "Faults")->value, "none");
+}
+
+TEST(Hud, InTheAirTheBurrOnlyTurns) {
+    HudInput input = liveInput();
+    input.tool->set_contacts(0);
+    EXPECT_EQ(find(makeHud(input), "Burr")->value, "turning");
+    input.tool->mutable_effects()->set_removed_mm3(0.01);
+    EXPECT_EQ(find(makeHud(input), "Burr")->value, "removing") << "it removes faster than it is led";
+    input.tool->set_buttons(0);
+    EXPECT_EQ(find(makeHud(input), "Burr")->value, "idle");
+}
+
+TEST(Hud, TheBurrsLoadIsItsForceUpToTwoNewtons) {
+    topics::ToolState tool;
+    EXPECT_EQ(burrLoadOf(tool), 0);
+    for (const double part : {0.6, 0.0, 0.8}) tool.add_force_n(part);
+    EXPECT_DOUBLE_EQ(burrLoadOf(tool), 0.5);
+    tool.mutable_effects()->set_burr_force_n(7);
+    EXPECT_EQ(burrLoadOf(tool), 1);
 }
 
 TEST(Hud, MoreThanWasThereIsCalledAdded) {
