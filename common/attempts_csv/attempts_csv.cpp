@@ -11,6 +11,8 @@
 namespace bonemill {
 namespace {
 
+constexpr char kByteOrderMark[] = "\xEF\xBB\xBF";
+
 std::string utcText(int64_t stamp_ns) {
     const std::time_t seconds = std::time_t(stamp_ns / 1'000'000'000);
     std::tm utc{};
@@ -39,8 +41,13 @@ std::string sceneTitle(const topics::Lesson& lesson, const std::string& id) {
     return id;
 }
 
-size_t attemptColumns(const std::string& header) {
+std::string attemptsHeaderLine() {
+    return std::string(kByteOrderMark) + kAttemptsHeader + "\n";
+}
+
+size_t attemptColumns(const std::string& line) {
     const std::string all = kAttemptsHeader;
+    const std::string header = line.starts_with(kByteOrderMark) ? line.substr(3) : line;
     const bool is_whole = header == all;
     if (!is_whole && !all.starts_with(header + ",")) return 0;
     const auto columns = size_t(1 + std::ranges::count(header, ','));
@@ -107,7 +114,7 @@ bool isAttemptOf(const std::string& line, const std::string& trainee) {
 }
 
 std::string attemptsCsv(const topics::Lesson& lesson) {
-    std::string text = std::string(kAttemptsHeader) + "\n";
+    std::string text = attemptsHeaderLine();
     for (const topics::Attempt& attempt : lesson.attempts())
         text += attemptLine(attempt, sceneTitle(lesson, attempt.scene_id())) + "\n";
     return text;

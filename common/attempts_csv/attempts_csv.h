@@ -14,10 +14,14 @@ inline constexpr char kAttemptsHeader[] =
     "score_percent,results,chain";
 inline constexpr size_t kAttemptColumns = 19;
 
-// How many columns a header has if it is kAttemptsHeader, or the beginning of it that an earlier release
-// wrote (it had kFirstColumns at least); else 0.
+// The table's first line with its end, behind a byte order mark: without one a spreadsheet takes UTF-8 for
+// something else.
+std::string attemptsHeaderLine();
+
+// How many columns a header, with or without a byte order mark, has if it is kAttemptsHeader, or the
+// beginning of it that an earlier release wrote (it had kFirstColumns at least); else 0.
 inline constexpr size_t kFirstColumns = 14;
-size_t attemptColumns(const std::string& header);
+size_t attemptColumns(const std::string& line);
 
 // Makes one line without its end, as UTF-8: the first `columns` of kAttemptsHeader. `scene` is what people
 // call the scene, `chain` the recording's link that covers the attempt, where that is known. What the scene

@@ -1,6 +1,7 @@
 #include "haptic_server/teaching/attempt_report/charts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "haptic_server/teaching/attempt_report/report_words.h"
@@ -208,6 +209,26 @@ std::string attemptsSvg(std::span<const double> values, const std::string& unit,
                               "class='tick' text-anchor='middle'");
     }
     return svg(244, 90, "Attempts", content);
+}
+
+std::string distributionSvg(std::span<const double> values, const std::string& unit) {
+    constexpr size_t kBins = 10;
+    if (values.empty()) return "";
+    const double most = unit.empty() ? 100 : niceAbove(std::ranges::max(values));
+    std::array<double, kBins> counts{};
+    for (const double value : values)
+        ++counts[std::min(kBins - 1, size_t(std::max(0.0, value / most) * double(kBins)))];
+    const Panel panel{46, 4, 190, 70, most, 0, std::ranges::max(counts)};
+    std::string content = frameOf(panel, "", "");
+    for (size_t bin = 0; bin < kBins; ++bin) {
+        const double width = panel.width / double(kBins), height = panel.height * counts[bin] / panel.y_max;
+        content += "<rect class='bar' x='" + coordinate(panel.left + width * double(bin) + 1) + "' y='" +
+                   coordinate(panel.top + panel.height - height) + "' width='" + coordinate(width - 2) +
+                   "' height='" + coordinate(height) + "'/>";
+    }
+    for (const double at : {0.0, most / 2, most})
+        content += textAt(panel.x(at), 84, valueText(at, unit), "class='tick' text-anchor='middle'");
+    return svg(244, 90, "Distribution", content);
 }
 
 std::string envelopeSvg(const Assessment& assessment, const ExpertComparison& comparison,

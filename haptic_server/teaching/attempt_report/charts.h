@@ -23,6 +23,10 @@ std::string scoreBarSvg(double score);
 std::string attemptsSvg(std::span<const double> values, const std::string& unit,
                         const std::optional<LearningCurve>& curve);
 
+// How many of these values lie in each tenth of their range: of 0 to 100 where they have no unit, else of 0
+// to their largest.
+std::string distributionSvg(std::span<const double> values, const std::string& unit);
+
 // A column of the table "bucket" over the fifths of what was removed, and the band of the experts; empty if
 // either is not there.
 std::string envelopeSvg(const Assessment& assessment, const ExpertComparison& comparison,

@@ -54,19 +54,6 @@ constexpr size_t kWorst = 3;
 constexpr size_t kMaxShownFigures = 120;
 constexpr size_t kMaxPictureBytes = size_t(4) << 20;
 
-std::string element(const std::string& name, const std::string& content, const std::string& attributes = "") {
-    return '<' + name + (attributes.empty() ? "" : " " + attributes) + '>' + content + "</" + name + '>';
-}
-
-std::string headOf(const AttemptResult& result) {
-    return "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'>"
-           "<meta http-equiv='Content-Security-Policy' content=\"default-src 'none'; style-src "
-           "'unsafe-inline'; img-src data:\">"
-           "<meta name='viewport' content='width=device-width'>" +
-           element("title", escaped(result.scene_title + ", " + result.pseudonym)) +
-           element("style", kReportStyle) + "</head><body>";
-}
-
 std::string verdictOf(const Assessment& assessment) {
     if (assessment.gates.empty()) return element("p", "No gates in this task", "class='verdict none'");
     const auto failed = std::ranges::count(assessment.gates, false, &GateResult::is_passed);
@@ -257,9 +244,17 @@ std::string footOf(const AttemptResult& result) {
 
 }  // namespace
 
+std::string pageHead(const std::string& title) {
+    return "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'>"
+           "<meta http-equiv='Content-Security-Policy' content=\"default-src 'none'; style-src "
+           "'unsafe-inline'; img-src data:\">"
+           "<meta name='viewport' content='width=device-width'>" +
+           element("title", escaped(title)) + element("style", kReportStyle) + "</head><body>";
+}
+
 std::string htmlReport(const AttemptResult& result, const ReportExtras& extras) {
     const Assessment& assessment = result.assessment;
-    return headOf(result) + titleOf(result) +
+    return pageHead(result.scene_title + ", " + result.pseudonym) + titleOf(result) +
            element(
                "div",
                element("div", gatesOf(assessment) + subScoresOf(assessment)) + picturesOf(extras.pictures),

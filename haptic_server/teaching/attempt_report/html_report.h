@@ -24,6 +24,9 @@ struct ReportExtras {
     double begin_s = 0;  // where the attempt begins in the session: moments count from there
 };
 
+// How all pages of a class begin, up to the body's content. `title` is any text.
+std::string pageHead(const std::string& title);
+
 std::string htmlReport(const AttemptResult& result, const ReportExtras& extras);
 
 }  // namespace bonemill

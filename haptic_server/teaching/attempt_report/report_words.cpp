@@ -19,6 +19,10 @@ std::string withoutZeros(std::string text) {
 
 }  // namespace
 
+std::string element(const std::string& name, const std::string& content, const std::string& attributes) {
+    return '<' + name + (attributes.empty() ? "" : " " + attributes) + '>' + content + "</" + name + '>';
+}
+
 std::string escaped(std::string_view text) {
     std::string out;
     for (size_t at = 0; at < text.size();) {

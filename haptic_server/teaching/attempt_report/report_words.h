@@ -20,6 +20,8 @@ std::string clockText(double t_s);
 // For attributes of SVG: two decimals at most.
 std::string coordinate(double value);
 std::string base64(std::string_view bytes);
+// An element of HTML; content and attributes are HTML already.
+std::string element(const std::string& name, const std::string& content, const std::string& attributes = "");
 
 // What stands below the picture of over- and under-cut; `scale` in m: from there on colours are full.
 inline std::string deviationCaption(double scale) {

@@ -92,6 +92,19 @@ void forgetStatements(const fs::path& path, const std::string& pseudonym, Forgot
     }
 }
 
+// The page is made of the results, in which this person is no more.
+void forgetInClassPage(const fs::path& class_folder, Forgotten& forgotten) {
+    const ResultFolder folder(class_folder);
+    std::error_code error;
+    if (!fs::exists(folder.classPage(), error)) return;
+    try {
+        folder.writeClassPage();
+    } catch (const UserError& problem) {
+        forgotten.problems.push_back(folder.classPage().string() +
+                                     ": may still name the person: " + problem.what());
+    }
+}
+
 std::string utc(const AttemptResult& result, const char* format) {
     const std::time_t seconds = std::time_t(result.start_unix_ns / 1'000'000'000);
     std::tm parts{};
@@ -132,6 +145,7 @@ Forgotten forgetResults(const fs::path& class_folder, const std::string& pseudon
         deleteFile(file, forgotten);
     });
     forgetStatements(ResultFolder(class_folder).statements(), pseudonym, forgotten);
+    forgetInClassPage(class_folder, forgotten);
     return forgotten;
 }
 
@@ -161,6 +175,13 @@ void ResultFolder::write(const AttemptResult& result, std::vector<ReportPicture>
     extras.comparison = compareWith(read(experts(), result.scene_hash, ""), result);
     writePrivateFile(with(".html"), htmlReport(result, extras));
     LineFile(statements()).append(xapiStatement(result) + "\n");
+    writeClassPage();
+}
+
+void ResultFolder::writeClassPage() const {
+    requireNoLink(classPage());
+    writePrivateFile(classPage(),
+                     bonemill::classPage(read(results(), "", ""), results().filename().string()));
 }
 
 std::vector<AttemptResult> ResultFolder::read(const fs::path& folder, const std::string& scene_hash,
@@ -173,7 +194,8 @@ std::vector<AttemptResult> ResultFolder::read(const fs::path& folder, const std:
     for (const fs::path& file : files) {
         try {
             AttemptResult result = parseResult(readBounded(file, kMaxResult), file.string());
-            if (result.scene_hash == scene_hash && (pseudonym.empty() || result.pseudonym == pseudonym))
+            if ((scene_hash.empty() || result.scene_hash == scene_hash) &&
+                (pseudonym.empty() || result.pseudonym == pseudonym))
                 results.push_back(std::move(result));
         } catch (const UserError&) {
             continue;  // as the header says

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "haptic_server/teaching/attempt_report/attempt_result.h"
+#include "haptic_server/teaching/attempt_report/class_page.h"
 #include "haptic_server/teaching/attempt_report/html_report.h"
 
 namespace bonemill {
@@ -30,15 +31,19 @@ class ResultFolder {
     std::filesystem::path results() const { return class_folder_ / "results"; }
     std::filesystem::path experts() const { return class_folder_ / "experts"; }
     std::filesystem::path statements() const { return results() / "xapi.jsonl"; }
+    std::filesystem::path classPage() const { return class_folder_ / kClassPageName; }
 
-    // Writes STEM.json and STEM.html, each whole or not at all, and adds the statement. The report shows this
-    // person's attempts before, and experts', as they lie there. `begin_s` is the attempt's in the session.
-    // Throws UserError.
+    // Writes STEM.json and STEM.html, each whole or not at all, adds the statement, and writes the class'
+    // page anew. The report shows this person's attempts before, and experts', as they lie there. `begin_s`
+    // is the attempt's in the session. Throws UserError.
     void write(const AttemptResult& result, std::vector<ReportPicture> pictures, double begin_s) const;
+    // The class' page, of the results that lie there. Throws UserError.
+    void writeClassPage() const;
 
-    // The results of one scene (by its hash) and one person, or of everyone with an empty pseudonym, in the
-    // order of time. A person's are looked for by the files' names. What is no result is passed over: a
-    // person's edit must not cost the others theirs. At most kMaxRead files are read, the newest by name.
+    // The results of one scene (by its hash) or of all with an empty hash, and of one person, or of everyone
+    // with an empty pseudonym, in the order of time. A person's are looked for by the files' names. What is
+    // no result is passed over: a person's edit must not cost the others theirs. At most kMaxRead files are
+    // read, the newest by name.
     static constexpr size_t kMaxRead = 400;
     static std::vector<AttemptResult> read(const std::filesystem::path& folder, const std::string& scene_hash,
                                            const std::string& pseudonym);

@@ -95,7 +95,7 @@ std::string ClassTable::append(const topics::Attempt& attempt, const std::string
     try {
         const LineFile file(path_);
         const size_t columns = columnsOf(file, path_);
-        const std::string header = file.size() == 0 ? std::string(kAttemptsHeader) + "\n" : "";
+        const std::string header = file.size() == 0 ? attemptsHeaderLine() : "";
         file.append(header + attemptLine(attempt, scene, chain, columns) + "\n");
         return "";
     } catch (const std::exception& error) {

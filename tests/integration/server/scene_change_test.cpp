@@ -222,7 +222,7 @@ TEST_F(SceneChange, ReachesViewersAndTheHandAtOnceWithoutAStepOfForce) {
             << name;
     }
     const std::string table = test::readFile(folder_ / "class.csv");
-    EXPECT_EQ(table.find(std::string(kAttemptsHeader) + "\n1,"), 0u) << table;
+    EXPECT_EQ(table.find(attemptsHeaderLine() + "1,"), 0u) << table;
     EXPECT_NE(table.find(",\"'=Ann\",\"Task a\","), std::string::npos) << table;
 }
 

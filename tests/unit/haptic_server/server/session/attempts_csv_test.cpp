@@ -10,12 +10,13 @@ namespace {
 
 TEST(AttemptsCsv, HasALinePerAttemptBelowTheHeader) {
     const std::string text = attemptsCsv(test::makeLesson());
-    EXPECT_EQ(text, std::string(kAttemptsHeader) +
-                        "\n1,2026-11-23T19:00:00Z,\"Anna\",\"Cavity in a "
+    EXPECT_EQ(text, attemptsHeaderLine() +
+                        "1,2026-11-23T19:00:00Z,\"Anna\",\"Cavity in a "
                         "molar\",151,12.34,5.1,,,,0.2,48.5,\"\",\"none\",,\"\",,\"\",\n"
                         "2,2026-11-23T19:00:00Z,\"'=Ben\",\"Cavity in a "
                         "molar\",151,12.34,5.1,,,,0.2,48.5,\"pulp\",\"none\",,\"\",,\"\",\n");
-    EXPECT_EQ(attemptsCsv({}), std::string(kAttemptsHeader) + "\n");
+    EXPECT_EQ(attemptsCsv({}), attemptsHeaderLine());
+    EXPECT_TRUE(attemptsHeaderLine().starts_with("\xEF\xBB\xBF"));
 }
 
 TEST(AttemptsCsv, NoNameIsAFormulaOrBreaksItsLine) {

@@ -36,7 +36,7 @@ class ClassTableTest : public testing::Test {
     const test::TemporaryFolder folder_;
 };
 
-const std::string kHeader = std::string(kAttemptsHeader) + "\n";
+const std::string kHeader = attemptsHeaderLine();
 const std::string kAnn =
     "3,2023-11-14T22:13:20Z,\"Ann\",\"Straight bore, molar\",61.5,12.25,4,0,none,,,,\"pulp; nerve, "
     "left\",\"none\",,\"\",,\"\",\n";
