@@ -9,6 +9,8 @@ Usage: bonemill COMMAND [options]
   stop [N|all]     end a session
   watch [HOST]     a window on a session of this PC, or of HOST
   host [SCENE]     start a session that other PCs watch
+  invite NAME      let somebody join a session in a browser: prints a link and its QR code
+  replay [FILE]    show a recorded session again, the last one or FILE
   doctor           what this PC lacks, and what to type
 `bonemill COMMAND --help` says more.
 TEXT
@@ -19,6 +21,8 @@ session_options() {
   SCENE             name of a scene (bonemill list shows them), or a file (default: tooth_corridor)
   --device HAND     auto (default), simulated (the scripted hand of the scene), pointer, ...: see bonemill doctor
   --session N       number of the session (default: the first free one)
+  --class NAME      whose attempts these are: table, class page and reports of all its sessions lie in one folder
+                    (default: the date; bonemill list shows the folder)
   --no-viewer       without a window of its own
   --window-size WxH size of the window
   --seconds T       end after so many seconds
@@ -57,12 +61,31 @@ usage_of() {  # COMMAND
             echo "  --role R          viewer, operator or instructor"
             echo "  --name NAME       what the others read in their list of viewers"
             echo "  --window-size WxH size of the window" ;;
+        invite)
+            echo "Usage: bonemill invite NAME [options]"
+            echo "Prints a link, and its QR code, with which NAME joins a session of this PC in a browser; the session's port for"
+            echo "guests is open for as long as this command runs (docs/lab/gateway.md)."
+            echo "  --session N       number of the session (default: the one that runs)"
+            echo "  --role R          observer (default), operator, instructor or examiner"
+            echo "  --people N        so many may come with the link (default 1)"
+            echo "  --expires TIME    the link ends after so long: 30m, 8h (default), 3d"
+            echo "  --address HOST    how guests reach this PC (default: its address in the network)"
+            echo "  --port P          the port (default 8443)" ;;
+        replay)
+            echo "Usage: bonemill replay [FILE] [options] [-- WORDS FOR bonemill_lab replay]"
+            echo "  FILE              a recording (default: the last session's; bonemill list shows the last ones)"
+            echo "  --at S            begin at this second of the session"
+            echo "  --session N       number of the session (default: the first free one)"
+            echo "  --no-viewer       without a window of its own"
+            echo "  --window-size WxH size of the window"
+            network_options ;;
         stop)
             echo "Usage: bonemill stop [N|all]"
             echo "Ends session N, or all sessions; without a word the one that runs. It waits until they have ended." ;;
         list)
             echo "Usage: bonemill list"
-            echo "Sessions that run: number, scene, device, start, processes, logs. Then the scenes that can be started." ;;
+            echo "Sessions that run: number, scene, device, start, processes, logs, class folder. Then the scenes that can be"
+            echo "started, and the last recordings." ;;
         doctor)
             echo "Usage: bonemill doctor [--interface I]"
             echo "Says what this PC lacks, and what to type: programs, real time, network (of interface I), display, OpenGL,"

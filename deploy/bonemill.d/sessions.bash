@@ -26,7 +26,7 @@ running_sessions() {
 declare -A session=()
 read_session() {
     local key value
-    session=([scene]="" [device]="" [since]="" [logs]="" [script]="" [profile]="" [interface]="" [domain]="" [programs]="")
+    session=([scene]="" [device]="" [since]="" [logs]="" [class]="" [script]="" [profile]="" [interface]="" [domain]="" [programs]="")
     while IFS='=' read -r key value; do session[$key]=$value; done 2>/dev/null <"$state/$1.session" || true
 }
 
@@ -37,8 +37,9 @@ list_sessions() {
     echo "Sessions that run:"
     for number in "${numbers[@]}"; do
         read_session "$number"
-        printf '  %-3s %-16s device %s, since %s, processes: bonemill %s%s, logs in %s\n' "$number" "${session[scene]}" \
-            "${session[device]}" "${session[since]}" "${session[script]}" "${session[programs]}" "${session[logs]}"
+        printf '  %-3s %-16s device %s, since %s, processes: bonemill %s%s, logs in %s, class in %s\n' "$number" \
+            "${session[scene]}" "${session[device]}" "${session[since]}" "${session[script]}" "${session[programs]}" \
+            "${session[logs]}" "${session[class]:-no folder}"
     done
 }
 
@@ -95,4 +96,27 @@ await_end() {
         sleep 0.1
     done
     fail "session $1 does not end: bonemill list tells its process, kill -9 ends that at once, and its programs with it"
+}
+
+# Recordings of this user's sessions, the newest first, as haptic_server names them: SESSION_SCENE_TIME.mcap.
+recordings_folder() { printf '%s/bonemill/recordings\n' "$(home_folder XDG_STATE_HOME .local/state)"; }
+newest_recordings() {
+    local folder
+    folder=$(recordings_folder)
+    [[ ! -d $folder ]] || find "$folder" -maxdepth 1 -type f -name '*.mcap' -printf '%T@ %p\n' | sort -rn | cut -d ' ' -f 2-
+}
+
+list_recordings() {
+    local file
+    while read -r file; do
+        printf '  %-16s %6s MB  %s\n' "$(date -r "$file" '+%Y-%m-%d %H:%M')" "$(($(stat -c %s -- "$file") / 1000000))" "$file"
+    done < <(newest_recordings | head -n 10)
+}
+
+# find_recording [FILE]: a file, or the newest one.
+find_recording() {
+    recording=${1:-$(newest_recordings | head -n 1)}
+    [[ -n $recording ]] || fail "no session has been recorded in $(recordings_folder): name a file, as: bonemill replay session.mcap"
+    [[ -f $recording ]] || fail "there is no recording $recording (bonemill list shows the last ones)"
+    recording=$(realpath -- "$recording")
 }

@@ -6,16 +6,38 @@
 readonly restart_after_s=2 most_restarts=3
 declare -A title=([server]=haptic_server [device]=device_daemon [viewer]=render_client)
 declare -A pid=() started_s=() due_s=() restarts=([server]=0 [device]=0 [viewer]=0)
-end_code=""
+end_code="" recording=""
+roles=()
 
 run_session() {
     find_scene "${operand:-tooth_corridor}"
     open_state
     take_number "${option[session]:-}"
     make_log_folder
+    make_class_folder
     say "session $number of $scene_name; logs in $logs"
+    [[ -z $class_folder ]] || say "the class' table and reports: $class_folder"
     make_phantoms
     ask_real_time
+    roles=(server device)
+    go_on
+}
+
+# A recorded session is shown as a live one, with its own server and without a hand.
+run_replay() {
+    find_recording "$operand"
+    scene_name=replay class_folder="" title[server]=bonemill_lab
+    open_state
+    take_number "${option[session]:-}"
+    make_log_folder
+    say "session $number, a replay of $recording; logs in $logs"
+    roles=(server)
+    go_on
+}
+
+# Starts the programs of `roles` and a window, and stays until they end.
+go_on() {
+    local role
     choose_viewer
     # What the shell itself notes, as "Killed", goes to a log: the user hears of it in our words.
     exec {terminal}>&2 2>>"$logs/bonemill.log"
@@ -24,8 +46,7 @@ run_session() {
     trap 'end_code=0' INT TERM HUP
     trap : PIPE
     trap end_session EXIT
-    launch server
-    launch device
+    for role in "${roles[@]}"; do launch "$role"; done
     [[ $flags == *" --no-viewer "* ]] || launch viewer
     say_how_to_watch
     supervise
@@ -44,6 +65,14 @@ make_log_folder() {
     fail "no log folder can be made in $parent"
 }
 
+# Who says himself where results go needs no folder of ours.
+make_class_folder() {
+    class_folder=""
+    [[ " ${extra[*]} " != *" --export-dir"* && " ${extra[*]} " != *" --class-table"* ]] || return 0
+    class_folder=$(home_folder XDG_DATA_HOME .local/share)/bonemill/classes/${option[class]:-$(date +%F)}
+    (umask 077; mkdir -p -- "$class_folder") || fail "the class' folder $class_folder cannot be made"
+}
+
 ask_real_time() {
     "$share/check-realtime" >/dev/null 2>&1 ||
         say "this PC does not grant real time: going on without, good for a look (bonemill doctor says what to type)"
@@ -60,8 +89,10 @@ choose_viewer() {
 command_of() {
     case $1 in
         server)
+            if [[ -n $recording ]]; then replay_words; return; fi
             words=("$bin/haptic_server" --scene "$scene" --session "$number" --until-device-leaves --resume)
             mapfile -t -O "${#words[@]}" words < <(network_words)
+            [[ -z $class_folder ]] || words+=(--export-dir "$class_folder")
             [[ $flags != *" --instructor-only "* ]] || words+=(--instructor-only)
             words+=("${extra[@]}") ;;
         device)
@@ -73,8 +104,16 @@ command_of() {
         viewer)  # Whoever sits here has the hand, so the window may command, as it may on one PC.
             words=("$bin/render_client" --session "$number" --role operator)
             mapfile -t -O "${#words[@]}" words < <(network_words)
+            [[ -z $class_folder ]] || words+=(--class-folder "$class_folder")
             [[ -z ${option[window-size]:-} ]] || words+=(--size "${option[window-size]}") ;;
     esac
+}
+
+replay_words() {
+    words=("$bin/bonemill_lab" replay "$recording" --session "$number")
+    mapfile -t -O "${#words[@]}" words < <(network_words)
+    [[ -z ${option[at]:-} ]] || words+=(--at "${option[at]}")
+    words+=("${extra[@]}")
 }
 
 # launch ROLE. A process group of its own keeps the terminal's Ctrl-C from it, so that the order of the end is ours.
@@ -94,7 +133,7 @@ write_session() {
     local role programs=""
     for role in server device viewer; do [[ -z ${pid[$role]:-} ]] || programs+=", ${title[$role]} ${pid[$role]}"; done
     : "${since:=$(date +%H:%M:%S)}"
-    printf '%s\n' "scene=$scene_name" "device=${option[device]:-auto}" "since=$since" "logs=$logs" "script=$$" \
+    printf '%s\n' "scene=$scene_name" "device=${option[device]:-auto}" "since=$since" "logs=$logs" "class=$class_folder" "script=$$" \
         "profile=${option[profile]:-}" "interface=${option[interface]:-}" "domain=${option[domain]:-}" \
         "programs=$programs" >"$state/$number.new"
     mv -f -- "$state/$number.new" "$state/$number.session"
@@ -139,7 +178,7 @@ has_ended() {
     unset "pid[$role]"
     case $role:$code in
         viewer:0) end_because 0 "the window was closed" ;;
-        server:0) end_because 0 "the hand has finished, or somebody has ended haptic_server" ;;
+        server:0) end_because 0 "the hand has finished, or somebody has ended ${title[server]}" ;;
         device:0) end_because 0 "the hand has finished, or somebody has ended device_daemon" ;;
         *:2) end_with_error "$role" "$code" ;;
         *) restart "$role" "$code" ;;

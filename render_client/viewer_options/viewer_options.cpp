@@ -118,6 +118,11 @@ void addPictureOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
                  "The mouse holds the tool at once, for a device_daemon with --device pointer");
     app.add_option("--sound-wav", options.sound_wav, "Write the scene's milling sound into this WAV file too")
         ->type_name("FILE");
+    app.add_option(
+           "--class-folder", options.class_folder,
+           "Folder of this PC with the class' table and reports (--export-dir of its server): the window "
+           "opens them")
+        ->type_name("DIR");
 }
 
 void addCameraOptions(CLI::App& app, RawOptions& raw) {

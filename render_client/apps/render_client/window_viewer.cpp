@@ -11,6 +11,7 @@
 #include "common/base/user_error.h"
 #include "common/commands/command_text.h"
 #include "common/files/whole_file.h"
+#include "common/process/open_on_desktop.h"
 #include "render_client/apps/render_client/hand_feed.h"
 #include "render_client/apps/render_client/scene_feed.h"
 #include "render_client/hand/controls/announcing.h"
@@ -157,6 +158,7 @@ class WindowViewer {
         painter_.paint(panel_, width, height);
         if (wishes.save_picture) savePicture(width, height);
         if (wishes.save_attempts && session.lesson) saveAttempts(*session.lesson);
+        if (!wishes.open_file.empty()) showFile(wishes.open_file);
         window_.show();
         frame_rate_.countPicture(Clock::now());
     }
@@ -193,6 +195,7 @@ class WindowViewer {
         session.faults = scene_.faults();
         session.remarks = &subscriber.remarks();
         session.offered = offered_;
+        session.class_folder = options_.class_folder;
         session.time_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
         session.realtime_ns =
             std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -298,6 +301,13 @@ class WindowViewer {
         } catch (const UserError& error) {
             notices_.show({error.what(), HudTone::kWarning});
         }
+    }
+
+    void showFile(const std::string& file) {
+        if (!std::filesystem::exists(file))
+            notices_.show({file + " is not there yet", HudTone::kWarning});
+        else if (!openOnDesktop(file))
+            notices_.show({"This desktop opens no files by itself: look at " + file, HudTone::kWarning});
     }
 
     void saveAttempts(const topics::Lesson& lesson) {

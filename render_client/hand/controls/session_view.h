@@ -38,6 +38,7 @@ struct SessionView {
     std::vector<OfferedSession> offered = {};                     // to choose from; empty: nothing to choose
     const std::map<uint32_t, topics::Remark>* remarks = nullptr;  // by place
     std::vector<FaultEntry> faults = {};                          // of the session, the first one first
+    std::string class_folder = {};  // of this PC, with the class' table, page and reports; empty: not known
 };
 
 // Returns why this viewer may not do it, a sentence for the user; empty when it may.

@@ -126,6 +126,12 @@ void LessonCards::buildSummary(const topics::Attempt& attempt) {
     ImGui::PopTextWrapPos();
     if (button("Close")) draft_.closeSummary();
     ImGui::SameLine();
+    const std::string& results = attempt.verdict().results();
+    const bool is_name = !results.empty() && results.find('/') == std::string::npos;  // not a place elsewhere
+    if (!session_.class_folder.empty() && is_name) {
+        if (button("Report")) wishes_.open_file = session_.class_folder + "/results/" + results + ".html";
+        ImGui::SameLine();
+    }
     if (button("All attempts as CSV")) wishes_.save_attempts = true;
     ImGui::End();
 }

@@ -22,7 +22,7 @@ constexpr struct {
 } kColumns[] = {{"Trainee,\nexercise", "Who tried, and what"},
                 {"Time,\nremoved", "Time without pauses; bone that was removed"},
                 {"Force,\ndistance", "Highest force on the hand; least distance to a protected structure"},
-                {"Damage", "Volume of protected structures that was damaged"}};
+                {"Damage,\nscore", "Volume of protected structures that was damaged; score of 100"}};
 
 std::string detailsOf(const topics::SceneChoice& scene) {
     std::string text;
@@ -160,6 +160,15 @@ void PanelContent::buildAttempts(const topics::Lesson& lesson) {
     }
     if (button("Save as CSV", "Writes all figures of these attempts into a file here, for a spreadsheet"))
         wishes_.save_attempts = true;
+    if (session_.class_folder.empty()) return;
+    ImGui::SameLine();
+    if (button("Class page",
+               "How the class did: distribution, what was failed most, each trainee's attempts"))
+        wishes_.open_file = session_.class_folder + "/class.html";
+    ImGui::SameLine();
+    if (button("Folder", "Table, class page and one report for each attempt"))
+        wishes_.open_file = session_.class_folder;
+    sayWrapped(session_.class_folder, HudTone::kPlain);
 }
 
 void PanelContent::buildAttempt(const topics::Lesson& lesson, const topics::Attempt& attempt) {
@@ -188,7 +197,8 @@ void PanelContent::buildAttempt(const topics::Lesson& lesson, const topics::Atte
     cell(!training.has_damaged_mm3()  ? kNoNumber
          : training.damaged_mm3() > 0 ? readableText(training.damaged_mm3(), " mm\u00b3")
                                       : "none",
-         "");
+         attempt.verdict().has_score_percent() ? readableText(attempt.verdict().score_percent(), "")
+                                               : kNoNumber);
 }
 
 }  // namespace bonemill

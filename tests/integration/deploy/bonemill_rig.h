@@ -40,7 +40,7 @@ class BonemillRig {
     }
 
     void useStandIns() const {
-        for (const char* program : {"haptic_server", "device_daemon", "render_client"})
+        for (const char* program : {"bonemill_lab", "haptic_server", "device_daemon", "render_client"})
             putProgram(program, kStandIn);
     }
     void useRealPrograms() const {

@@ -1,0 +1,115 @@
+// Runs deploy/bonemill with stand-ins: where a class' results go, replays, and guests.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <regex>
+
+#include "tests/integration/deploy/bonemill_rig.h"
+
+namespace bonemill {
+namespace {
+
+using test::BonemillRig;
+using test::Finished;
+using test::Process;
+
+bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+class BonemillClass : public testing::Test {
+  protected:
+    BonemillClass() { rig_.useStandIns(); }
+
+    // What the stand-ins were told in a session that was started with these words.
+    std::string eventsOf(const std::vector<std::string>& words) {
+        Process session(rig_.words(words));
+        EXPECT_TRUE(rig_.awaitStarts("render_client", 1)) << session.errSoFar();
+        list_ = rig_.call({"list"}).out;
+        session.signal(SIGTERM);
+        out_ = session.wait().out;
+        return rig_.events();
+    }
+
+    BonemillRig rig_;
+    std::string list_, out_;
+};
+
+TEST_F(BonemillClass, EverySessionLeavesItsResultsInTheClassFolder) {
+    const std::string events = eventsOf({"start", rig_.scene(), "--class", "Group 3"});
+    const std::string folder = rig_.folder() / "data/bonemill/classes/Group 3";
+    EXPECT_TRUE(std::filesystem::is_directory(folder));
+    EXPECT_EQ(std::filesystem::status(folder).permissions(), std::filesystem::perms::owner_all);
+    EXPECT_TRUE(has(events, "--export-dir " + folder)) << events;
+    EXPECT_TRUE(has(events, "--class-folder " + folder)) << events;
+    EXPECT_TRUE(has(out_, folder)) << out_;
+    EXPECT_TRUE(has(list_, "class in " + folder)) << list_;
+}
+
+TEST_F(BonemillClass, WithoutANameItIsTheDay) {
+    const std::string events = eventsOf({"start", rig_.scene()});
+    EXPECT_TRUE(
+        std::regex_search(events, std::regex("--export-dir \\S*/classes/20[0-9]{2}-[01][0-9]-[0-3][0-9] ")))
+        << events;
+}
+
+TEST_F(BonemillClass, WhoSaysWhereHasNoFolderOfOurs) {
+    const std::string events = eventsOf({"start", rig_.scene(), "--", "--export-dir", rig_.folder().path()});
+    EXPECT_FALSE(has(events, "/classes/")) << events;
+    EXPECT_FALSE(has(events, "--class-folder")) << events;
+    EXPECT_TRUE(has(list_, "class in no folder")) << list_;
+}
+
+TEST_F(BonemillClass, ANameIsNoPath) {
+    for (const char* name : {"../x", "a/b", ".hidden", "a\nb"}) {
+        const Finished finished = rig_.call({"start", rig_.scene(), "--class", name});
+        EXPECT_EQ(finished.exit_code, 2) << name;
+        EXPECT_TRUE(has(finished.err, "give letters, digits")) << finished.err;
+    }
+}
+
+TEST_F(BonemillClass, ReplaysTheLastSessionWithoutAHand) {
+    const std::string recordings = rig_.folder() / "logs/bonemill/recordings";
+    EXPECT_TRUE(has(rig_.call({"replay"}).err, "no session has been recorded"));
+    std::filesystem::create_directories(recordings);
+    test::writeFile(recordings + "/1_old.mcap", "old");
+    test::writeFile(recordings + "/2_new.mcap", "new");
+    std::filesystem::last_write_time(recordings + "/1_old.mcap",
+                                     std::filesystem::file_time_type::clock::now() - std::chrono::hours(2));
+    const std::string events = eventsOf({"replay", "--at", "41.5", "--", "--speed", "2"});
+    EXPECT_TRUE(std::regex_search(events, std::regex("start bonemill_lab [0-9]+ replay " + recordings +
+                                                     "/2_new.mcap --session [0-9]+ --at 41.5 --speed 2\n")))
+        << events;
+    EXPECT_FALSE(has(events, "device_daemon")) << events;
+    EXPECT_FALSE(has(events, "haptic_server")) << events;
+    EXPECT_LT(list_.find("2_new.mcap"), list_.find("1_old.mcap")) << list_;
+    EXPECT_TRUE(has(rig_.call({"replay", "nothing.mcap"}).err, "there is no recording nothing.mcap"));
+    EXPECT_TRUE(has(rig_.call({"replay", "--at", "x"}).err, "--at x: give seconds"));
+}
+
+TEST_F(BonemillClass, InvitesAGuestToTheSessionThatRuns) {
+    EXPECT_TRUE(has(rig_.call({"invite", "Anna"}).err, "no session of yours runs"));
+    Process session(
+        rig_.words({"start", rig_.scene(), "--session", std::to_string(getpid()), "--no-viewer"}));
+    ASSERT_TRUE(rig_.awaitStarts("device_daemon", 1));
+    std::vector<std::string> words = rig_.words({"invite", "Anna", "--port", "8999", "--address", "lab-pc"});
+    words.insert(words.begin() + 1, "XDG_CONFIG_HOME=" + rig_.folder() / "config");
+    Process guests(words);
+    ASSERT_TRUE(rig_.awaitStarts("render_client", 1)) << guests.errSoFar();
+    EXPECT_TRUE(std::regex_search(guests.outSoFar(), std::regex("https://lab-pc:8999/#[0-9a-f]{32}\n")))
+        << guests.outSoFar();
+    EXPECT_TRUE(has(rig_.events(), " --serve 0.0.0.0:8999 --session " + std::to_string(getpid())))
+        << rig_.events();
+    EXPECT_TRUE(has(test::readFile(rig_.folder() / "config/bonemill/guests.textproto"),
+                    "name: \"Anna\" role: VIEWER"));
+    guests.signal(SIGTERM);
+    guests.wait();
+    const Finished again = run(words);
+    EXPECT_EQ(again.exit_code, 2);
+    EXPECT_TRUE(has(again.err, "is invited already")) << again.err;
+    session.signal(SIGTERM);
+    session.wait();
+}
+
+}  // namespace
+}  // namespace bonemill

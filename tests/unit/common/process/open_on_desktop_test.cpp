@@ -1,0 +1,45 @@
+#include "common/process/open_on_desktop.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+#include "tests/support/process.h"
+
+namespace bonemill {
+namespace {
+
+// The programs of this test are in this folder alone.
+class OpenOnDesktop : public testing::Test {
+  protected:
+    void SetUp() override { setenv("PATH", folder_.path().c_str(), 1); }
+    void TearDown() override { setenv("PATH", path_.c_str(), 1); }
+    void makeProgram(const std::string& script) {
+        const std::string program = folder_ / "xdg-open";
+        test::writeFile(program, "#!/bin/sh\n" + script);
+        ASSERT_EQ(chmod(program.c_str(), 0700), 0);
+    }
+    const test::TemporaryFolder folder_;
+    const std::string path_ = std::getenv("PATH");
+};
+
+TEST_F(OpenOnDesktop, HandsTheFileOverAndDoesNotWait) {
+    makeProgram("/bin/sleep 1; echo \"$1\" > " + (folder_ / "part").string() + "; /bin/mv " +
+                (folder_ / "part").string() + " " + (folder_ / "told").string() + "\n");
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_TRUE(openOnDesktop("a report; with 'signs'.html"));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(900));
+    for (int tries = 0; tries < 200 && !std::filesystem::exists(folder_ / "told"); ++tries)
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_EQ(test::readFile(folder_ / "told"), "a report; with 'signs'.html\n");
+}
+
+TEST_F(OpenOnDesktop, SaysWhereThereIsNoDesktop) {
+    EXPECT_FALSE(openOnDesktop("report.html"));
+}
+
+}  // namespace
+}  // namespace bonemill
