@@ -104,7 +104,7 @@ TEST_F(BonemillClass, InvitesAGuestToTheSessionThatRuns) {
                     "name: \"Anna\" role: VIEWER"));
     guests.signal(SIGTERM);
     guests.wait();
-    const Finished again = run(words);
+    const Finished again = test::run(words);
     EXPECT_EQ(again.exit_code, 2);
     EXPECT_TRUE(has(again.err, "is invited already")) << again.err;
     session.signal(SIGTERM);
