@@ -13,6 +13,7 @@
 
 #include "common/base/user_error.h"
 #include "common/config/scene_check.h"
+#include "common/config/scene_settings.h"
 #include "common/text/text_encoding.h"
 
 namespace bonemill {
@@ -137,8 +138,9 @@ std::vector<fs::path> detachedDataOf(const fs::path& volume) {
     return files;
 }
 
-LoadedScene loadScene(const fs::path& file) {
+LoadedScene loadScene(const fs::path& file, const std::vector<std::string>& settings) {
     ParsedScene parsed = parseSceneText(readSceneText(file), file.string());
+    for (const std::string& setting : settings) setField(parsed.scene, setting);
     checkScene(parsed, file.string());
     return {std::move(parsed.scene), fs::absolute(file).parent_path().lexically_normal(), file,
             std::move(parsed.lines)};

@@ -17,10 +17,10 @@ struct LoadedScene {
     FieldLines lines;                 // for messages: placeOf()
 };
 
-// Reads and checks a scene. Throws UserError with "file:line: ..." for a missing, unreadable or too
-// large file, bad syntax, an unknown field, a value outside its range and fields in conflict. It is
-// for start-up only.
-LoadedScene loadScene(const std::filesystem::path& file);
+// Reads and checks a scene, with `settings` in place of what the file says (setField()). Throws UserError
+// with "file:line: ..." for a missing, unreadable or too large file, bad syntax, an unknown field, a value
+// outside its range and fields in conflict. It is for start-up only.
+LoadedScene loadScene(const std::filesystem::path& file, const std::vector<std::string>& settings = {});
 
 // Tells scenes apart by all that their fields say, whatever the order and the comments of the text: server
 // and daemon of a session compare it. It is stable from release to release only as long as the schema is.

@@ -50,6 +50,14 @@ std::string knownFieldsHint(const Descriptor& type, const std::string& unknown_n
     return nearest.empty() ? "; known here: " + all : "; did you mean `" + nearest + "`?";
 }
 
+}  // namespace
+
+std::string unknownFieldText(const Descriptor& type, const std::string& name) {
+    return "unknown field `" + name + "` in " + type.name() + knownFieldsHint(type, name);
+}
+
+namespace {
+
 void collectChoices(const Descriptor& type, const std::string& field_name, std::set<std::string>& seen,
                     std::string& choices) {
     if (!seen.insert(type.full_name()).second) return;
@@ -93,7 +101,7 @@ class FirstError : public google::protobuf::io::ErrorCollector {
         const Descriptor* type =
             google::protobuf::DescriptorPool::generated_pool()->FindMessageTypeByName(match[1]);
         if (!type) return message;
-        return "unknown field `" + match[2].str() + "` in " + type->name() + knownFieldsHint(*type, match[2]);
+        return unknownFieldText(*type, match[2]);
     }
     std::optional<std::string> text_;
 };

@@ -21,6 +21,9 @@ struct ParsedScene {
 // fields (with the nearest known name). Ranges are not looked at. It is for start-up only.
 ParsedScene parseSceneText(const std::string& text, const std::string& name);
 
+// "unknown field `x` in Type", with the nearest name or all that are known.
+std::string unknownFieldText(const google::protobuf::Descriptor& type, const std::string& name);
+
 // It is "name:line: " with the line of the field or of the nearest enclosing one, and "name: " when the
 // text has neither.
 std::string placeOf(const std::string& name, const FieldLines& lines, std::string field_path);

@@ -104,6 +104,10 @@ void addSimulateOptions(CLI::App& app, SimulateOptions& simulate) {
     app.add_option("--trajectory", simulate.trajectory,
                    "device poses: t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons")
         ->required();
+    app.add_option("--set", simulate.settings,
+                   "set a field of the scene, may be given again: coupling.max_speed_mm_per_s=80")
+        ->type_name("PATH=VALUE")
+        ->allow_extra_args(false);
     app.add_option("--tool", simulate.tool, "name of the scene's tool, or its number; default: the first")
         ->type_name("NAME|NUMBER");
     app.add_option("--trace", simulate.trace, "write one CSV line per tick");
@@ -123,9 +127,14 @@ struct Options {
     bool list_scenes = false;
     ServerOptions server;
     SimulateOptions simulate;
+    std::string sweep;
 };
 
-int simulateInOrder(const SimulateOptions& options) {
+int simulateInOrder(const SimulateOptions& options, const std::string& sweep) {
+    if (!sweep.empty()) {
+        std::cout << simulateSweep(options, readSweep(sweep));
+        return 0;
+    }
     const SimulateResult result = simulate(options);
     std::cout << result.json << std::endl;
     for (const std::string& problem : result.problems) std::cerr << "error: " << problem << '\n';
@@ -163,11 +172,15 @@ int serve(int argc, char** argv) {
     CLI::App* const simulate_command =
         app.add_subcommand("simulate", "run a recorded trajectory as fast as possible, deterministic");
     addSimulateOptions(*simulate_command, options.simulate);
+    simulate_command
+        ->add_option("--sweep", options.sweep,
+                     "run once with each value of a field of the scene, and print a table")
+        ->type_name("PATH=VALUE,VALUE,...");
     addLabCommands(app, argv);
     if (!parseCommandLine(app, argc, argv, "haptic_server")) return 0;
     options.server.version = versionText();
     setUpLog("haptic_server", options.log_level);
-    return simulate_command->parsed() ? simulateInOrder(options.simulate) : serveLive(options);
+    return simulate_command->parsed() ? simulateInOrder(options.simulate, options.sweep) : serveLive(options);
 }
 
 }  // namespace

@@ -126,7 +126,7 @@ void requireApart(const SimulateOptions& options, const LoadedScene& loaded) {
 }  // namespace
 
 SimulateResult simulate(const SimulateOptions& options) {
-    const LoadedScene loaded = loadScene(options.scene);
+    const LoadedScene loaded = loadScene(options.scene, options.settings);
     requireApart(options, loaded);
     const std::vector<TrajectoryRow> rows = readTrajectory(options.trajectory);
     checkSpacing(rows, 1 / loaded.scene.loop().rate_hz(), options.trajectory);
