@@ -14,7 +14,9 @@ constexpr struct {
     const char* text;
     HudTone tone;
 } kWords[] = {
-    {"overrun", "The computer was too slow for a moment: a tick took longer than its period.",
+    {"overrun",
+     "This PC was too slow for a moment: the force may have been rough. Close other programs; bonemill doctor "
+     "says what else helps.",
      HudTone::kWarning},
     {"stale_device",
      "The hand was not heard of for a moment: the device sent nothing, and the force went to zero.",
@@ -25,10 +27,6 @@ constexpr struct {
     {"motion_clamped", "The tool moved no faster than its limit.", HudTone::kPlain},
     {"force_clamped", "The force was kept within the hand's limit.", HudTone::kPlain},
     {"shell_overflow", "Some milled surface is not felt: there is no room for its contact points.",
-     HudTone::kWarning},
-    {"contact_overflow",
-     "The computer was too slow for a moment: more contact points were near the tool than there was time "
-     "for.",
      HudTone::kWarning},
     {"milling_cut_short", "Milling came a moment late: there was more to mill than a tick has time for.",
      HudTone::kPlain},
@@ -48,7 +46,9 @@ constexpr struct {
      HudTone::kAlarm},
 };
 
-Condition wordsOf(const std::string& name) {
+// To a trainee it is the same whether a tick ran out of time or left contact points out in time.
+Condition wordsOf(const std::string& fault) {
+    const std::string name = fault == "contact_overflow" ? "overrun" : fault;
     const auto known = std::ranges::find_if(kWords, [&](const auto& words) { return words.name == name; });
     if (known != std::end(kWords)) return {name, known->text, known->tone, true, false};
     return {name, "The server reports: " + name + ".", HudTone::kWarning, true, false};
@@ -176,8 +176,10 @@ std::vector<Condition> faultWords(const std::string& names) {
     std::istringstream words(names);
     for (std::string name; words >> name;) {
         while (name.ends_with(',')) name.pop_back();
-        if (name.empty() || std::ranges::find(faults, name, &Condition::id) != faults.end()) continue;
-        faults.push_back(wordsOf(name));
+        if (name.empty()) continue;
+        Condition fault = wordsOf(name);
+        if (std::ranges::find(faults, fault.id, &Condition::id) == faults.end())
+            faults.push_back(std::move(fault));
     }
     return faults;
 }

@@ -3,7 +3,7 @@ import { clockText } from '../shared/format';
 import type { Session } from '../session';
 import type { ViewSettings } from '../view_settings';
 import { byId, make, setShown, setText } from './dom';
-import { alertText, conditions, detailRows, faults, stateText, taskRows, type Row, type Tone } from './words';
+import { alertText, conditions, detailRows, faults, stateText, taskRows, titleOf, type Row, type Tone } from './words';
 
 const kNoticeMs = 6000;
 const kTaskMs = 12_000;
@@ -90,7 +90,7 @@ export class Hud {
 
   private showNotices(session: Session, now: number): void {
     this.notices = this.notices.filter((one) => one.until > now);
-    const changing = session.lesson?.changingTo;
+    const changing = titleOf(session.lesson, session.lesson?.changingTo);
     const list: { text: string; tone: Tone }[] = [
       ...(changing ? [{ text: `Changing to ${changing} …`, tone: 'plain' as const }] : []),
       ...conditions(session), ...this.notices,

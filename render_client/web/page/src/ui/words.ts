@@ -1,6 +1,6 @@
 // What the session says in words: states, stops, faults, alerts; those of the native viewer (render_client/look/hud).
 import { figureText, readableText, shortened } from '../shared/format';
-import { Role, type DeviceView, type EffectView, type SceneView, type ToolView, type TrainingView, type Work } from '../shared/messages';
+import { Role, type DeviceView, type EffectView, type LessonView, type SceneView, type ToolView, type TrainingView, type Work } from '../shared/messages';
 import type { Session } from '../session';
 
 export type Tone = 'plain' | 'good' | 'warning' | 'alarm';
@@ -33,13 +33,14 @@ const kCauses: [string, string][] = [
 ];
 const kStopped = [0, 6, 7, 8];
 
+const kTooSlow = "The session's PC was too slow for a moment: the force may have been rough.";
 const kFaults: Record<string, [string, Tone]> = {
-  overrun: ['A tick took longer than its period: the PC is too slow for this scene, or too busy.', 'warning'],
+  overrun: [kTooSlow, 'warning'],
   stale_device: ['The device sent nothing for a while: the force went to zero.', 'alarm'],
   bad_device_pose: ['The device sent a pose that is none: the last good one was kept.', 'alarm'],
   solve: ['No balance of forces was found: the force faded.', 'alarm'],
   shell_overflow: ['Some milled surface is not felt: there is no room for its contact points.', 'warning'],
-  contact_overflow: ['More contact points were near the tool than there was time for.', 'warning'],
+  contact_overflow: [kTooSlow, 'warning'],
   volume_full: ['There is no memory for more milled bone: some was not milled.', 'alarm'],
   implausible_device: ['The device said what cannot be: it was refused.', 'alarm'],
 };
@@ -126,7 +127,7 @@ export function detailRows(session: Session, frame_rate: number, nodes: number, 
   if (tool) rows.push({ label: 'Tick no.', value: tool.tick });
   if (tool?.effects?.spinSpeed !== undefined)
     rows.push({ label: 'Spindle', value: figureText((tool.effects.spinSpeed * 30) / Math.PI, 0, ' rpm') });
-  rows.push({ label: 'Model', value: `${nodes} nodes, ${Math.round(triangles / 1000)}k triangles` });
+  rows.push({ label: 'Model', value: `${nodes} parts, ${Math.round(triangles / 1000)}k triangles` });
   rows.push({ label: 'Page', value: figureText(frame_rate, 0, ' pictures/s') });
   return rows;
 }
@@ -139,7 +140,7 @@ export function stateText(session: Session): Row {
   if (session.hasEnded) return { label: '', value: 'ended' };
   if (!session.hasServer) return { label: '', value: session.scene ? 'server lost' : 'waiting for a server', tone: session.scene ? 'alarm' : 'warning' };
   if (!session.hasBeenComplete)
-    return { label: '', value: `receiving ${session.nodes} of ${status?.nodeCount ?? '…'} nodes`, tone: 'warning' };
+    return { label: '', value: `receiving the bone, ${session.nodes} of ${status?.nodeCount ?? '…'} parts`, tone: 'warning' };
   return { label: '', value: 'live', tone: 'good' };
 }
 
@@ -172,6 +173,11 @@ export function conditions(session: Session): { text: string; tone: Tone }[] {
     list.push({ text: 'The bone was put back: release the pedal, then the burr cuts again.', tone: 'warning' });
   if (status?.deviceStale && status.ticks > 0) list.push({ text: 'The device sends nothing: there is no force.', tone: 'alarm' });
   return list;
+}
+
+// What people call the scene of this id.
+export function titleOf(lesson?: LessonView, id = ''): string {
+  return lesson?.scenes.find((scene) => scene.id === id)?.title || id;
 }
 
 export function faults(fault_text: string): { text: string; tone: Tone }[] {
