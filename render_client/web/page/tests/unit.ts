@@ -22,7 +22,7 @@ import { MillingSynth } from '../src/sound/milling_synth';
 import { thinned } from '../src/stroke_pen';
 import { ToolHold } from '../src/tool_hold';
 import { actionOf } from '../src/ui/key_table';
-import { conditions } from '../src/ui/words';
+import { conditions, loadOf, workOf } from '../src/ui/words';
 import { Orbit, frustumPlanes, isBoxSeen, pixelOf } from '../src/view/camera';
 import { makeFrame, type PictureView } from '../src/view/picture_view';
 import { nearStructures } from '../src/view/near_structures';
@@ -350,7 +350,7 @@ function pictureView(): PictureView {
   const cut = () => ({ isOn: false, position: 0.5, isFlipped: false });
   return {
     camera: Orbit.of({ distance: 0, azimuth: 0.6, elevation: 0.4 }, linear.cornersOf(bone_V), 1.5).view(), isEndoscope: false,
-    X_WV: { p: [0.1, 0, 0], q: linear.unit([1, 0.2, 0, 0]) }, bone_V, burrRadius: 0.001, toolReach: 0, work: 'idle', ghosts: [],
+    X_WV: { p: [0.1, 0, 0], q: linear.unit([1, 0.2, 0, 0]) }, bone_V, burrRadius: 0.001, toolReach: 0, work: 'idle', load: 0, ghosts: [],
     cuts: [cut(), cut(), cut()], structures: [], structureMode: 'behind', pointers: [], strokes: [],
   };
 }
@@ -390,6 +390,27 @@ test('a long stroke loses points, not its ends', () => {
   const points = Array.from({ length: 1000 }, (_, i): linear.Vec3 => [i, 0, 0]);
   const thin = thinned(points);
   assert.ok(thin.length <= 300 && thin[0][0] === 0 && thin.at(-1)![0] === 999);
+});
+
+test('in the air the burr only turns', () => {
+  const at = (buttons: number, contacts: number, removedMm3: number) =>
+    workOf({ buttons, contacts, waitsForRelease: false, effects: { removedMm3 } } as unknown as ToolView);
+  assert.deepEqual([at(1, 0, 0), at(1, 3, 0), at(1, 0, 0.1), at(0, 3, 0), at(2, 0, 0)],
+    ['turning', 'removing', 'removing', 'idle', 'adding']);
+  near(loadOf({ forceN: [0.6, 0, 0.8] } as unknown as ToolView), 0.5, 1e-9);
+});
+
+test('a thin wall sounds higher', () => {
+  const middle = (wallM: number) => {
+    const synth = new MillingSynth({ volume: 0.5, flutes: 8, idleLevel: 0, fullSpeedRpm: 30000, fullPowerW: 10 }, 48000);
+    const samples = new Float32Array(96000);
+    synth.setLoad({ spinSpeed: 6283, burrForceN: 1, cuttingPowerW: 1, wallM }, true);
+    synth.render(samples);
+    let changes = 0;
+    for (let i = 48001; i < samples.length; ++i) changes += Number(samples[i - 1] < 0 !== samples[i] < 0);
+    return changes / 2;
+  };
+  assert.ok(middle(0) > 1.2 * middle(1), `${middle(0)} ${middle(1)}`);
 });
 
 test('the sound is heard under load and fades without', () => {

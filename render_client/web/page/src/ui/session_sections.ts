@@ -1,7 +1,7 @@
 // The panel's parts about the session: lesson, orders, who is watching, notes.
 import { clockText, figureText, readableText } from '../shared/format';
 import { mayOrder } from '../shared/commands';
-import { type AttemptView, type CommandOrder, type SceneChoiceView } from '../shared/messages';
+import { type AttemptView, type CommandOrder, type LessonView, type SceneChoiceView } from '../shared/messages';
 import type { OrderDesk } from '../orders';
 import { whyNot } from '../orders';
 import type { Session } from '../session';
@@ -9,7 +9,7 @@ import type { ViewSettings } from '../view_settings';
 import { button, make } from './dom';
 import { kPresets } from './key_table';
 import { disabledFor, pressed, row, say, type Section } from './panel';
-import { kRoleNames, trainingRows } from './words';
+import { kRoleNames, titleOf, trainingRows } from './words';
 
 export interface SessionActs {
   session: Session;
@@ -56,7 +56,7 @@ export function lessonSection(acts: SessionActs): Section {
       const buttons = lesson.isRunning
         ? row(say(`${lesson.trainee} is at work`), orderButton(acts, 'End attempt', 'Shift+F', { action: 'stopAttempt' }))
         : row(name, disabledFor(button('Start', 'begins an attempt on whole bone', start), may));
-      return [buttons, ...lesson.scenes.map((scene) => sceneCard(acts, scene)), ...lesson.attempts.slice(-5).reverse().map(attemptCard)];
+      return [buttons, ...lesson.scenes.map((scene) => sceneCard(acts, scene)), ...lesson.attempts.slice(-5).reverse().map((one) => attemptCard(one, lesson))];
     },
   };
 }
@@ -79,7 +79,7 @@ function sceneCard(acts: SessionActs, scene: SceneChoiceView): HTMLElement {
   return card;
 }
 
-function attemptCard(attempt: AttemptView): HTMLElement {
+function attemptCard(attempt: AttemptView, lesson: LessonView): HTMLElement {
   const rows = [
     ['Time', clockText(attempt.timeS)], ['Removed', readableText(attempt.removedMm3, ' mm³')],
     ['Highest force', readableText(attempt.maxForceN, ' N')],
@@ -87,7 +87,7 @@ function attemptCard(attempt: AttemptView): HTMLElement {
   ];
   if (attempt.structuresTouched.length > 0) rows.push(['Touched', attempt.structuresTouched.join(', ')]);
   const list = make('dl', {}, ...rows.flatMap(([label, value]) => [make('dt', { text: label }), make('dd', { text: value })]));
-  return make('div', { name: 'card' }, make('strong', { text: `${attempt.number}. ${attempt.trainee}, ${attempt.sceneId}` }), list);
+  return make('div', { name: 'card' }, make('strong', { text: `${attempt.number}. ${attempt.trainee}, ${titleOf(lesson, attempt.sceneId)}` }), list);
 }
 
 export function ordersSection(acts: SessionActs): Section {
