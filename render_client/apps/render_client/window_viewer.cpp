@@ -190,6 +190,7 @@ class WindowViewer {
         session.frame_rate_hz = frame_rate_.perSecond();
         if (subscriber.sceneInfo()) session.info = &*subscriber.sceneInfo();
         if (subscriber.status()) session.status = &*subscriber.status();
+        if (subscriber.toolState()) session.tool = &*subscriber.toolState();
         session.lesson = lessonOf(subscriber);
         session.others = subscriber.viewers();
         session.faults = scene_.faults();

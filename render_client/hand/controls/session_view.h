@@ -33,6 +33,7 @@ struct SessionView {
     int64_t realtime_ns = 0;   // CLOCK_REALTIME of this PC
     const topics::SceneInfo* info = nullptr;
     const topics::Status* status = nullptr;
+    const topics::ToolState* tool = nullptr;
     const topics::Lesson* lesson = nullptr;
     std::vector<topics::Viewer> others = {};
     std::vector<OfferedSession> offered = {};                     // to choose from; empty: nothing to choose

@@ -190,6 +190,7 @@ bool Panel::isWanted(const ViewerControls& controls, const SessionView& session)
 }
 
 void Panel::layOut(ViewerControls& controls, const SessionView& session, Wishes& wishes) {
+    plots_.update(session);
     lesson_.follow(session);
     controls.dropIdleQuestion(session);
     if (session.lesson) pictures_.follow(*session.lesson);
@@ -215,7 +216,7 @@ void Panel::frame(double seconds, ViewerControls& controls, const SessionView& s
     const bool is_bare = isHelpInFront(controls);
     if (controls.isPanelOpen() && !is_bare)
         PanelContent(controls, session, wishes, places_, is_ending_, lesson_, remark_, pictures_.all(),
-                     stage_.scale(), view_width_)
+                     plots_, stage_.scale(), view_width_)
             .build();
     if (lesson_.isOnScreen(session) && !is_bare)
         LessonCards(controls, session, wishes, lesson_, places_, stage_.scale(), view_width_).build();

@@ -14,6 +14,7 @@
 #include "render_client/look/gl/gl_api.h"
 #include "render_client/panel/imgui/imgui_stage.h"
 #include "render_client/panel/panel/panel_memory.h"
+#include "render_client/panel/panel/plot_history.h"
 
 namespace bonemill {
 
@@ -68,6 +69,7 @@ class Panel {
     LessonDraft lesson_;
     RemarkDraft remark_;
     ScenePictures pictures_;
+    PlotHistory plots_;
 };
 
 // Draws the control panel over a finished picture, in any OpenGL 3.3 core context.

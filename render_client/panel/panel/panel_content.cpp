@@ -42,6 +42,11 @@ void PanelContent::build() {
     section(!session_.faults.empty(), "Faults", &Content::buildFaults);
     section(true, "Notes and strokes", &Content::buildRemarks);
     section(true, "Who is watching", &Content::buildWatchers);
+    if (session_.tool) {
+        gap();
+        if (ImGui::CollapsingHeader("Plots")) buildPlots();  // for the lab: folded at first
+        note("Plots", "Force, torque and the tick's work over the last 10 s");
+    }
     ImGui::End();
 }
 

@@ -10,6 +10,7 @@
 #include "render_client/look/camera/view_settings.h"
 #include "render_client/look/hud/hud_canvas.h"
 #include "render_client/panel/panel/panel_memory.h"
+#include "render_client/panel/panel/plot_history.h"
 
 namespace bonemill {
 
@@ -22,8 +23,8 @@ class PanelContent {
     // end of the session waits to be confirmed.
     PanelContent(ViewerControls& controls, const SessionView& session, Wishes& wishes,
                  std::map<std::string, PixelPoint>& places, bool& is_ending, LessonDraft& draft,
-                 RemarkDraft& remark_draft, const std::map<std::string, ScenePicture>& pictures, float scale,
-                 float view_width)
+                 RemarkDraft& remark_draft, const std::map<std::string, ScenePicture>& pictures,
+                 const PlotHistory& plots, float scale, float view_width)
         : controls_(controls),
           settings_(controls.settings()),
           session_(session),
@@ -33,6 +34,7 @@ class PanelContent {
           draft_(draft),
           remark_draft_(remark_draft),
           pictures_(pictures),
+          plots_(plots),
           scale_(scale),
           view_width_(view_width) {}
 
@@ -75,6 +77,8 @@ class PanelContent {
     void buildEnd();
     void buildTraining();
     void buildFaults();
+    void buildPlots();
+    void buildPlot(const char* name, const PlotHistory::Curve& curve, double limit, const char* unit);
     void buildWatchers();
     // These are about what people write and draw (panel_session.cpp).
     void buildRemarks();
@@ -110,6 +114,7 @@ class PanelContent {
     LessonDraft& draft_;
     RemarkDraft& remark_draft_;
     const std::map<std::string, ScenePicture>& pictures_;
+    const PlotHistory& plots_;
     float scale_;
     float view_width_;  // pixels
 };

@@ -6,6 +6,7 @@
 #include <functional>
 #include <iterator>
 
+#include "common/base/units.h"
 #include "render_client/look/hud/effect_lines.h"
 #include "render_client/look/hud/figure_text.h"
 #include "render_client/panel/panel/panel_content.h"
@@ -139,6 +140,29 @@ void PanelContent::buildFaults() {
         say(fault.text, fault.lasts ? fault.tone : HudTone::kPlain);
     }
     ImGui::PopTextWrapPos();
+}
+
+// The curves share the limits that the device and the loop have.
+void PanelContent::buildPlots() {
+    const topics::Status* const status = session_.status;
+    const bool has_device = status && status->has_device();
+    buildPlot("Force", plots_.force(), has_device ? status->device().max_force_n() : 0, " N");
+    buildPlot("Torque", plots_.torque(), has_device ? status->device().max_torque_nmm() : 0, " N\u00b7mm");
+    const bool has_rate = status && status->rate_hz() > 1;
+    buildPlot("Tick p99", plots_.tick(), has_rate ? kPerMicrosecond / status->rate_hz() : 0, " \u00b5s");
+}
+
+void PanelContent::buildPlot(const char* name, const PlotHistory::Curve& curve, double limit,
+                             const char* unit) {
+    constexpr float kHeight = 3.2f;  // letters' heights
+    std::string text = std::string(name) + " " + readableText(double(curve.newest()), unit) + ", most " +
+                       readableText(double(curve.largest()), unit);
+    if (limit > 0) text += " (limit " + readableText(limit, unit) + ")";
+    sayQuietly(text);
+    const float highest = std::max(curve.largest() * 1.1f, 1e-3f);
+    ImGui::PlotLines((std::string("##") + name).c_str(), curve.values.data(), int(PlotHistory::kLength),
+                     int(curve.next), nullptr, 0, highest,
+                     ImVec2(ImGui::GetContentRegionAvail().x, kHeight * ImGui::GetFontSize()));
 }
 
 void PanelContent::buildWatchers() {
