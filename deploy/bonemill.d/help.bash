@@ -73,7 +73,8 @@ usage_of() {  # COMMAND
             echo "  --port P          the port (default 8443)" ;;
         replay)
             echo "Usage: bonemill replay [FILE] [options] [-- WORDS FOR bonemill_lab replay]"
-            echo "  FILE              a recording (default: the last session's; bonemill list shows the last ones)"
+            echo "  FILE              a recording (default: the last session's; bonemill list shows the last ones), or an"
+            echo "                    attempt's result (results/*.json): its recording, from 3 s before the worst moment on"
             echo "  --at S            begin at this second of the session"
             echo "  --session N       number of the session (default: the first free one)"
             echo "  --no-viewer       without a window of its own"

@@ -113,9 +113,32 @@ list_recordings() {
     done < <(newest_recordings | head -n 10)
 }
 
-# find_recording [FILE]: a file, or the newest one.
+# result_fields RESULT.json: prints its recording, and the second at which its worst moment is about to come.
+result_fields() {
+    python3 - "$1" <<'PY'
+import json, sys
+with open(sys.argv[1], encoding="utf-8") as file:
+    result = json.load(file)
+worst = max(result.get("moments", []), key=lambda moment: moment["severity"], default=None)
+print(result.get("journal", ""))
+print(max(0, worst["t_s"] - 3) if worst else "")
+PY
+}
+
+# An attempt's result says which recording it is in, and --at is its worst moment.
+read_result() {
+    local fields
+    mapfile -t fields < <(result_fields "$1" 2>/dev/null)
+    [[ -n ${fields[0]:-} ]] || fail "$1 is no result of an attempt with a recording"
+    recording=$(recordings_folder)/$(basename -- "${fields[0]}")
+    [[ -z ${fields[1]:-} ]] || : "${option[at]:=${fields[1]}}"
+}
+
+# find_recording [FILE]: a file, the name of one of the user's own, an attempt's result, or the newest one.
 find_recording() {
     recording=${1:-$(newest_recordings | head -n 1)}
+    if [[ $recording == *.json ]]; then read_result "$recording"; fi
+    [[ -f $recording || $recording == */* ]] || recording=$(recordings_folder)/$recording
     [[ -n $recording ]] || fail "no session has been recorded in $(recordings_folder): name a file, as: bonemill replay session.mcap"
     [[ -f $recording ]] || fail "there is no recording $recording (bonemill list shows the last ones)"
     recording=$(realpath -- "$recording")

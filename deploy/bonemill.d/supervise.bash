@@ -104,7 +104,7 @@ command_of() {
         viewer)  # Whoever sits here has the hand, so the window may command, as it may on one PC.
             words=("$bin/render_client" --session "$number" --role operator)
             mapfile -t -O "${#words[@]}" words < <(network_words)
-            [[ -z $class_folder ]] || words+=(--class-folder "$class_folder")
+            [[ -z $class_folder ]] || words+=(--class-folder "$class_folder" --launcher "$self")
             [[ -z ${option[window-size]:-} ]] || words+=(--size "${option[window-size]}") ;;
     esac
 }

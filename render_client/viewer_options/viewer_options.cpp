@@ -123,6 +123,8 @@ void addPictureOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
            "Folder of this PC with the class' table and reports (--export-dir of its server): the window "
            "opens them")
         ->type_name("DIR");
+    app.add_option("--launcher", options.launcher, "bonemill's own script: with it the window opens replays")
+        ->type_name("FILE");
 }
 
 void addCameraOptions(CLI::App& app, RawOptions& raw) {

@@ -143,7 +143,7 @@ std::string timeLineOf(const AttemptResult& result, double begin_s) {
     const std::string replay =
         result.journal.empty()
             ? ""
-            : " · " + element("code", "bonemill_lab replay " + escaped(result.journal) + " --at …");
+            : " · " + element("code", "bonemill replay " + escaped(result.journal) + " --at …");
     const std::string proof = result.chain.empty()
                                   ? ""
                                   : element("p", "The recording's chain at the end of the attempt: " +

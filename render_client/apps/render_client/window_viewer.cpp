@@ -11,7 +11,7 @@
 #include "common/base/user_error.h"
 #include "common/commands/command_text.h"
 #include "common/files/whole_file.h"
-#include "common/process/open_on_desktop.h"
+#include "common/process/start_apart.h"
 #include "render_client/apps/render_client/hand_feed.h"
 #include "render_client/apps/render_client/scene_feed.h"
 #include "render_client/hand/controls/announcing.h"
@@ -159,6 +159,7 @@ class WindowViewer {
         if (wishes.save_picture) savePicture(width, height);
         if (wishes.save_attempts && session.lesson) saveAttempts(*session.lesson);
         if (!wishes.open_file.empty()) showFile(wishes.open_file);
+        if (!wishes.replay_of.empty()) replay(wishes.replay_of);
         window_.show();
         frame_rate_.countPicture(Clock::now());
     }
@@ -197,6 +198,7 @@ class WindowViewer {
         session.remarks = &subscriber.remarks();
         session.offered = offered_;
         session.class_folder = options_.class_folder;
+        session.can_replay = !options_.launcher.empty();
         session.time_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
         session.realtime_ns =
             std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -307,8 +309,17 @@ class WindowViewer {
     void showFile(const std::string& file) {
         if (!std::filesystem::exists(file))
             notices_.show({file + " is not there yet", HudTone::kWarning});
-        else if (!openOnDesktop(file))
+        else if (!startApart({"xdg-open", file}))
             notices_.show({"This desktop opens no files by itself: look at " + file, HudTone::kWarning});
+    }
+
+    void replay(const std::string& result) {
+        if (!std::filesystem::exists(result))
+            notices_.show({result + " is not there yet", HudTone::kWarning});
+        else if (!startApart({options_.launcher, "replay", result}))
+            notices_.show({options_.launcher + " cannot be started", HudTone::kWarning});
+        else
+            notices_.show({"The replay opens in a window of its own", HudTone::kPlain});
     }
 
     void saveAttempts(const topics::Lesson& lesson) {

@@ -39,6 +39,7 @@ struct SessionView {
     std::vector<OfferedSession> offered = {};                     // to choose from; empty: nothing to choose
     const std::map<uint32_t, topics::Remark>* remarks = nullptr;  // by place
     std::vector<FaultEntry> faults = {};                          // of the session, the first one first
+    bool can_replay = false;        // another window can be opened with an attempt
     std::string class_folder = {};  // of this PC, with the class' table, page and reports; empty: not known
 };
 

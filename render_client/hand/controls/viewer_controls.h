@@ -28,6 +28,7 @@ struct Wishes {
     std::optional<HudNotice> notice;      // why something was not done
     bool save_picture = false;
     bool save_attempts = false;                 // of the lesson, as CSV
+    std::string replay_of;                      // an attempt's results, to be seen again; empty: none
     std::string open_file;                      // by the desktop's program for it; empty: none
     bool type_trainee = false;                  // in the panel
     bool next_trainee = false;                  // in the panel: another name

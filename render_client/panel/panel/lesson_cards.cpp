@@ -129,8 +129,11 @@ void LessonCards::buildSummary(const topics::Attempt& attempt) {
     const std::string& results = attempt.verdict().results();
     const bool is_name = !results.empty() && results.find('/') == std::string::npos;  // not a place elsewhere
     if (!session_.class_folder.empty() && is_name) {
-        if (button("Report")) wishes_.open_file = session_.class_folder + "/results/" + results + ".html";
+        const std::string stem = session_.class_folder + "/results/" + results;
+        if (button("Report")) wishes_.open_file = stem + ".html";
         ImGui::SameLine();
+        if (session_.can_replay && button("Replay")) wishes_.replay_of = stem + ".json";
+        if (session_.can_replay) ImGui::SameLine();
     }
     if (button("All attempts as CSV")) wishes_.save_attempts = true;
     ImGui::End();

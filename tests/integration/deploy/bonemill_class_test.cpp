@@ -84,7 +84,27 @@ TEST_F(BonemillClass, ReplaysTheLastSessionWithoutAHand) {
     EXPECT_FALSE(has(events, "haptic_server")) << events;
     EXPECT_LT(list_.find("2_new.mcap"), list_.find("1_old.mcap")) << list_;
     EXPECT_TRUE(has(rig_.call({"replay", "nothing.mcap"}).err, "there is no recording nothing.mcap"));
+    EXPECT_TRUE(has(eventsOf({"replay", "1_old.mcap"}), recordings + "/1_old.mcap")) << "a name will do";
     EXPECT_TRUE(has(rig_.call({"replay", "--at", "x"}).err, "--at x: give seconds"));
+}
+
+TEST_F(BonemillClass, ReplaysTheWorstMomentOfAnAttempt) {
+    const std::string recordings = rig_.folder() / "logs/bonemill/recordings",
+                      result = rig_.folder() / "r.json";
+    std::filesystem::create_directories(recordings);
+    test::writeFile(recordings + "/1_a.mcap", "a");
+    test::writeFile(result, R"({"journal": "1_a.mcap", "moments": [{"t_s": 12, "severity": 0.5},
+        {"t_s": 40.5, "severity": 10}, {"t_s": 50, "severity": 1}]})");
+    const std::string events = eventsOf({"replay", result});
+    EXPECT_TRUE(has(events, " replay " + recordings + "/1_a.mcap ")) << events;
+    EXPECT_TRUE(has(events, " --at 37.5\n")) << events;
+    for (const char* text :
+         {"{}", "[1]", "no JSON", R"({"journal": ""})", R"({"journal": "../../etc/passwd"})"}) {
+        test::writeFile(result, text);
+        const Finished finished = rig_.call({"replay", result});
+        EXPECT_EQ(finished.exit_code, 2) << text;
+        EXPECT_EQ(test::linesOf(finished.err), 1) << finished.err;
+    }
 }
 
 TEST_F(BonemillClass, InvitesAGuestToTheSessionThatRuns) {

@@ -1,4 +1,4 @@
-#include "common/process/open_on_desktop.h"
+#include "common/process/start_apart.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -13,7 +13,7 @@ namespace bonemill {
 namespace {
 
 // The programs of this test are in this folder alone.
-class OpenOnDesktop : public testing::Test {
+class StartApart : public testing::Test {
   protected:
     void SetUp() override { setenv("PATH", folder_.path().c_str(), 1); }
     void TearDown() override { setenv("PATH", path_.c_str(), 1); }
@@ -26,19 +26,19 @@ class OpenOnDesktop : public testing::Test {
     const std::string path_ = std::getenv("PATH");
 };
 
-TEST_F(OpenOnDesktop, HandsTheFileOverAndDoesNotWait) {
+TEST_F(StartApart, HandsTheWordsOverAndDoesNotWait) {
     makeProgram("/bin/sleep 1; echo \"$1\" > " + (folder_ / "part").string() + "; /bin/mv " +
                 (folder_ / "part").string() + " " + (folder_ / "told").string() + "\n");
     const auto begin = std::chrono::steady_clock::now();
-    EXPECT_TRUE(openOnDesktop("a report; with 'signs'.html"));
+    EXPECT_TRUE(startApart({"xdg-open", "a report; with 'signs'.html"}));
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(900));
     for (int tries = 0; tries < 200 && !std::filesystem::exists(folder_ / "told"); ++tries)
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     EXPECT_EQ(test::readFile(folder_ / "told"), "a report; with 'signs'.html\n");
 }
 
-TEST_F(OpenOnDesktop, SaysWhereThereIsNoDesktop) {
-    EXPECT_FALSE(openOnDesktop("report.html"));
+TEST_F(StartApart, SaysWhereThereIsNoProgram) {
+    EXPECT_FALSE(startApart({"xdg-open", "report.html"}));
 }
 
 }  // namespace
