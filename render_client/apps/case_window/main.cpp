@@ -11,6 +11,7 @@
 #include "common/cli/version.h"
 #include "common/process/run_program.h"
 #include "common/process/standard_output.h"
+#include "common/process/start_apart.h"
 #include "haptic_server/cases/casework/case_request.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "render_client/case_window/case_screen/screen_painter.h"
@@ -27,6 +28,7 @@ struct WindowOptions {
     CaseRequest request;
     std::string tools_folder;
     std::string command = "bonemill_lab make-case";
+    std::string launcher;  // deploy/bonemill, which starts sessions; empty: none
     int width = 1400, height = 900;  // pixels
 };
 
@@ -38,6 +40,8 @@ void addWindowOptions(CLI::App& app, WindowOptions& options) {
         ->type_name("DIR");
     app.add_option("--command", options.command, "what people type for the same without a window")
         ->capture_default_str();
+    app.add_option("--launcher", options.launcher, "bonemill's own script: with it the window starts the case")
+        ->type_name("FILE");
     app.add_option("--width", options.width, "of the window, pixels")->check(CLI::Range(640, 16384));
     app.add_option("--height", options.height, "of the window, pixels")->check(CLI::Range(480, 16384));
 }
@@ -49,7 +53,9 @@ class CaseWindow {
           screen_(desk_, options.tools_folder),
           window_(options.width, options.height, "bonemill: make a case",
                   "Without a display use: " + options.command + " (see its --help)"),
-          painter_(window_.gl()) {
+          painter_(window_.gl()),
+          launcher_(options.launcher) {
+        if (!launcher_.empty()) screen_.offerMilling();
         screen_.stage().useClipboard([this] { return window_.clipboard(); },
                                      [this](const std::string& text) { window_.setClipboard(text); });
     }
@@ -59,6 +65,7 @@ class CaseWindow {
             const Clock::time_point begin = Clock::now();
             showPicture();
             tell();
+            mill();
             std::this_thread::sleep_until(begin + kMinFrame);
         }
     }
@@ -86,10 +93,19 @@ class CaseWindow {
         std::cout << "wrote " << desk_.madeScene() << std::endl;
     }
 
+    // In a window of its own; this one goes on.
+    void mill() {
+        const std::string scene = screen_.takeMilling();
+        if (scene.empty()) return;
+        if (!startApart({launcher_, "start", scene}))
+            std::cerr << launcher_ << " cannot be started" << std::endl;
+    }
+
     CaseDesk desk_;
     CaseScreen screen_;
     GlfwWindow window_;
     ScreenPainter painter_;
+    std::string launcher_;
     Clock::time_point last_picture_ = Clock::now();
     std::string told_scene_;
 };

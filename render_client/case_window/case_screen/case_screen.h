@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "render_client/case_window/case_desk/case_desk.h"
 #include "render_client/case_window/case_desk/folder_view.h"
@@ -63,6 +64,10 @@ class CaseScreen {
     // Brings the screen up to date with the desk; `seconds` have gone by since the picture before.
     void layOut(double seconds);
 
+    // From now on a made case has a button to mill it, whose scene takeMilling() gives once it was pressed.
+    void offerMilling() { offers_milling_ = true; }
+    std::string takeMilling() { return std::exchange(milling_, {}); }
+
     // Returns where to click on the control with this label, if it can be seen.
     std::optional<PixelPoint> find(const std::string& label) const;
     const ImDrawData* drawData() const { return stage_.drawData(); }
@@ -112,6 +117,8 @@ class CaseScreen {
     ImGuiStage stage_;
     ControlPlaces places_;
     int width_ = 1, height_ = 1;
+    bool offers_milling_ = false;
+    std::string milling_;  // the scene; empty: nothing is wanted
     std::string typed_path_, typed_labels_;
     BrowseBox browse_;
     bool browses_for_labels_ = false;

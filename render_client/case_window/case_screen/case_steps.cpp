@@ -349,7 +349,10 @@ void CaseScreen::buildCase() {
     if (!why_not.empty()) say(why_not);
     if (!desk_.madeScene().empty()) {
         say("Made: " + desk_.madeScene(), ImVec4(0.45f, 0.9f, 0.55f, 1));
-        say("Mill it: bonemill start " + desk_.madeScene());
+        if (!offers_milling_)
+            say("Mill it: bonemill start " + desk_.madeScene());
+        else if (button("Mill it"))
+            milling_ = desk_.madeScene();
     }
 }
 

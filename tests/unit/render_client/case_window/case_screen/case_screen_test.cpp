@@ -109,6 +109,7 @@ TEST_F(Screen, MovesTheIsoValueAndDropsAPiece) {
 
 TEST_F(Screen, MakesTheCase) {
     test::ClickedScreen& screen = open();
+    screen.screen.offerMilling();
     screen.click("burrs");
     screen.click("dental");
     screen.click("title");
@@ -118,6 +119,10 @@ TEST_F(Screen, MakesTheCase) {
     EXPECT_TRUE(std::filesystem::exists(folder_ / "case/case.textproto"));
     EXPECT_EQ(screen.desk.request().title, "A ball");
     EXPECT_NE(screen.desk.request().tools.find("dental"), std::string::npos);
+    EXPECT_EQ(screen.screen.takeMilling(), "");
+    screen.click("Mill it");
+    EXPECT_EQ(screen.screen.takeMilling(), screen.desk.madeScene());
+    EXPECT_EQ(screen.screen.takeMilling(), "") << "once";
 }
 
 }  // namespace
