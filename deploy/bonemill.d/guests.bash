@@ -21,8 +21,20 @@ serve_guests() {
         say "port $port is open already: guests come through the gateway that serves it"
         return
     fi
+    [[ $flags != *" --in-background "* ]] || { serve_behind "$port" "$@"; return; }
     say "guests may come as long as this runs; Ctrl-C ends it"
     exec "$bin/render_client" --serve "0.0.0.0:$port" "$@" "${extra[@]}"
+}
+
+# serve_behind PORT WORD...: until the session ends, which was started by session[script].
+serve_behind() {
+    local port=$1 tenth
+    shift
+    [[ -n ${session[script]:-} ]] || fail "session ${option[session]} was not started by bonemill: leave --in-background out"
+    setsid bash -c '"$@" & gateway=$!; tail --pid="$0" -f /dev/null; kill "$gateway"' "${session[script]}" \
+        "$bin/render_client" --serve "0.0.0.0:$port" "$@" "${extra[@]}" >>"${session[logs]}/gateway.log" 2>&1 </dev/null &
+    for ((tenth = 0; tenth < 50; ++tenth)); do ! is_port_taken "$port" || return 0; sleep 0.1; done
+    fail "the gateway does not open port $port: see ${session[logs]}/gateway.log"
 }
 
 is_port_taken() { (: <>"/dev/tcp/127.0.0.1/$1") 2>/dev/null; }

@@ -70,7 +70,8 @@ usage_of() {  # COMMAND
             echo "  --people N        so many may come with the link (default 1)"
             echo "  --expires TIME    the link ends after so long: 30m, 8h (default), 3d"
             echo "  --address HOST    how guests reach this PC (default: its address in the network)"
-            echo "  --port P          the port (default 8443)" ;;
+            echo "  --port P          the port (default 8443)"
+            echo "  --in-background   return at once; guests may come until the session ends" ;;
         replay)
             echo "Usage: bonemill replay [FILE] [options] [-- WORDS FOR bonemill_lab replay]"
             echo "  FILE              a recording (default: the last session's; bonemill list shows the last ones), or an"

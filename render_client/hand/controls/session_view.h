@@ -23,6 +23,13 @@ struct OfferedSession {
     std::string text;  // for people
 };
 
+// Somebody is invited to join in a browser.
+struct Invitation {
+    std::string name;     // whose it is; empty: nobody was invited
+    std::string link;     // empty: it is not there yet, or there is a problem
+    std::string problem;  // why there is no link
+};
+
 struct SessionView {
     std::string name;  // of this viewer
     topics::Viewer::Role role = topics::Viewer::OPERATOR;
@@ -39,7 +46,8 @@ struct SessionView {
     std::vector<OfferedSession> offered = {};                     // to choose from; empty: nothing to choose
     const std::map<uint32_t, topics::Remark>* remarks = nullptr;  // by place
     std::vector<FaultEntry> faults = {};                          // of the session, the first one first
-    bool can_replay = false;        // another window can be opened with an attempt
+    bool has_launcher = false;      // bonemill can be asked for replays and invitations
+    Invitation invitation = {};     // the last one that was asked for
     std::string class_folder = {};  // of this PC, with the class' table, page and reports; empty: not known
 };
 

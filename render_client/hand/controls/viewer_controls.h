@@ -29,6 +29,8 @@ struct Wishes {
     bool save_picture = false;
     bool save_attempts = false;                 // of the lesson, as CSV
     std::string replay_of;                      // an attempt's results, to be seen again; empty: none
+    std::string invite;                         // this person; empty: nobody
+    std::string invite_as;                      // the person's role
     std::string open_file;                      // by the desktop's program for it; empty: none
     bool type_trainee = false;                  // in the panel
     bool next_trainee = false;                  // in the panel: another name

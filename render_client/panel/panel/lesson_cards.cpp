@@ -132,8 +132,8 @@ void LessonCards::buildSummary(const topics::Attempt& attempt) {
         const std::string stem = session_.class_folder + "/results/" + results;
         if (button("Report")) wishes_.open_file = stem + ".html";
         ImGui::SameLine();
-        if (session_.can_replay && button("Replay")) wishes_.replay_of = stem + ".json";
-        if (session_.can_replay) ImGui::SameLine();
+        if (session_.has_launcher && button("Replay")) wishes_.replay_of = stem + ".json";
+        if (session_.has_launcher) ImGui::SameLine();
     }
     if (button("All attempts as CSV")) wishes_.save_attempts = true;
     ImGui::End();

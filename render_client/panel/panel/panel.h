@@ -68,6 +68,7 @@ class Panel {
     bool is_ending_ = false;  // the session's end was asked for and waits to be confirmed
     LessonDraft lesson_;
     RemarkDraft remark_;
+    InviteDraft invite_;
     ScenePictures pictures_;
     PlotHistory plots_;
 };

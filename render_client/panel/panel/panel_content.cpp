@@ -42,6 +42,7 @@ void PanelContent::build() {
     section(!session_.faults.empty(), "Faults", &Content::buildFaults);
     section(true, "Notes and strokes", &Content::buildRemarks);
     section(true, "Who is watching", &Content::buildWatchers);
+    section(session_.has_launcher && !isReplay(session_), "Invite a colleague", &Content::buildInvite);
     if (session_.tool) {
         gap();
         if (ImGui::CollapsingHeader("Plots")) buildPlots();  // for the lab: folded at first

@@ -23,8 +23,9 @@ class PanelContent {
     // end of the session waits to be confirmed.
     PanelContent(ViewerControls& controls, const SessionView& session, Wishes& wishes,
                  std::map<std::string, PixelPoint>& places, bool& is_ending, LessonDraft& draft,
-                 RemarkDraft& remark_draft, const std::map<std::string, ScenePicture>& pictures,
-                 const PlotHistory& plots, float scale, float view_width)
+                 RemarkDraft& remark_draft, InviteDraft& invite_draft,
+                 const std::map<std::string, ScenePicture>& pictures, const PlotHistory& plots, float scale,
+                 float view_width)
         : controls_(controls),
           settings_(controls.settings()),
           session_(session),
@@ -33,6 +34,7 @@ class PanelContent {
           is_ending_(is_ending),
           draft_(draft),
           remark_draft_(remark_draft),
+          invite_draft_(invite_draft),
           pictures_(pictures),
           plots_(plots),
           scale_(scale),
@@ -80,6 +82,10 @@ class PanelContent {
     void buildPlots();
     void buildPlot(const char* name, const PlotHistory::Curve& curve, double limit, const char* unit);
     void buildWatchers();
+    // Lets people from elsewhere in (panel_invite.cpp).
+    void buildInvite();
+    void buildInvitation();
+    void drawCode();
     // These are about what people write and draw (panel_session.cpp).
     void buildRemarks();
     void buildNote();
@@ -113,6 +119,7 @@ class PanelContent {
     bool& is_ending_;
     LessonDraft& draft_;
     RemarkDraft& remark_draft_;
+    InviteDraft& invite_draft_;
     const std::map<std::string, ScenePicture>& pictures_;
     const PlotHistory& plots_;
     float scale_;

@@ -12,6 +12,7 @@
 #include "common/picture/picture.h"
 #include "proto/topics.pb.h"
 #include "render_client/hand/controls/session_view.h"
+#include "render_client/panel/panel/qr_code.h"
 
 namespace bonemill {
 
@@ -22,6 +23,15 @@ struct RemarkDraft {
     bool wants_keyboard = false;           // it is to be typed from now on
     bool leaves_keyboard = false;          // it was sent: keys are the viewer's again
 };
+
+// Of an invitation, and the QR code of the last link.
+struct InviteDraft {
+    std::array<char, 61> name{};  // as typed so far, zero-terminated UTF-8
+    int role = 0;                 // of kInvitedRoles
+    std::string link;             // that the code was made of
+    QrCode code;
+};
+inline constexpr std::array<const char*, 3> kInvitedRoles = {"observer", "operator", "instructor"};
 
 // Of the user's side of a lesson: a name that is being typed, which task and which summary are on the screen.
 class LessonDraft {

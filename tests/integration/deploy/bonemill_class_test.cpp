@@ -131,5 +131,28 @@ TEST_F(BonemillClass, InvitesAGuestToTheSessionThatRuns) {
     session.wait();
 }
 
+// The gateway of an invitation from the window ends with the session, however that ends.
+TEST_F(BonemillClass, AGatewayBehindTheWindowEndsWithTheSession) {
+    const std::string port = std::to_string(20000 + getpid() % 20000);
+    rig_.putProgram("render_client",
+                    "#!/bin/bash\necho \"start render_client $$ $*\" >>\"${0%/*}/../events\"\n"
+                    "exec python3 -m http.server --bind 127.0.0.1 " +
+                        port + "\n");
+    Process session(
+        rig_.words({"start", rig_.scene(), "--session", std::to_string(getpid()), "--no-viewer"}));
+    ASSERT_TRUE(rig_.awaitStarts("device_daemon", 1));
+    std::vector<std::string> words = rig_.words({"invite", "Anna", "--port", port, "--in-background"});
+    words.insert(words.begin() + 1, "XDG_CONFIG_HOME=" + rig_.folder() / "config");
+    const Finished finished = test::run(words);
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    EXPECT_TRUE(std::regex_search(finished.out, std::regex("https://\\S+:" + port + "/#[0-9a-f]{32}\n")))
+        << finished.out;
+    const int gateway = rig_.pidsOf("render_client").at(0);
+    EXPECT_FALSE(test::isGone(gateway));
+    session.signal(SIGKILL);
+    session.wait();
+    EXPECT_TRUE(test::waitFor([&] { return test::isGone(gateway); }));
+}
+
 }  // namespace
 }  // namespace bonemill
