@@ -5,16 +5,15 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <future>
 #include <map>
 
 #include "common/attempts_csv/attempts_csv.h"
 #include "common/base/user_error.h"
 #include "common/commands/command_text.h"
 #include "common/files/whole_file.h"
-#include "common/process/run_captured.h"
 #include "common/process/start_apart.h"
 #include "render_client/apps/render_client/hand_feed.h"
+#include "render_client/apps/render_client/inviter.h"
 #include "render_client/apps/render_client/scene_feed.h"
 #include "render_client/hand/controls/announcing.h"
 #include "render_client/hand/controls/key_table.h"
@@ -85,42 +84,6 @@ class Attendance {
 
   private:
     std::map<uint64_t, std::string> here_;  // names by sender
-};
-
-// Has bonemill make invitations, which takes it a moment.
-class Inviter {
-  public:
-    // One at a time: while one is made another is not begun.
-    void invite(const std::string& launcher, uint32_t session, const std::string& name,
-                const std::string& role) {
-        if (made_.valid()) return;
-        invitation_ = {.name = name, .link = {}, .problem = {}};
-        made_ = std::async(std::launch::async, [=] {
-            return runCaptured({launcher, "invite", name, "--role", role, "--session",
-                                std::to_string(session), "--in-background"});
-        });
-    }
-    const Invitation& invitation() {
-        if (made_.valid() && made_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) take();
-        return invitation_;
-    }
-
-  private:
-    void take() {
-        try {
-            const Captured captured = made_.get();
-            const size_t link = captured.out.find("https://");
-            if (captured.exit_code == 0 && link != std::string::npos)
-                invitation_.link = captured.out.substr(link, captured.out.find_first_of(" \n", link) - link);
-            else
-                invitation_.problem = "No link: " + captured.err;
-        } catch (const std::exception& error) {
-            invitation_.problem = error.what();
-        }
-    }
-
-    std::future<Captured> made_;
-    Invitation invitation_;
 };
 
 // Returns the first free name in the current folder. `format` has one %d.
