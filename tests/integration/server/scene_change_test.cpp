@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <utility>
 
@@ -152,6 +153,31 @@ class SceneChange : public testing::Test {
         return answer;
     }
 
+    // What the window, the class table, the result and the report tell of an attempt is the same.
+    void expectSameFigures(const topics::Attempt& attempt, const std::string& table) const {
+        std::vector<std::filesystem::path> results;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_ / "results"))
+            if (entry.path().extension() == ".json") results.push_back(entry.path());
+        ASSERT_EQ(results.size(), 1u);
+        const auto result = nlohmann::json::parse(test::readFile(results[0]));
+        double force = 0, removed = 0;
+        for (const auto& figure : result["figures"]) {
+            if (figure["id"] == "force.max") force = figure["value"];
+            if (figure["id"] == "removal.volume") removed = figure["value"];
+        }
+        EXPECT_NEAR(force, attempt.max_force_n(), 1e-4 * force);
+        EXPECT_NEAR(removed, attempt.removed_mm3(), 1e-9);
+        EXPECT_DOUBLE_EQ(result["duration_s"], attempt.time_s());
+        std::ostringstream cells;
+        cells.precision(6);
+        cells << ',' << attempt.time_s() << ',' << attempt.removed_mm3() << ',' << attempt.max_force_n()
+              << ',';
+        EXPECT_NE(table.find(cells.str()), std::string::npos) << cells.str() << " in " << table;
+        const std::string report = test::readFile(results[0].replace_extension(".html"));
+        EXPECT_NE(report.find("Task a"), std::string::npos);
+        EXPECT_NE(test::readFile(folder_ / "class.html").find("Task a"), std::string::npos);
+    }
+
     test::TemporaryFolder folder_;
     ClientProbe one_, two_;
 };
@@ -224,6 +250,7 @@ TEST_F(SceneChange, ReachesViewersAndTheHandAtOnceWithoutAStepOfForce) {
     const std::string table = test::readFile(folder_ / "class.csv");
     EXPECT_EQ(table.find(attemptsHeaderLine() + "1,"), 0u) << table;
     EXPECT_NE(table.find(",\"'=Ann\",\"Task a\","), std::string::npos) << table;
+    expectSameFigures(attempt, table);
 }
 
 // What the hand did before belongs to no attempt.
