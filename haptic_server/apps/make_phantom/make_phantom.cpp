@@ -1,5 +1,5 @@
-// Writes phantoms: a tooth as a DICOM CT series, blocks, a vertebra, temporal bones and analytic bodies as
-// NRRD. See docs/teach/volumes.md.
+// Writes phantoms: a tooth as a DICOM CT series, blocks, a vertebra, temporal bones, third molars and
+// analytic bodies as NRRD. See docs/teach/volumes.md.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <iostream>
@@ -13,6 +13,7 @@
 #include "haptic_server/cases/phantom/analytic_body.h"
 #include "haptic_server/cases/phantom/skull_labels.h"
 #include "haptic_server/cases/phantom/temporal_bone_phantom.h"
+#include "haptic_server/cases/phantom/third_molar_phantom.h"
 #include "haptic_server/cases/phantom/tooth_phantom.h"
 #include "haptic_server/cases/phantom/vertebra_phantom.h"
 #include "haptic_server/cases/phantom_dicom/dicom_series_writer.h"
@@ -73,6 +74,31 @@ void makeTemporalBone(const TemporalArguments& arguments) {
     requireApart({{"--out", arguments.file}, {"--labels", arguments.labels}}, {});
     const TemporalBone bone(kindOf(arguments));
     const TemporalScan scan = bone.scan(bone.grid(arguments.voxel_mm * kMillimetre));
+    writeScan(arguments.file, arguments.labels, scan.ct, scan.labels);
+}
+
+struct MolarArguments {
+    std::string file, labels;
+    double voxel_mm = 0.2;
+    uint64_t seed = 1;
+    std::string side = "left", impaction = "shallow", nerve = "far";
+};
+
+ThirdMolarKind kindOf(const MolarArguments& arguments) {
+    using enum ThirdMolarKind::Impaction;
+    using enum ThirdMolarKind::Nerve;
+    ThirdMolarKind kind;
+    kind.seed = arguments.seed;
+    kind.is_right = arguments.side == "right";
+    if (arguments.impaction != "shallow") kind.impaction = arguments.impaction == "middle" ? kMiddle : kDeep;
+    if (arguments.nerve != "far") kind.nerve = arguments.nerve == "near" ? kNear : kTouching;
+    return kind;
+}
+
+void makeThirdMolar(const MolarArguments& arguments) {
+    requireApart({{"--out", arguments.file}, {"--labels", arguments.labels}}, {});
+    const ThirdMolar molar(kindOf(arguments));
+    const MolarScan scan = molar.scan(molar.grid(arguments.voxel_mm * kMillimetre));
     writeScan(arguments.file, arguments.labels, scan.ct, scan.labels);
 }
 
@@ -298,22 +324,36 @@ void addVertebra(CLI::App& vertebra, VertebraArguments& arguments) {
     addNumber(vertebra, "--voxel-mm", arguments.voxel_mm, 0.2, 2, "edge of a voxel");
 }
 
+void addChoice(CLI::App& command, const char* name, std::string& value,
+               const std::vector<std::string>& choices, const char* help) {
+    command.add_option(name, value, help)->check(CLI::IsMember(choices))->capture_default_str();
+}
+
 void addTemporalBone(CLI::App& bone, TemporalArguments& arguments) {
-    const auto add_choice = [&](const char* name, std::string& value, const std::vector<std::string>& choices,
-                                const char* help) {
-        bone.add_option(name, value, help)->check(CLI::IsMember(choices))->capture_default_str();
-    };
     bone.add_option("--out", arguments.file, "NRRD file to write")->required();
     bone.add_option("--labels", arguments.labels,
                     "NRRD file to write: 1 sigmoid sinus, 2 facial nerve, 3 dura, 4 semicircular canals, 5 "
                     "ossicles, 0 none");
     addNumber(bone, "--voxel-mm", arguments.voxel_mm, 0.1, 2, "edge of a voxel");
     addSeed(bone, arguments.seed, "another seed is another bone");
-    add_choice("--side", arguments.side, {"left", "right"}, "the mirror image of the other one");
-    add_choice("--pneumatisation", arguments.pneumatisation, {"well", "poor", "sclerotic"},
-               "how far air cells reach");
-    add_choice("--jugular", arguments.jugular, {"normal", "high"}, "dome of the jugular bulb");
-    add_choice("--dura", arguments.dura, {"normal", "low"}, "middle fossa over the mastoid");
+    addChoice(bone, "--side", arguments.side, {"left", "right"}, "the mirror image of the other one");
+    addChoice(bone, "--pneumatisation", arguments.pneumatisation, {"well", "poor", "sclerotic"},
+              "how far air cells reach");
+    addChoice(bone, "--jugular", arguments.jugular, {"normal", "high"}, "dome of the jugular bulb");
+    addChoice(bone, "--dura", arguments.dura, {"normal", "low"}, "middle fossa over the mastoid");
+}
+
+void addThirdMolar(CLI::App& molar, MolarArguments& arguments) {
+    molar.add_option("--out", arguments.file, "NRRD file to write")->required();
+    molar.add_option("--labels", arguments.labels,
+                     "NRRD file to write: 1 alveolar nerve, 2 enamel, 3 dentine, 4 pulp of the third molar, "
+                     "5 second molar, 6 lingual plate, 0 none");
+    addNumber(molar, "--voxel-mm", arguments.voxel_mm, 0.1, 2, "edge of a voxel");
+    addSeed(molar, arguments.seed, "another seed is another jaw");
+    addChoice(molar, "--side", arguments.side, {"left", "right"}, "the mirror image of the other one");
+    addChoice(molar, "--impaction", arguments.impaction, {"shallow", "middle", "deep"},
+              "how deep the crown lies below the bone's crest");
+    addChoice(molar, "--nerve", arguments.nerve, {"far", "near", "touching"}, "from the roots");
 }
 
 void addSkullLabels(CLI::App& skull, SkullArguments& arguments) {
@@ -334,6 +374,7 @@ int run(int argc, char** argv) {
     BodyArguments body;
     VertebraArguments vertebra;
     TemporalArguments temporal_bone;
+    MolarArguments third_molar;
     SkullArguments skull;
     addTooth(
         add("tooth", "molar-like tooth as a DICOM CT series, 256x256x161, 0.125 mm, HU", makeTooth, tooth),
@@ -349,6 +390,9 @@ int run(int argc, char** argv) {
     addTemporalBone(add("temporal_bone", "mastoid with air cells and what lies in it as NRRD, HU",
                         makeTemporalBone, temporal_bone),
                     temporal_bone);
+    addThirdMolar(add("third_molar", "piece of lower jaw with an impacted third molar as NRRD, HU",
+                      makeThirdMolar, third_molar),
+                  third_molar);
     addSkullLabels(add("skull_labels", "structures to spare in the left mastoid of Cranium.inv3",
                        makeSkullLabels, skull),
                    skull);

@@ -179,6 +179,13 @@ ToothTissue toothTissue(const Eigen::Vector3d& p_W) noexcept {
     return is_far ? ToothTissue::kAir : tissueAt(p_mm);
 }
 
+SoundTooth soundTooth(const Eigen::Vector3d& p_W) noexcept {
+    const Eigen::Vector3d p_mm = p_W * kPerMillimetre;
+    const double outer = outerShape(p_mm);
+    return {outer * kMillimetre, (-outer - enamelThickness(p_mm.z())) * kMillimetre,
+            pulp(p_mm) * kMillimetre};
+}
+
 VolumeGeometry toothGrid() {
     VolumeGeometry geometry;
     geometry.dims = {256, 256, 161};

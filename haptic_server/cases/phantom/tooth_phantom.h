@@ -18,6 +18,15 @@ inline constexpr double kToothHu[] = {-1000, 40, 700, 1600, 2900};  // by ToothT
 
 ToothTissue toothTissue(const Eigen::Vector3d& p_W) noexcept;
 
+// The same tooth without caries, as signed distances in m, negative inside, exact to some 20 % near a
+// surface.
+struct SoundTooth {
+    double outer;   // the whole tooth
+    double enamel;  // between it and the dentine, negative in the enamel of a place inside the tooth
+    double pulp;
+};
+SoundTooth soundTooth(const Eigen::Vector3d& p_W) noexcept;
+
 struct ToothScan {
     double noise_hu = 0;  // standard deviation of Gaussian noise
     uint64_t seed = 1;

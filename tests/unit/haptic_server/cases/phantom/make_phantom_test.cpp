@@ -6,6 +6,7 @@
 
 #include "common/base/units.h"
 #include "haptic_server/cases/phantom/temporal_bone_phantom.h"
+#include "haptic_server/cases/phantom/third_molar_phantom.h"
 #include "haptic_server/cases/phantom/vertebra_phantom.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "tests/support/places.h"
@@ -159,6 +160,24 @@ TEST(MakePhantom, temporalBoneIsOfTheKindThatIsSaid) {
     for (size_t n = 0; n < scan.labels.size(); ++n) ASSERT_EQ(labels.values[n], float(scan.labels[n]));
 }
 
+TEST(MakePhantom, thirdMolarIsOfTheKindThatIsSaid) {
+    const test::TemporaryFolder folder;
+    const Outcome outcome = runMakePhantom(
+        "third_molar --voxel-mm 2 --side right --seed 7 --impaction deep --nerve touching --out " +
+        (folder / "t.nrrd") + " --labels " + (folder / "l.nrrd"));
+    ASSERT_EQ(outcome.code, 0) << outcome.output;
+    ThirdMolarKind kind;
+    kind.is_right = true;
+    kind.impaction = ThirdMolarKind::Impaction::kDeep;
+    kind.nerve = ThirdMolarKind::Nerve::kTouching;
+    kind.seed = 7;
+    const ThirdMolar molar(kind);
+    const MolarScan scan = molar.scan(molar.grid(2e-3));
+    const RawVolume ct = importVolume(folder / "t.nrrd"), labels = importVolume(folder / "l.nrrd");
+    EXPECT_EQ(ct.values, scan.ct.values);
+    for (size_t n = 0; n < scan.labels.size(); ++n) ASSERT_EQ(labels.values[n], float(scan.labels[n]));
+}
+
 TEST(MakePhantom, skullLabelsRefuseAnotherScan) {
     const test::TemporaryFolder folder;
     const std::string body = folder / "ball.nrrd";
@@ -201,6 +220,8 @@ TEST(MakePhantom, badArgumentsGiveOneMessageAndCode2) {
         {"temporal_bone --pneumatisation 1" + out, "--pneumatisation"},
         {"temporal_bone --seed -1" + out, "--seed"},
         {"temporal_bone --dura high" + out, "--dura"},
+        {"third_molar" + out + " --impaction high", "--impaction"},
+        {"third_molar" + out + " --nerve cut", "--nerve"},
         {"skull_labels" + out, "--volume"},
         {"skull_labels --volume /nonexistent/a.inv3" + out, "/nonexistent/a.inv3"},
         {"tooth --noise-hu -5 --out " + folder.path().string(), "--noise-hu"},
