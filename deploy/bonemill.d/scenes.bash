@@ -61,7 +61,7 @@ make_phantoms() {
     while read -r file; do
         [[ $file == skull_labels ]] && name=$file || name=${file%_labels}
         case $name in
-            tooth | bone_block | clay_block | vertebra | temporal_bone | skull_labels) ;;
+            tooth | bone_block | clay_block | vertebra | temporal_bone | third_molar | skull_labels) ;;
             *) fail "$scene_name needs $data/$file.nrrd, which is no phantom: the first lines of $scene say where it comes from" ;;
         esac
         say "making the phantom $name, once: some seconds"

@@ -10,112 +10,15 @@
 #include "common/cli/command_line.h"
 #include "common/files/require_apart.h"
 #include "common/process/run_program.h"
+#include "haptic_server/apps/make_phantom/anatomic_phantoms.h"
+#include "haptic_server/apps/make_phantom/phantom_options.h"
 #include "haptic_server/cases/phantom/analytic_body.h"
-#include "haptic_server/cases/phantom/skull_labels.h"
-#include "haptic_server/cases/phantom/temporal_bone_phantom.h"
-#include "haptic_server/cases/phantom/third_molar_phantom.h"
 #include "haptic_server/cases/phantom/tooth_phantom.h"
-#include "haptic_server/cases/phantom/vertebra_phantom.h"
 #include "haptic_server/cases/phantom_dicom/dicom_series_writer.h"
-#include "haptic_server/scans/import/import_volume.h"
 #include "haptic_server/scans/nrrd/nrrd_writer.h"
 
 namespace bonemill {
 namespace {
-
-template <class T>
-void write(const std::string& file, const VolumeGeometry& geometry, std::span<const T> values) {
-    NrrdStream<T> stream(file, geometry);
-    stream.append(values);
-    stream.close();
-    std::cout << "wrote " << file << "\n";
-}
-
-// HU are whole numbers.
-void writeScan(const std::string& file, const std::string& labels_file, const RawVolume& ct,
-               const std::vector<uint8_t>& labels) {
-    const std::vector<int16_t> hu = ct.values.visit(
-        [](const auto& samples) { return std::vector<int16_t>(samples.begin(), samples.end()); });
-    write<int16_t>(file, ct.geometry, hu);
-    if (!labels_file.empty()) write<uint8_t>(labels_file, ct.geometry, labels);
-}
-
-struct VertebraArguments {
-    std::string file, labels;
-    double voxel_mm = 0.4;
-};
-
-void makeVertebra(const VertebraArguments& arguments) {
-    requireApart({{"--out", arguments.file}, {"--labels", arguments.labels}}, {});
-    const VertebraScan scan = scanVertebra(vertebraGrid(arguments.voxel_mm * kMillimetre));
-    writeScan(arguments.file, arguments.labels, scan.ct, scan.labels);
-}
-
-struct TemporalArguments {
-    std::string file, labels;
-    double voxel_mm = 0.15;
-    uint64_t seed = 1;
-    std::string side = "left", pneumatisation = "well", jugular = "normal", dura = "normal";
-};
-
-TemporalBoneKind kindOf(const TemporalArguments& arguments) {
-    using enum TemporalBoneKind::Pneumatisation;
-    TemporalBoneKind kind;
-    kind.seed = arguments.seed;
-    kind.is_right = arguments.side == "right";
-    kind.has_high_jugular = arguments.jugular == "high";
-    kind.has_low_dura = arguments.dura == "low";
-    if (arguments.pneumatisation != "well")
-        kind.pneumatisation = arguments.pneumatisation == "poor" ? kPoor : kSclerotic;
-    return kind;
-}
-
-void makeTemporalBone(const TemporalArguments& arguments) {
-    requireApart({{"--out", arguments.file}, {"--labels", arguments.labels}}, {});
-    const TemporalBone bone(kindOf(arguments));
-    const TemporalScan scan = bone.scan(bone.grid(arguments.voxel_mm * kMillimetre));
-    writeScan(arguments.file, arguments.labels, scan.ct, scan.labels);
-}
-
-struct MolarArguments {
-    std::string file, labels;
-    double voxel_mm = 0.2;
-    uint64_t seed = 1;
-    std::string side = "left", impaction = "shallow", nerve = "far";
-};
-
-ThirdMolarKind kindOf(const MolarArguments& arguments) {
-    using enum ThirdMolarKind::Impaction;
-    using enum ThirdMolarKind::Nerve;
-    ThirdMolarKind kind;
-    kind.seed = arguments.seed;
-    kind.is_right = arguments.side == "right";
-    if (arguments.impaction != "shallow") kind.impaction = arguments.impaction == "middle" ? kMiddle : kDeep;
-    if (arguments.nerve != "far") kind.nerve = arguments.nerve == "near" ? kNear : kTouching;
-    return kind;
-}
-
-void makeThirdMolar(const MolarArguments& arguments) {
-    requireApart({{"--out", arguments.file}, {"--labels", arguments.labels}}, {});
-    const ThirdMolar molar(kindOf(arguments));
-    const MolarScan scan = molar.scan(molar.grid(arguments.voxel_mm * kMillimetre));
-    writeScan(arguments.file, arguments.labels, scan.ct, scan.labels);
-}
-
-struct SkullArguments {
-    std::string volume, file;
-};
-
-void makeSkullLabels(const SkullArguments& arguments) {
-    requireApart({{"--out", arguments.file}}, {{"--volume", arguments.volume}});
-    const VolumeGeometry geometry = importVolume(arguments.volume).geometry;
-    if (geometry.dims != kCraniumDims)
-        throw UserError(
-            arguments.volume +
-            ": is not the CT head that these structures were placed in; give Cranium.inv3 of Debian's "
-            "invesalius-examples");
-    write<uint8_t>(arguments.file, geometry, skullLabels(geometry));
-}
 
 struct ToothArguments {
     std::string folder;
@@ -260,15 +163,6 @@ void makeBody(const BodyArguments& arguments) {
     arguments.bits == 8 ? writeBody<uint8_t>(arguments) : writeBody<uint16_t>(arguments);
 }
 
-void addNumber(CLI::App& command, const char* name, double& value, double low, double high,
-               const char* help) {
-    command.add_option(name, value, help)->check(within(low, high))->capture_default_str();
-}
-
-void addSeed(CLI::App& command, uint64_t& seed, const char* help) {
-    command.add_option("--seed", seed, help)->check(within(0, 1e15))->capture_default_str();
-}
-
 template <class T, class Limits>
 void addThree(CLI::App& command, const char* name, std::vector<T>& values, const Limits& limits,
               const char* help) {
@@ -318,64 +212,16 @@ void addBody(CLI::App& body, BodyArguments& arguments) {
              "of the body from the middle of the grid");
 }
 
-void addVertebra(CLI::App& vertebra, VertebraArguments& arguments) {
-    vertebra.add_option("--out", arguments.file, "NRRD file to write")->required();
-    vertebra.add_option("--labels", arguments.labels, "NRRD file to write the tissues to, on the same grid");
-    addNumber(vertebra, "--voxel-mm", arguments.voxel_mm, 0.2, 2, "edge of a voxel");
-}
-
-void addChoice(CLI::App& command, const char* name, std::string& value,
-               const std::vector<std::string>& choices, const char* help) {
-    command.add_option(name, value, help)->check(CLI::IsMember(choices))->capture_default_str();
-}
-
-void addTemporalBone(CLI::App& bone, TemporalArguments& arguments) {
-    bone.add_option("--out", arguments.file, "NRRD file to write")->required();
-    bone.add_option("--labels", arguments.labels,
-                    "NRRD file to write: 1 sigmoid sinus, 2 facial nerve, 3 dura, 4 semicircular canals, 5 "
-                    "ossicles, 0 none");
-    addNumber(bone, "--voxel-mm", arguments.voxel_mm, 0.1, 2, "edge of a voxel");
-    addSeed(bone, arguments.seed, "another seed is another bone");
-    addChoice(bone, "--side", arguments.side, {"left", "right"}, "the mirror image of the other one");
-    addChoice(bone, "--pneumatisation", arguments.pneumatisation, {"well", "poor", "sclerotic"},
-              "how far air cells reach");
-    addChoice(bone, "--jugular", arguments.jugular, {"normal", "high"}, "dome of the jugular bulb");
-    addChoice(bone, "--dura", arguments.dura, {"normal", "low"}, "middle fossa over the mastoid");
-}
-
-void addThirdMolar(CLI::App& molar, MolarArguments& arguments) {
-    molar.add_option("--out", arguments.file, "NRRD file to write")->required();
-    molar.add_option("--labels", arguments.labels,
-                     "NRRD file to write: 1 alveolar nerve, 2 enamel, 3 dentine, 4 pulp of the third molar, "
-                     "5 second molar, 6 lingual plate, 0 none");
-    addNumber(molar, "--voxel-mm", arguments.voxel_mm, 0.1, 2, "edge of a voxel");
-    addSeed(molar, arguments.seed, "another seed is another jaw");
-    addChoice(molar, "--side", arguments.side, {"left", "right"}, "the mirror image of the other one");
-    addChoice(molar, "--impaction", arguments.impaction, {"shallow", "middle", "deep"},
-              "how deep the crown lies below the bone's crest");
-    addChoice(molar, "--nerve", arguments.nerve, {"far", "near", "touching"}, "from the roots");
-}
-
-void addSkullLabels(CLI::App& skull, SkullArguments& arguments) {
-    skull.add_option("--volume", arguments.volume, "that scan, Cranium.inv3")->required();
-    skull.add_option("--out", arguments.file, "NRRD file to write")->required();
-}
-
 // Commands run while the command line is parsed, and throw UserError.
 int run(int argc, char** argv) {
     CLI::App app("Writes phantoms of known shape as CT volumes.", "make_phantom");
     const auto add = [&](const char* name, const char* about, auto make, auto& arguments) -> CLI::App& {
-        CLI::App* const command = app.add_subcommand(name, about);
-        command->callback([make, &arguments] { make(arguments); });
-        return *command;
+        return addPhantom(app, name, about, make, arguments);
     };
     ToothArguments tooth;
     BlockArguments block;
     BodyArguments body;
-    VertebraArguments vertebra;
-    TemporalArguments temporal_bone;
-    MolarArguments third_molar;
-    SkullArguments skull;
+    AnatomicArguments anatomic;
     addTooth(
         add("tooth", "molar-like tooth as a DICOM CT series, 256x256x161, 0.125 mm, HU", makeTooth, tooth),
         tooth);
@@ -384,18 +230,7 @@ int run(int argc, char** argv) {
     addBody(
         add("body", "analytic body as NRRD; the exact surfaces are in docs/teach/volumes.md", makeBody, body),
         body);
-    addVertebra(
-        add("vertebra", "lumbar vertebra with nerves and vessels as NRRD, HU", makeVertebra, vertebra),
-        vertebra);
-    addTemporalBone(add("temporal_bone", "mastoid with air cells and what lies in it as NRRD, HU",
-                        makeTemporalBone, temporal_bone),
-                    temporal_bone);
-    addThirdMolar(add("third_molar", "piece of lower jaw with an impacted third molar as NRRD, HU",
-                      makeThirdMolar, third_molar),
-                  third_molar);
-    addSkullLabels(add("skull_labels", "structures to spare in the left mastoid of Cranium.inv3",
-                       makeSkullLabels, skull),
-                   skull);
+    addAnatomicPhantoms(app, anatomic);
     app.require_subcommand(1);
     parseCommandLine(app, argc, argv, "make_phantom");
     return 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <numbers>
 
@@ -170,16 +171,24 @@ TEST_F(WellPneumatisedBone, CellsGrowTowardsTheAntrum) {
         ++cells[cell].samples;
     });
     const Vector3d antrum(-14, 5, 0);
+    std::vector<double> diameters;
+    double cells_mm3 = 0;
     int of_fitting_size = 0, near = 0, far = 0;
     double near_sum = 0, far_sum = 0;
     for (const auto& [number, cell] : cells) {
         const double volume = cell.samples * double(kStride) * 0.4 * 0.4 * 0.4;
         const double diameter = std::cbrt(6 * volume / std::numbers::pi);
+        diameters.push_back(diameter);
+        cells_mm3 += volume;
         if (diameter > 0.5 && diameter < 6) of_fitting_size += cell.samples;
         const double away = (cell.sum / cell.samples - antrum).norm();
         if (away < 9) near_sum += diameter, ++near;
         if (away > 16) far_sum += diameter, ++far;
     }
+    std::ranges::sort(diameters);
+    const auto part = [&](double share) { return diameters[size_t(share * double(diameters.size() - 1))]; };
+    std::printf("%zu cells, diameters p5 %.2f, p50 %.2f, p95 %.2f mm, %.0f %% of the air\n", diameters.size(),
+                part(0.05), part(0.5), part(0.95), cells_mm3 / (10 * spaces_->volume_ml));
     EXPECT_GT(of_fitting_size, 0.95 * in_cells);
     ASSERT_GT(near, 20);
     ASSERT_GT(far, 50);

@@ -1,7 +1,8 @@
-// deploy/make-temporal-bone: bones of either side and any difficulty, and hands that spare what is in them.
+// deploy/make-training-bone: bones of either side and any difficulty, and hands that spare what is in them.
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <set>
 
 #include "common/base/units.h"
 #include "common/config/scene_file.h"
@@ -17,17 +18,18 @@ using Eigen::Vector3d;
 
 struct Case {
     std::string seed, side, difficulty;
+    std::string kind = "temporal_bone", prefix = "bone";
 };
 
-class MakeTemporalBone : public testing::Test {
+class MakeTrainingBone : public testing::Test {
   protected:
     test::Finished make(const Case& made) const {
-        return test::run({test::sourceDir() + "/deploy/make-temporal-bone", "--bin", test::binDir(), "--out",
-                          folder_.path(), "--voxel-mm", "0.5", "--seed", made.seed, "--side", made.side,
-                          "--difficulty", made.difficulty});
+        return test::run({test::sourceDir() + "/deploy/make-training-bone", made.kind, "--bin",
+                          test::binDir(), "--out", folder_.path(), "--voxel-mm", "0.5", "--seed", made.seed,
+                          "--side", made.side, "--difficulty", made.difficulty});
     }
     std::string nameOf(const Case& made) const {
-        return "bone_" + made.seed + "_" + made.side + "_" + made.difficulty;
+        return made.prefix + "_" + made.seed + "_" + made.side + "_" + made.difficulty;
     }
 
     test::TemporaryFolder folder_;
@@ -37,12 +39,13 @@ Vector3d placeOf(const scene::SimulatedOperator::Waypoint& waypoint) {
     return {waypoint.p_wt_mm().x(), waypoint.p_wt_mm().y(), waypoint.p_wt_mm().z()};
 }
 
-// Middles of the voxels of all structures in the hand's reach, mm in W.
-std::vector<Vector3d> structuresOf(const std::string& labels_file) {
+// Middles of the voxels of these structures, of all without any, mm in W.
+std::vector<Vector3d> structuresOf(const std::string& labels_file, const std::set<int>& wanted = {}) {
     const RawVolume labels = importVolume(labels_file);
     std::vector<Vector3d> all;
     forEachIndex({Eigen::Vector3i::Zero(), labels.geometry.dims.array() - 1}, [&](const Eigen::Vector3i& v) {
-        if (labels.values[placeIn(labels.geometry.dims, v)] == 0) return;
+        const int label = int(labels.values[placeIn(labels.geometry.dims, v)]);
+        if (label == 0 || (!wanted.empty() && !wanted.contains(label))) return;
         const Vector3d p = labels.geometry.X_WV * labels.geometry.spacing.cwiseProduct(v.cast<double>());
         all.push_back(p * kPerMillimetre);
     });
@@ -50,20 +53,20 @@ std::vector<Vector3d> structuresOf(const std::string& labels_file) {
 }
 
 // Of the burr's surface, with the pedal down, to the nearest structure.
-double nearest_mm(const scene::SimulatedOperator& hand, const std::vector<Vector3d>& structures) {
-    constexpr double kBurr_mm = 3;
+double nearest_mm(const scene::SimulatedOperator& hand, double burr_mm,
+                  const std::vector<Vector3d>& structures) {
     double nearest = std::numeric_limits<double>::infinity();
     for (int n = 0; n + 1 < hand.waypoint_size(); ++n) {
         if (!hand.waypoint(n).remove()) continue;
         const Vector3d from = placeOf(hand.waypoint(n)), to = placeOf(hand.waypoint(n + 1));
         for (const double share : {0.0, 0.5})
             for (const Vector3d& p : structures)
-                nearest = std::min(nearest, (from + share * (to - from) - p).norm() - kBurr_mm);
+                nearest = std::min(nearest, (from + share * (to - from) - p).norm() - burr_mm);
     }
     return nearest;
 }
 
-TEST_F(MakeTemporalBone, PlansAHandForEachBone) {
+TEST_F(MakeTrainingBone, PlansAHandForEachBone) {
     for (const Case& each : {Case{"6", "left", "middle"}, {"7", "right", "hard"}}) {
         SCOPED_TRACE(nameOf(each));
         const test::Finished made = make(each);
@@ -74,7 +77,7 @@ TEST_F(MakeTemporalBone, PlansAHandForEachBone) {
         EXPECT_EQ(scene.name(), nameOf(each));
         EXPECT_NE(scene.title().find("phantom"), std::string::npos);
         const scene::SimulatedOperator& hand = scene.simulated_operator();
-        EXPECT_GT(nearest_mm(hand, structuresOf(folder_ / (nameOf(each) + "_labels.nrrd"))), 0.8);
+        EXPECT_GT(nearest_mm(hand, 3, structuresOf(folder_ / (nameOf(each) + "_labels.nrrd"))), 0.8);
         // The antrum lies 14 mm below the surface; the hand ends where a burr of 3 mm has opened it.
         const Vector3d last = placeOf(hand.waypoint(hand.waypoint_size() - 4));
         EXPECT_LT((last - Vector3d(each.side == "right" ? 13.9 : -13.9, 5.2, 0)).norm(), 7);
@@ -83,7 +86,7 @@ TEST_F(MakeTemporalBone, PlansAHandForEachBone) {
     EXPECT_EQ(listed.exit_code, 0) << listed.out << listed.err;
 }
 
-TEST_F(MakeTemporalBone, ARightEarsSceneIsTheMirrorImage) {
+TEST_F(MakeTrainingBone, ARightEarsSceneIsTheMirrorImage) {
     const Case left{"5", "left", "easy"}, right{"5", "right", "easy"};
     ASSERT_EQ(make(left).exit_code, 0);
     ASSERT_EQ(make(right).exit_code, 0);
@@ -105,7 +108,24 @@ TEST_F(MakeTemporalBone, ARightEarsSceneIsTheMirrorImage) {
     EXPECT_EQ(r.simulated_operator().waypoint(5).q_wt().z(), -l.simulated_operator().waypoint(5).q_wt().z());
 }
 
-TEST_F(MakeTemporalBone, SaysWhatIsWrong) {
+TEST_F(MakeTrainingBone, PlansAHandForEachThirdMolar) {
+    for (const Case& each : {Case{"2", "left", "easy", "third_molar", "molar"},
+                             Case{"3", "right", "hard", "third_molar", "molar"}}) {
+        SCOPED_TRACE(nameOf(each));
+        const test::Finished made = make(each);
+        ASSERT_EQ(made.exit_code, 0) << made.err;
+        const scene::Scene scene = loadScene(folder_ / (nameOf(each) + ".textproto")).scene;
+        EXPECT_EQ(scene.name(), nameOf(each));
+        const scene::SimulatedOperator& hand = scene.simulated_operator();
+        EXPECT_GT(hand.waypoint_size(), 30);
+        const std::string labels = folder_ / (nameOf(each) + "_labels.nrrd");
+        EXPECT_GT(nearest_mm(hand, 1.5, structuresOf(labels, {1})), 1) << "nerve";
+        EXPECT_GT(nearest_mm(hand, 1.5, structuresOf(labels, {5, 6})), 0.1) << "second molar, lingual plate";
+        EXPECT_GT(nearest_mm(hand, 1.5, structuresOf(labels, {2, 3, 4})), -0.5) << "crown";
+    }
+}
+
+TEST_F(MakeTrainingBone, SaysWhatIsWrong) {
     const test::Finished refused = make({"-3", "left", "easy"});
     EXPECT_EQ(refused.exit_code, 2);
     EXPECT_NE(refused.err.find("--seed"), std::string::npos) << refused.err;
