@@ -10,6 +10,7 @@ import re
 import typing
 
 Span = tuple[float, float]
+FULL = 65535  # the densest value of a scan as the server saves it
 
 
 @dataclasses.dataclass(frozen=True)
@@ -35,7 +36,9 @@ class Plan:
     solid_mm: float
     hollow_mm: float
     step_mm: float
+    # No quicker, and none that takes more of the densest bone in a second.
     stroke_mm_per_s: float
+    most_mm3_per_s: float
     # Names of what is done, each down to a depth.
     phases: tuple[tuple[float, str], ...]
     # Where the hand rests, and where it is clear of the bone; out.
@@ -93,8 +96,16 @@ class Bone:
     def __init__(self, scan, iso, frame):
         self.scan, self.iso, self.frame = scan, iso, frame
 
+    def value(self, p):
+        return self.scan.values[self.scan.place(*self.scan.index(self.frame.to_w(p)))]
+
     def has(self, p):
-        return self.scan.values[self.scan.place(*self.scan.index(self.frame.to_w(p)))] >= self.iso
+        return self.value(p) >= self.iso
+
+    def density(self, p):
+        """From 0, where there is no bone, to 1."""
+        value = self.value(p)
+        return value / FULL if value >= self.iso else 0.0
 
     def surface(self, across, along):
         """How far out the outermost bone lies."""
@@ -106,6 +117,29 @@ class Bone:
             if scan.values[scan.place(*index)] >= self.iso:
                 return outwards * (scan.origin[axis] + scan.spacing[axis] * n)
         return 0.0
+
+
+class Burr:
+    """Remembers what a burr has taken; lengths are in cells of half a millimetre."""
+
+    CELL = 0.5
+
+    def __init__(self, plan, bone):
+        self.bone, self.gone = bone, set()
+        reach = int(plan.burr_mm / self.CELL)
+        span = range(-reach, reach + 1)
+        self.ball = [(a, b, c) for a in span for b in span for c in span
+                     if math.hypot(a, b, c) * self.CELL <= plan.burr_mm]
+
+    def take(self, start, end):
+        """How much bone it takes on a straight way, mm3 of the densest."""
+        steps, taken = max(1, math.ceil(math.dist(start, end) / self.CELL)), 0.0
+        for n in range(steps + 1):
+            i, j, k = (round(v / self.CELL) for v in between((start, end), n / steps))
+            for cell in {(i + a, j + b, k + c) for a, b, c in self.ball} - self.gone:
+                self.gone.add(cell)
+                taken += self.bone.density([v * self.CELL for v in cell])
+        return taken * self.CELL ** 3
 
 
 class Structures:
@@ -183,6 +217,16 @@ def strokes(plan, field, bone, structures):
         depth += layer_mm(plan, bone, [between(way, n / 6) for way in ways for n in range(7)])
 
 
+def lifted(start, end, clear):
+    """Places over which the burr keeps clear between two that are: none where the straight way does."""
+    count = max(1, math.ceil(math.dist(start, end) / 0.4))
+    up = 0.0
+    while up < 10 and not all(clear((out + up, across, along)) for out, across, along in
+                              (between((start, end), n / count) for n in range(1, count))):
+        up += 0.5
+    return [(start[0] + up, *start[1:]), (end[0] + up, *end[1:])] if up else []
+
+
 class Waypoints:
     """The lines of simulated_operator, one by one."""
 
@@ -211,14 +255,16 @@ def waypoints(plan, scan_file, iso, labels_file, side=1):
     frame = Frame(plan, side)
     bone = Bone(Volume(scan_file), iso, frame)
     way = Waypoints(plan, side)
-    structures = Structures(Volume(labels_file), plan, frame)
+    structures, burr = Structures(Volume(labels_file), plan, frame), Burr(plan, bone)
     for depth, places in (layer for field in plan.fields for layer in strokes(plan, field, bone, structures)):
         phase = plan.phase(depth)
         if way.here is None:
             way.go(0, (plan.rest_mm, *places[0][1:]), "approach", remove=False)
             way.go(1.5, (places[0][0] + 1, *places[0][1:]), phase)
-        for p in places:
-            way.go(max(math.dist(way.here, p) / plan.stroke_mm_per_s, 0.05), p, phase)
+        for end in places:
+            for p in [*lifted(way.here, end, structures.are_clear_of), end]:
+                taken = burr.take(way.here, p) if plan.most_mm3_per_s < math.inf else 0.0
+                way.go(max(math.dist(way.here, p) / plan.stroke_mm_per_s, taken / plan.most_mm3_per_s, 0.05), p, phase)
     beside = way.here[1:]
     way.go(1, (plan.free_mm, *beside), "withdraw", remove=False)
     way.go(1.5, (plan.rest_mm, *beside), "rest", remove=False)
