@@ -38,7 +38,7 @@ PLANS = {
         fields=(Field(((-2.3, 7.2), (-1.5, 7.2)), ((1.5, 6.9), (1.5, 6.9)), 0.45, 4.0),
                 Field(((-2.3, 7.2), (-1.5, 7.2)), ((6.9, 11.8), (6.9, 11.8)), 0.45, 4.0),
                 Field(((6.6, 7.4), (6.6, 7.4)), ((1.8, 11.5), (2.5, 11.5)), 3.6, 4.5)),
-        solid_mm=0.4, hollow_mm=0.8, step_mm=0.9, stroke_mm_per_s=12.0, most_mm3_per_s=4.5,
+        solid_mm=0.4, hollow_mm=0.8, step_mm=0.9, stroke_mm_per_s=12.0, most_mm3_per_s=4.0,
         phases=((2.0, "cortex"), (99.0, "gutter")),
         rest_mm=22.0, free_mm=10.0, axes=(2, 0, 1), turn=FROM_ABOVE),
 }

@@ -86,6 +86,15 @@ TEST_F(TaskGates, ThePediclesHandPassesAndOneThatBreaksIntoTheCanalFailsByTheBre
     EXPECT_GE(findFigure(medial.figures, "breach.depth")->value, 2);
 }
 
+TEST_F(TaskGates, TheThirdMolarsHandPassesAndOneThatStraysToTheTongueFailsByThePlate) {
+    makePhantom("third_molar");
+    expectPassed(attempt("third_molar"));
+    const Assessment lingual = attempt("third_molar", {-4, 0, -2});
+    EXPECT_FALSE(lingual.hasPassed());
+    const auto names = broken(lingual);
+    EXPECT_NE(std::ranges::find(names, "structure.lost_volume:lingual plate"), names.end());
+}
+
 // A nerve of soft tissue in soft tissue, 13 mm below all bone, in a region with fine voxels.
 void writeNerveScene(const test::TemporaryFolder& folder) {
     VolumeGeometry scan;
