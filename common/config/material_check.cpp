@@ -6,7 +6,7 @@
 namespace bonemill {
 namespace {
 
-constexpr int kMaxMaterials = 255;
+constexpr int kMaxMaterials = 127;  // a vertex tells it in 7 bits
 
 std::string pathOf(int index) {
     return "material[" + std::to_string(index) + "]";

@@ -18,6 +18,9 @@ struct PackedVertex {
 };
 static_assert(sizeof(PackedVertex) == 8);
 
+// A vertex with this bit in its material lies where the scan had bone: milling opened it.
+inline constexpr uint8_t kMilledBit = 0x80;
+
 struct NodeMesh {
     uint32_t leaf = 0;                                 // LeafId
     uint32_t revision = 0;                             // leaf version the mesh was made from
@@ -25,8 +28,8 @@ struct NodeMesh {
     Eigen::Vector3f step = Eigen::Vector3f::Zero();    // V, m
     std::vector<PackedVertex> vertices;
     std::vector<uint32_t> indices;  // 3 per triangle, counter-clockwise seen from outside
-    // Each vertex has 1 + the index of its material in the scene's list, or 0 for none; empty if
-    // none has one.
+    // Each vertex has 1 + the index of its material in the scene's list, or 0 for none, and kMilledBit; empty
+    // if all are 0.
     std::vector<uint8_t> materials;
 
     bool isEmpty() const noexcept { return indices.empty(); }

@@ -8,7 +8,7 @@ namespace bonemill {
 
 using MaterialId = uint8_t;  // 1 + index in the scene's list; 0: none
 inline constexpr MaterialId kNoMaterial = 0;
-inline constexpr int kMaxMaterials = 255;
+inline constexpr int kMaxMaterials = 127;  // a vertex tells it in 7 bits
 
 struct MaterialProperties {
     double stiffness_factor = 1;  // of the contact's stiffness per area

@@ -125,7 +125,7 @@ class ReplayServer {
     }
 
     void meshUntil(const std::stop_token& stop) {
-        ShownBone shown(scene_.scene, simulation_);
+        ShownBone shown(scene_.scene, simulation_, rerun_.history().scanned());
         MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_, shown.look(),
                           simulation_.surroundings ? &simulation_.surroundings->rim : nullptr);
         const auto put = [this](NodeGroup&& group) { outbox_.put(std::move(group), monotonicNowNs()); };

@@ -241,7 +241,7 @@ void SceneRun::publishRound() {
 }
 
 void SceneRun::meshUntil(const std::stop_token& stop) {
-    ShownBone shown(loaded_.scene, simulation_);
+    ShownBone shown(loaded_.scene, simulation_, history_.scanned());
     MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_, shown.look(),
                       simulation_.surroundings ? &simulation_.surroundings->rim : nullptr);
     bool has_cut = false;

@@ -96,7 +96,8 @@ void describeShades(const ShownShades& shades, topics::SceneInfo& info) {
     for (const scene::Material& shade : shades.list) *info.add_materials() = shade;
 }
 
-ShownBone::ShownBone(const scene::Scene& scene, const Simulation& simulation) {
+ShownBone::ShownBone(const scene::Scene& scene, const Simulation& simulation, const VoxelVolume& scanned)
+    : scanned_(scanned) {
     const scene::Scene shown = shownSceneOf(scene, simulation.segment_colors);
     if (!wantsVertexMaterials(shown)) return;
     properties_ = simulation.tick.effects.properties.get();

@@ -25,13 +25,14 @@ ShownShades shadesOf(const scene::Scene& shown, const DensityMapping& mapping);
 // Adds the shades behind materials and zones.
 void describeShades(const ShownShades& shades, topics::SceneInfo& info);
 
-// What the vertices of a session's bone show. The simulation must outlive it.
+// What the vertices of a session's bone show. The simulation, and the bone as it was scanned, must outlive it.
 class ShownBone {
   public:
-    ShownBone(const scene::Scene& scene, const Simulation& simulation);
-    VertexLook look() noexcept { return {properties_, shade_ ? &*shade_ : nullptr}; }
+    ShownBone(const scene::Scene& scene, const Simulation& simulation, const VoxelVolume& scanned);
+    VertexLook look() noexcept { return {properties_, shade_ ? &*shade_ : nullptr, &scanned_}; }
 
   private:
+    const VoxelVolume& scanned_;
     const BoneProperties* properties_ = nullptr;
     std::optional<ScanShade> shade_;
 };

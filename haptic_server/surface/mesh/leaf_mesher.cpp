@@ -8,6 +8,10 @@ namespace bonemill {
 namespace {
 
 constexpr uint32_t kNoVertex = UINT32_MAX;
+// So much denser than the iso-value the scan was where milling opened it: more than a vertex's place is rounded
+// by.
+constexpr float kWasInside = kMaxDensity / 128.0f;
+static_assert(kMaxMaterials < kMilledBit);
 
 }  // namespace
 
@@ -142,7 +146,7 @@ void LeafMesher::addVertex(const Eigen::Vector3i& local, int axis) {
     const OctahedralNormal packed = encodeNormal(normal);  // of any length
     vertices_.push_back(
         {uint16_t(position.x()), uint16_t(position.y()), uint16_t(position.z()), packed.u, packed.v});
-    if (look_.properties || look_.shade || paint_)
+    if (look_.properties || look_.shade || look_.scanned || paint_)
         materials_.push_back(shownAt(density_[low] >= volume_.iso(), voxel, axis, low, normal, fraction));
 }
 
@@ -157,9 +161,26 @@ uint8_t LeafMesher::shownAt(bool is_low_inside, const Eigen::Vector3i& low_voxel
     const MaterialId material = look_.properties
                                     ? materialUnder(inside, is_low_inside ? low : low + stride_[axis], normal)
                                     : kNoMaterial;
-    if (!look_.shade || (look_.properties && !look_.shade->scale().stands_for[material])) return material;
+    const uint8_t milled = look_.scanned ? milledBit(low_voxel, axis, low, fraction) : uint8_t(0);
+    if (!look_.shade || (look_.properties && !look_.shade->scale().stands_for[material]))
+        return material | milled;
     const Eigen::Vector3f place = low_voxel.cast<float>() + fraction * Eigen::Vector3f::Unit(axis);
-    return look_.shade->under(place.cwiseQuotient(inverse_spacing_), normal);
+    return look_.shade->under(place.cwiseQuotient(inverse_spacing_), normal) | milled;
+}
+
+// The edge alone decides it, so that leaves agree. What lies beyond the volume never changes.
+uint8_t LeafMesher::milledBit(const Eigen::Vector3i& low_voxel, int axis, size_t low,
+                              float fraction) const noexcept {
+    const IndexBox inner{Eigen::Vector3i::Zero(), volume_.dims().array() - 1};
+    const auto scannedAt = [&](const Eigen::Vector3i& v, size_t corner) {
+        return inner.contains(v) ? look_.scanned->at(v.x(), v.y(), v.z()) : density_[corner];
+    };
+    const size_t high = low + stride_[axis];
+    const Density was_low = scannedAt(low_voxel, low);
+    const Density was_high = scannedAt(low_voxel + Eigen::Vector3i::Unit(axis), high);
+    if (was_low == density_[low] && was_high == density_[high]) return 0;
+    const float was = float(was_low) + fraction * (float(was_high) - float(was_low));
+    return was > float(volume_.iso()) + kWasInside ? kMilledBit : uint8_t(0);
 }
 
 // The voxels around the edge alone decide it, so that leaves agree. Outside the volume the original

@@ -11,7 +11,8 @@
 // With `properties` a vertex also says what the bone under it is made of: as the inside voxel of its edge, or
 // as the next one below the surface if that is bone, too, and was denser: a voxel that bone fills only partly
 // looks like something less dense. A task's zones take its place where they have something to show
-// (zone_paint.h).
+// (zone_paint.h). With `scanned` it says, where no zone has something to show, whether milling opened the bone
+// there.
 //
 // Beyond the volume there is air, or, with a `rim`, the bone around it, which is shown as far as the first
 // layer of it: what the tick took away at a face leaves a wall there, and the surface ends where
@@ -33,10 +34,11 @@
 
 namespace bonemill {
 
-// What vertices show; without both they have no material. Both must outlive who uses them.
+// What vertices show; without any of it they have no material. All must outlive who uses them.
 struct VertexLook {
     const BoneProperties* properties = nullptr;
-    ScanShade* shade = nullptr;  // of what bone was where no material says it
+    ScanShade* shade = nullptr;            // of what bone was where no material says it
+    const VoxelVolume* scanned = nullptr;  // the bone as it was; never changes
 };
 
 // It meshes one leaf after another with reused memory, for one thread at a time. Volume and lattice
@@ -68,6 +70,7 @@ class LeafMesher {
     void addVertex(const Eigen::Vector3i& local, int axis);
     uint8_t shownAt(bool is_low_inside, const Eigen::Vector3i& low_voxel, int axis, size_t low,
                     const Eigen::Vector3f& normal, float fraction) const;
+    uint8_t milledBit(const Eigen::Vector3i& low_voxel, int axis, size_t low, float fraction) const noexcept;
     MaterialId materialUnder(const Eigen::Vector3i& inside, size_t corner,
                              const Eigen::Vector3f& normal) const noexcept;
 

@@ -1,5 +1,5 @@
-// The bone's shader looks up the colours of a scene's materials here. The palette only exists where a
-// material has a colour.
+// The bone's shader looks up here how a vertex looks by NodeMesh::materials: as its material in the scene does,
+// or, where milling opened the bone, as fresh bone of it.
 //
 // It belongs to the thread of the context.
 #pragma once
@@ -16,6 +16,10 @@ namespace bonemill {
 // list is empty where no material has one.
 std::vector<Eigen::Vector4f> paletteOf(const topics::SceneInfo& info);
 
+// Returns the same by all of a vertex' number. With kMilledBit bone is paler, whatever it is made of, and a
+// protected structure is red: it was cut.
+std::vector<Eigen::Vector4f> vertexColoursOf(const topics::SceneInfo& info);
+
 // Returns the linear colour of bone by material: of one without a colour that of plain bone.
 std::array<Eigen::Vector3f, 256> boneColoursOf(const std::vector<Eigen::Vector4f>& palette);
 
@@ -24,8 +28,11 @@ class MaterialPalette {
     // This goes before both shaders of a program that uses the palette.
     static constexpr char kDefine[] = "#define MATERIALS\n";
 
-    // Takes at least one colour and at most 256.
+    // Takes vertexColoursOf() a scene.
     MaterialPalette(const GlApi& gl, const std::vector<Eigen::Vector4f>& colours);
+
+    // Has bone that is not milled other colours than its own?
+    bool hasColours() const { return has_colours_; }
 
     // The program must be in use.
     void setUniforms(const Program& program) const;
@@ -35,6 +42,7 @@ class MaterialPalette {
 
     const GlApi& gl_;
     GlTexture texture_;
+    bool has_colours_;
 };
 
 }  // namespace bonemill

@@ -146,6 +146,7 @@ void NodeStore::set(const NodeMesh& mesh) {
               mesh.origin,
               mesh.step,
               GLsizei(mesh.indices.size()),
+              std::ranges::any_of(mesh.materials, [](uint8_t m) { return (m & kMilledBit) != 0; }),
               std::move(sorted.parts),
               {}};
     gl_.BindVertexArray(node.layout.name());
@@ -220,6 +221,10 @@ size_t NodeStore::triangleCount() const {
     size_t count = 0;
     for (const auto& [leaf, node] : nodes_) count += size_t(node.index_count) / 3;
     return count;
+}
+
+bool NodeStore::hasMilled() const {
+    return std::ranges::any_of(nodes_, [](const auto& node) { return node.second.has_milled; });
 }
 
 size_t NodeStore::draw(const Program& program, const Eigen::Matrix4f& clip_from_V) const {

@@ -62,6 +62,8 @@ class NodeStore {
     size_t nodeCount() const { return nodes_.size(); }
     size_t triangleCount() const;
     const UploadCount& uploads() const { return uploads_; }
+    // Is there a vertex with kMilledBit?
+    bool hasMilled() const;
 
     // From now on, or no longer, the store knows where it changes; that takes memory and time.
     void trackChanges(bool wants_changes) { tracks_changes_ = wants_changes; }
@@ -99,6 +101,7 @@ class NodeStore {
         Eigen::Vector3f origin;   // V, m
         Eigen::Vector3f step;     // V, m
         GLsizei index_count;
+        bool has_milled;
         std::vector<NodePart> parts;
         std::optional<NodeMesh>
             mesh;  // what the buffers hold, while changes are tracked or once it was milled

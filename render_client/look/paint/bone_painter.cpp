@@ -106,20 +106,22 @@ BonePainter::BonePainter(const GlApi& gl)
     : gl_(gl),
       depth_(gl, "bone depth", shaders::kMeshVertex, shaders::kDepthFragment),
       cap_(gl, "cap", shaders::kFullScreenVertex, shaders::kCapFragment),
-      no_attributes_(gl) {}
+      no_attributes_(gl),
+      palette_(std::make_unique<MaterialPalette>(gl, vertexColoursOf({}))) {}
 
 void BonePainter::setPalette(const std::vector<Eigen::Vector4f>& colours) {
-    palette_ = colours.empty() ? nullptr : std::make_unique<MaterialPalette>(gl_, colours);
+    palette_ = std::make_unique<MaterialPalette>(gl_, colours);
 }
 
 // Each combination of what the surface shows has a program of its own, made when it is first seen.
-const Program& BonePainter::surface() {
-    const bool has_film = hasFilm();
-    std::unique_ptr<Program>& program =
-        surfaces_[size_t(palette_ ? 1 : 0) + size_t(has_film ? 2 : 0) + size_t(near_ ? 4 : 0)];
+const Program& BonePainter::surface(bool has_milled) {
+    const bool has_film = hasFilm(), has_colours = has_milled || palette_->hasColours();
+    std::unique_ptr<Program>& program = surfaces_[size_t(has_colours ? 1 : 0) + size_t(has_film ? 2 : 0) +
+                                                  size_t(near_ ? 4 : 0) + size_t(has_milled ? 8 : 0)];
     if (program) return *program;
-    const std::string both =
-        std::string(palette_ ? MaterialPalette::kDefine : "") + (near_ ? "#define NEAR_STRUCTURES\n" : "");
+    const std::string both = std::string(has_colours ? MaterialPalette::kDefine : "") +
+                             (near_ ? "#define NEAR_STRUCTURES\n" : "") +
+                             (has_milled ? "#define MILLED\n" : "");
     program = std::make_unique<Program>(gl_, "bone", both + shaders::kMeshVertex,
                                         both + (has_film ? "#define FILM\n" : "") + shaders::kBoneFragment);
     return *program;
@@ -164,7 +166,7 @@ void BonePainter::drawTransparent(const Frame& frame, const NodeStore& nodes, GL
 void BonePainter::drawSurface(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
                               const Look& look) {
     const ClipPlanes clip(gl_, frame.cuts_V);
-    const Program& surface = this->surface();
+    const Program& surface = this->surface(nodes.hasMilled());
     surface.use();
     frame.setLight(gl_, surface, shadow_texture);
     setCutPlanes(surface, frame.cuts_V);
@@ -174,7 +176,7 @@ void BonePainter::drawSurface(const Frame& frame, const NodeStore& nodes, GLuint
     surface.set("inside_colour", look.inside);
     surface.set("shows_scan", milled_grey_ ? 1 : 0);
     surface.set("grey_of_density", milled_grey_.value_or(Eigen::Vector2f::UnitX()));
-    if (palette_) palette_->setUniforms(surface);
+    palette_->setUniforms(surface);
     if (hasFilm()) film_->setUniforms(surface);
     if (near_) near_->setUniforms(surface, shows_thickness_);
     triangles_drawn_ = nodes.draw(surface, frame.cull_from_V);

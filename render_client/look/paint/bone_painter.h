@@ -78,7 +78,7 @@ class BonePainter {
     void drawTransparent(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, double opacity,
                          const std::function<void()>& draw_tool);
 
-    // From now on bone has its materials' colours (paletteOf()), or its own when there are none.
+    // From now on bone has these colours (vertexColoursOf()).
     void setPalette(const std::vector<Eigen::Vector4f>& colours);
     // From now on bone is drawn with this film, or as it is when null. The film must outlive its use.
     void setFilm(const FilmPainter* film) { film_ = film; }
@@ -105,7 +105,7 @@ class BonePainter {
         Eigen::Vector3f inside;   // linear colour of the surface seen from within
     };
     bool hasFilm() const { return film_ && !(near_ && shows_thickness_); }
-    const Program& surface();
+    const Program& surface(bool has_milled);
     void drawSurface(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, const Look& look);
     void drawDepth(const Frame& frame, const NodeStore& nodes) const;
     void drawFarWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture);
@@ -119,9 +119,9 @@ class BonePainter {
     const GlApi& gl_;
     Program depth_, cap_;
     // By what the surface shows (surface()); null until it is shown first.
-    std::array<std::unique_ptr<Program>, 8> surfaces_;
+    std::array<std::unique_ptr<Program>, 16> surfaces_;
     GlVertexArray no_attributes_;
-    std::unique_ptr<MaterialPalette> palette_;  // null: bone's own colour
+    std::unique_ptr<MaterialPalette> palette_;
     const FilmPainter* film_ = nullptr;
     const CtFaces* faces_ = nullptr;
     std::optional<Eigen::Vector2f> milled_grey_;

@@ -63,12 +63,12 @@ void RenderScene::setSceneInfo(const topics::SceneInfo& info) {
     hud_input_.info = info;
     structures_.setInfo(info);
     awaits_info_ = false;
-    std::vector<Eigen::Vector4f> palette = paletteOf(info);
-    if (palette != palette_) {
-        renderer_.setPalette(palette);
-        ct_.setPalette(palette);
+    std::vector<Eigen::Vector4f> colours = vertexColoursOf(info);
+    if (colours != vertex_colours_) {
+        renderer_.setPalette(colours);
+        ct_.setPalette(paletteOf(info));
     }
-    palette_ = std::move(palette);
+    vertex_colours_ = std::move(colours);
     makeEffects(info);
 }
 

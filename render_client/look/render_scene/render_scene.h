@@ -202,7 +202,7 @@ class RenderScene {
     std::optional<std::map<uint32_t, Eigen::Vector3f>> near_structures_;  // drawn, with their colours
     std::optional<std::pair<int, int>> mouse_;
     FrameView last_view_;  // of the last picture without stereo
-    std::vector<Eigen::Vector4f> palette_;
+    std::vector<Eigen::Vector4f> vertex_colours_;
     const GlApi& gl_;
 };
 

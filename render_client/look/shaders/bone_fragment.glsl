@@ -21,6 +21,27 @@ uniform bool shows_scan;
 uniform float grain_size;      // m
 #endif
 
+#ifdef MILLED
+in float milled;  // 0 to 1: milling opened the bone here
+#ifndef GL_ES
+uniform mat4 camera_from_model;
+
+// What flutes leave: scratches of half a millimetre, grain within them. Light from the side brings them out. A
+// picture whose pixels are not fine enough shows none.
+float millingMarks(vec3 p, float pixel) {
+    const float kScratch = 4.5e-4, kGrain = 1.7e-4;
+    const vec3 kAlong = vec3(0.62, 0.48, 0.62);
+    float scratched = 1.0 - smoothstep(0.25, 0.7, pixel / kScratch), grained = 1.0 - smoothstep(0.25, 0.7, pixel / kGrain);
+    if (scratched <= 0.0) return 0.0;
+    vec3 at = (p - 0.75 * dot(p, kAlong) * kAlong) / kScratch;
+    vec3 to_light = transpose(mat3(camera_from_model)) * key_direction;
+    float relief = valueNoise(at) - valueNoise(at + 0.5 * to_light);
+    if (grained > 0.0) relief += grained * 0.5 * (valueNoise(p / kGrain) - 0.5);
+    return scratched * relief;
+}
+#endif
+#endif
+
 #ifdef NEAR_STRUCTURES
 in vec4 near_structure;              // linear colour, distance as a share of the reach
 uniform bool shows_thickness;        // or what shines through
@@ -68,6 +89,10 @@ void main() {
     vec3 albedo = mix(vec3(0.69, 0.55, 0.38), vec3(0.82, 0.71, 0.54), mottling);
 #ifdef MATERIALS
     albedo = albedo * (1.0 - material_colour.a) + material_colour.rgb * mix(0.88, 1.12, mottling);
+#endif
+#if defined(MILLED) && !defined(GL_ES)
+    float pixel = length(fwidth(p_M));
+    if (milled > 0.0) albedo *= 1.0 + 0.55 * milled * millingMarks(p_M, pixel);
 #endif
 #ifndef GL_ES
     if (shows_scan && scanned.y > 0.0) {
@@ -117,6 +142,9 @@ void main() {
     // Dry bone is matt: a broad, faint shine. A wet one has the film's narrow highlight.
     float mirrored = max(dot(normal, half_way), 0.0);
     float gloss = pow(mirrored, 14.0) * 0.11;
+#ifdef MILLED
+    gloss *= 1.0 - milled;
+#endif
 #ifdef FILM
     gloss = mix(gloss, pow(mirrored, 90.0) * 1.1, wetness);
 #endif

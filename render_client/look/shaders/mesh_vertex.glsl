@@ -1,9 +1,12 @@
 layout(location = 0) in vec3 steps;
 layout(location = 1) in vec2 octahedral;
 #ifdef MATERIALS
-layout(location = 2) in float material;  // 1 + index in the scene's list, 0: none
+layout(location = 2) in float material;  // 1 + index in the scene's list, 0: none; 128 more where it was milled
 uniform sampler2D palette;               // per material: linear colour times alpha; alpha 0: it has none
 out vec4 material_colour;
+#endif
+#ifdef MILLED
+out float milled;
 #endif
 #ifdef GL_ES
 layout(location = 3) in float mottling;  // 0 to 255
@@ -46,6 +49,9 @@ void main() {
     gl_Position = clip_from_camera * vec4(p_C, 1.0);
 #ifdef MATERIALS
     material_colour = texelFetch(palette, ivec2(int(material), 0), 0);
+#endif
+#ifdef MILLED
+    milled = step(127.5, material);
 #endif
 #ifdef GL_ES
     grain = mottling / 255.0;

@@ -7,7 +7,8 @@ namespace bonemill::shaders {
 
 // Bone. Vertex attribute 0 of a mesh is the position (quantisation steps), 1 the normal (octahedral, ±127), 2
 // the material, 3 what the scan measured. With `#define MATERIALS` before both shaders, bone has its
-// materials' colours; with `#define NEAR_STRUCTURES` what shines through it or is near below it.
+// materials' colours, with `#define MILLED` as well it is matt and scratched where it was milled; with
+// `#define NEAR_STRUCTURES` what shines through it or is near below it.
 extern const char kMeshVertex[];
 extern const char kBoneFragment[];  // with `#define FILM`: blood and water lie on it
 extern const char kCapFragment[];   // the face of a cut; with `#define CT`: the scan on it

@@ -93,6 +93,7 @@ void BoneSurface::set(const NodeMesh& mesh) {
     if (mesh.isEmpty()) return remove(mesh.leaf);
     Leaf leaf{mesh.origin, mesh.step, mesh.vertices, {}, {}, {}, {}};
     if (mesh.materials.size() == mesh.vertices.size()) leaf.materials = mesh.materials;
+    for (uint8_t& material : leaf.materials) material &= uint8_t(~kMilledBit);
     for (size_t i = 0; i < leaf.vertices.size(); ++i) leaf.box.extend(leaf.point(i).p_V);
     const auto known = leaves_.find(mesh.leaf);
     if (tracks_fresh_) noteFresh(known == leaves_.end() ? nullptr : &known->second, leaf);

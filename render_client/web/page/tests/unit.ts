@@ -328,7 +328,7 @@ test('what is near bone is told with its distance', () => {
     bytes.setUint16(kVertexBytes * i + 2, y, true);
   });
   const origin: linear.Vec3 = [0.01, 0.02, 0.03];
-  const node = { leaf: 0, chunk: '', origin, step: 1e-6, low: origin, high: origin, vertices, indices: Uint32Array.from([0, 1, 2, 1, 3, 2]), coarse: new Uint32Array() };
+  const node = { leaf: 0, chunk: '', origin, step: 1e-6, low: origin, high: origin, vertices, indices: Uint32Array.from([0, 1, 2, 1, 3, 2]), coarse: new Uint32Array(), isMilled: false };
   const near = nearStructures([{ surface: { id: 1, warningDistance: 0.002, node }, colour: [1, 0.5, 0] }])!;
   let seen = 0;
   for (let n = 0; n < near.samples.length / 4; ++n) {

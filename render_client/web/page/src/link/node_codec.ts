@@ -19,7 +19,7 @@ export interface DecodedNode {
   vertexCount: number;
   packed: Uint8Array;  // kPackedBytes each
   indices: Uint32Array;
-  materials?: Uint8Array;  // 1 + index in the scene's list, 0: none
+  materials?: Uint8Array;  // 1 + index in the scene's list, 0: none; and kMilledBit of shared/messages.ts
 }
 
 export const decoderReady: Promise<void> = MeshoptDecoder.ready;

@@ -3,7 +3,7 @@
 //
 // A vertex has 12 bytes: x, y, z (uint16), the octahedral normal (2 int8), material and mottling (uint8), 2 unused.
 import type { Vec3 } from '../math/linear';
-import { kVertexBytes, type PlacedNode } from '../shared/messages';
+import { kMilledBit, kVertexBytes, type PlacedNode } from '../shared/messages';
 import type { DecodedNode } from './node_codec';
 import { kPackedBytes } from './node_codec';
 import { coarseIndices } from './coarse_indices';
@@ -39,7 +39,8 @@ export class Placement {
     const steps = cells.map((n) => (n - kReach) * kChunkSteps) as unknown as Vec3;
     const cell = Math.max((kCoarseVoxels * kStepsPerVoxel * node.step[0]) / this.step, 1);
     const { indices } = node, coarse = coarseIndices(vertices, indices, { origin: steps, cell });
-    return { leaf, chunk: cells.join(' '), origin, step: this.step, low, high, vertices, indices, coarse };
+    const isMilled = node.materials?.some((material) => (material & kMilledBit) !== 0) ?? false;
+    return { leaf, chunk: cells.join(' '), origin, step: this.step, low, high, vertices, indices, coarse, isMilled };
   }
 
   private verticesOf(node: DecodedNode, origin: Vec3): Uint8Array {

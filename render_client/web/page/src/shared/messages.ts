@@ -203,8 +203,11 @@ export interface PlacedNode {
   vertices: Uint8Array;  // kVertexBytes each
   indices: Uint32Array;
   coarse: Uint32Array;  // fewer triangles of the same vertices
+  isMilled: boolean;  // somewhere
 }
 export const kVertexBytes = 12;
+// In a vertex' material: milling opened the bone there.
+export const kMilledBit = 0x80;
 
 // A mesh of its own, in the same vertices.
 export interface StructureSurface {

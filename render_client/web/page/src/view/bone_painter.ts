@@ -13,7 +13,7 @@ import { bindTexture, makeTexture, makeVolumeTexture, Program, type Gl, type Uni
 import type { Layers } from './layers';
 import { shineUniforms, type NearStructures } from './near_structures';
 import type { Frame, PictureView } from './picture_view';
-import { linearColour } from './structure_colours';
+import { vertexColours } from './vertex_colours';
 import { product, type Box, type Mat4, type Vec3 } from '../math/linear';
 
 const kGrain = 0.045;  // size of the mottling over the bone's radius
@@ -39,6 +39,7 @@ export class BonePainter {
   private readonly structures = new Map<number, Chunk>();
   private programs!: Record<'whole' | 'cut', Programs>;
   private hasColours = false;
+  private hasMilled = false;
   // What shines through thin bone.
   private near?: { structures: NearStructures; texture: WebGLTexture };
   private shines = true;
@@ -53,13 +54,17 @@ export class BonePainter {
     this.makePrograms();
     this.cap = new Program(gl, 'cap', full_screen_vertex, cap_fragment, this.light);
     this.palette = makeTexture(gl, gl.RGBA32F, 256, 1);
+    this.setMaterials([]);
     this.nothing = gl.createVertexArray();
   }
 
   // One per way of looking, so that none does what is not asked for.
   private makePrograms(): void {
     const { gl, light } = this;
-    const looks = [...(this.hasColours ? ['MATERIALS'] : []), ...(this.near ? ['NEAR_STRUCTURES'] : [])];
+    const looks = [
+      ...(this.hasColours || this.hasMilled ? ['MATERIALS'] : []), ...(this.hasMilled ? ['MILLED'] : []),
+      ...(this.near ? ['NEAR_STRUCTURES'] : []),
+    ];
     const of = (words: string[]): Programs => ({
       surface: new Program(gl, 'bone', mesh_vertex, bone_fragment, [...words, ...light, ...looks]),
       depth: new Program(gl, 'bone depth', mesh_vertex, depth_fragment, words),
@@ -69,10 +74,7 @@ export class BonePainter {
   }
 
   setMaterials(materials: MaterialView[]): void {
-    const texels = new Float32Array(4 * 256), has_colours = materials.some(({ colour }) => colour);
-    materials.forEach(({ colour }, i) => {
-      if (colour) texels.set([...linearColour(colour), 1], 4 * (i + 1));
-    });
+    const texels = vertexColours(materials), has_colours = materials.some(({ colour }) => colour);
     const has_changed = has_colours !== this.hasColours;
     this.hasColours = has_colours;
     if (has_changed) this.makePrograms();
@@ -123,6 +125,9 @@ export class BonePainter {
   // seen through transparent bone.
   draw(frame: Frame, view: PictureView, draw_tool: () => void): void {
     this.trianglesDrawn = 0;
+    const has_milled = this.bone.hasMilled, has_changed = has_milled !== this.hasMilled;
+    this.hasMilled = has_milled;
+    if (has_changed) this.makePrograms();
     this.shines = view.structureMode !== 'off';
     if (view.opacity === undefined) this.drawOpaque(frame, view);
     else this.drawTransparent(frame, view, view.opacity, draw_tool);

@@ -193,6 +193,12 @@ export class BoneStore {
     return this.chunkOf.size;
   }
 
+  get hasMilled(): boolean {
+    for (const chunk of this.chunks.values())
+      for (const { node } of chunk.pieces.values()) if (node.isMilled) return true;
+    return false;
+  }
+
   set(node: PlacedNode): void {
     if (this.chunkOf.get(node.leaf) !== node.chunk) this.remove(node.leaf);
     let chunk = this.chunks.get(node.chunk);
