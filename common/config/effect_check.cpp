@@ -110,6 +110,19 @@ void checkBleedingMaterials(const scene::Scene& scene, const RefuseField& refuse
                    "= \"" + bleeding.material(n) + "\" is no material of this scene");
 }
 
+void checkTraces(const scene::Scene& scene, const RefuseField& refuse) {
+    const scene::Effects& effects = scene.effects();
+    if (effects.has_browning() && !effects.has_thermal())
+        refuse(pathOf("browning"), "would never see hot bone: list thermal as well");
+    const scene::Browning& browning = effects.browning();
+    if (browning.brown_from_c() >= browning.charred_from_c())
+        refuse(pathOf("browning") + ".brown_from_c",
+               "= " + numberText(browning.brown_from_c()) +
+                   " is not below charred_from_c = " + numberText(browning.charred_from_c()));
+    if (effects.has_bruising() && !effects.has_protected_structures())
+        refuse(pathOf("bruising"), "would never see a touch: list protected_structures as well");
+}
+
 }  // namespace
 
 const char* effectOfGradientLaw(const scene::Effects& effects) {
@@ -125,6 +138,7 @@ void checkEffects(const scene::Scene& scene, const RefuseField& refuse) {
     checkBleedingMaterials(scene, refuse);
     checkThermal(scene, refuse);
     checkSound(scene, refuse);
+    checkTraces(scene, refuse);
     if (scene.effects().has_time_removal() && scene.effects().has_energy_removal())
         refuse("effects.time_removal",
                "stands beside effects.energy_removal: bone goes by time or by energy, list one");

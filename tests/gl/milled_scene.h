@@ -38,12 +38,26 @@ inline const std::vector<NodeMesh>& layeredBlock() {
     return nodes;
 }
 
+inline const VoxelVolume& scannedBlock() {
+    static const VoxelVolume scanned = bodyVolumeOf(
+        65, 2.5e-4, [](const Eigen::Vector3d& p) { return (p - kBlockCenter).norm() - kBlockRadius; });
+    return scanned;
+}
+
+// The same, and vertices say where it was milled.
+inline const std::vector<NodeMesh>& freshBlock(bool has_layers) {
+    const auto make = [](const MaterialFunction& material) {
+        return meshBody(65, 2.5e-4, milledBlockDistance, material, nullptr, &scannedBlock());
+    };
+    static const std::vector<NodeMesh> plain = make({}), layered = make(blockMaterial);
+    return has_layers ? layered : plain;
+}
+
 // A task asked for a cavity that is deeper and narrower: what was to go and is left, and what is gone beyond
 // it.
 inline const std::vector<NodeMesh>& zonedBlock() {
     static const std::vector<NodeMesh> nodes = [] {
-        const auto whole = [](const Eigen::Vector3d& p) { return (p - kBlockCenter).norm() - kBlockRadius; };
-        const VoxelVolume scanned = bodyVolumeOf(65, 2.5e-4, whole);
+        const VoxelVolume& scanned = scannedBlock();
         std::vector<uint8_t> zones;
         forEachIndex({Eigen::Vector3i::Zero(), scanned.dims().array() - 1}, [&](const Eigen::Vector3i& v) {
             const Eigen::Vector3d p = 2.5e-4 * v.cast<double>() - kCavityCenter;

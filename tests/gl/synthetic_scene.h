@@ -32,15 +32,16 @@ inline VoxelVolume bodyVolumeOf(int voxels, double spacing, const DistanceFuncti
 
 // Makes the iso-surface of distance = 0, cut into leaves of 16 cells.
 inline std::vector<NodeMesh> meshBody(int voxels, double spacing, const DistanceFunction& distance,
-                                      const MaterialFunction& material = {},
-                                      const ZonePaint* paint = nullptr) {
+                                      const MaterialFunction& material = {}, const ZonePaint* paint = nullptr,
+                                      const VoxelVolume* scanned = nullptr) {
     const VoxelVolume volume = bodyVolumeOf(voxels, spacing, distance);
     const LeafLattice lattice(volume, Eigen::Vector3i::Constant(16));
     std::optional<BoneProperties> properties;
     if (material)
         properties.emplace(volume,
                            [&](const Eigen::Vector3i& v) { return material(spacing * v.cast<double>()); });
-    LeafMesher mesher(volume, lattice, MeshGrid::kMaxStepsPerCell, {properties ? &*properties : nullptr});
+    LeafMesher mesher(volume, lattice, MeshGrid::kMaxStepsPerCell,
+                      {properties ? &*properties : nullptr, nullptr, scanned});
     mesher.setPaint(paint);
     std::vector<NodeMesh> nodes;
     for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
@@ -136,6 +137,8 @@ inline void listAllEffects(topics::SceneInfo& info) {
     effects.mutable_irrigation()->mutable_nozzle_mm()->set_y(7);
     effects.mutable_burr_spin();
     effects.mutable_milling_sound();
+    effects.mutable_browning();
+    effects.mutable_bruising();
 }
 
 inline topics::Status makeStatus() {

@@ -25,7 +25,8 @@ ShownShades shadesOf(const scene::Scene& shown, const DensityMapping& mapping);
 // Adds the shades behind materials and zones.
 void describeShades(const ShownShades& shades, topics::SceneInfo& info);
 
-// What the vertices of a session's bone show. The simulation, and the bone as it was scanned, must outlive it.
+// What the vertices of a session's bone show. The simulation, and the bone as it was scanned, must outlive
+// it.
 class ShownBone {
   public:
     ShownBone(const scene::Scene& scene, const Simulation& simulation, const VoxelVolume& scanned);

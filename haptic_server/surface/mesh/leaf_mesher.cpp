@@ -8,8 +8,8 @@ namespace bonemill {
 namespace {
 
 constexpr uint32_t kNoVertex = UINT32_MAX;
-// So much denser than the iso-value the scan was where milling opened it: more than a vertex's place is rounded
-// by.
+// So much denser than the iso-value the scan was where milling opened it: more than a vertex's place is
+// rounded by.
 constexpr float kWasInside = kMaxDensity / 128.0f;
 static_assert(kMaxMaterials < kMilledBit);
 

@@ -11,8 +11,8 @@
 // With `properties` a vertex also says what the bone under it is made of: as the inside voxel of its edge, or
 // as the next one below the surface if that is bone, too, and was denser: a voxel that bone fills only partly
 // looks like something less dense. A task's zones take its place where they have something to show
-// (zone_paint.h). With `scanned` it says, where no zone has something to show, whether milling opened the bone
-// there.
+// (zone_paint.h). With `scanned` it says, where no zone has something to show, whether milling opened the
+// bone there.
 //
 // Beyond the volume there is air, or, with a `rim`, the bone around it, which is shown as far as the first
 // layer of it: what the tick took away at a face leaves a wall there, and the surface ends where

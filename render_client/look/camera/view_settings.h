@@ -23,8 +23,16 @@ struct CutPlane {
 };
 
 // The effects stand in the order of the scene's message Effects.
-enum class ViewerEffect : uint8_t { kBoneDust, kBleeding, kIrrigation, kBurrSpin, kMillingSound };
-constexpr size_t kViewerEffects = size_t(ViewerEffect::kMillingSound) + 1;
+enum class ViewerEffect : uint8_t {
+    kBoneDust,
+    kBleeding,
+    kIrrigation,
+    kBurrSpin,
+    kMillingSound,
+    kBrowning,
+    kBruising
+};
+constexpr size_t kViewerEffects = size_t(ViewerEffect::kBruising) + 1;
 
 // Grey goes from black at level - width / 2 to white at level + width / 2, in the scan's values (HU of a CT).
 struct GreyWindow {

@@ -8,11 +8,12 @@
 namespace bonemill {
 namespace {
 
-constexpr double kGamma = 2.2;  // as toneMap() of the shaders
+constexpr double kGamma = 2.2;     // as toneMap() of the shaders
 constexpr GLsizei kColours = 256;  // a vertex may name a material that the scene does not have
 const Eigen::Vector3f kPlainBone(0.755f, 0.63f, 0.46f);  // the middle of the bone shader's mottling
 
-// Milled bone is of the colour of its dust, which lies in its pores; some of what it is made of is left to see.
+// Milled bone is of the colour of its dust, which lies in its pores; some of what it is made of is left to
+// see.
 const Eigen::Vector3f kBoneDust(0.93f, 0.89f, 0.81f);
 constexpr float kPaler = 0.5f;
 const Eigen::Vector3f kBloodshot(0.42f, 0.02f, 0.02f);
@@ -38,7 +39,8 @@ std::vector<Eigen::Vector4f> vertexColoursOf(const topics::SceneInfo& info) {
     std::vector<Eigen::Vector4f> colours = paletteOf(info);
     colours.resize(kColours, Eigen::Vector4f::Zero());
     for (size_t n = 0; n < kMilledBit; ++n) {
-        const bool is_cut = n > 0 && n <= size_t(info.materials_size()) && info.materials(int(n) - 1).is_protected();
+        const bool is_cut =
+            n > 0 && n <= size_t(info.materials_size()) && info.materials(int(n) - 1).is_protected();
         const Eigen::Vector3f over = is_cut ? kBloodshot : kBoneDust;
         const float share = is_cut ? kRedder : kPaler;
         Eigen::Vector4f& milled = colours[n | kMilledBit];

@@ -1,5 +1,5 @@
-// The bone's shader looks up here how a vertex looks by NodeMesh::materials: as its material in the scene does,
-// or, where milling opened the bone, as fresh bone of it.
+// The bone's shader looks up here how a vertex looks by NodeMesh::materials: as its material in the scene
+// does, or, where milling opened the bone, as fresh bone of it.
 //
 // It belongs to the thread of the context.
 #pragma once

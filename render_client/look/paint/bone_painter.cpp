@@ -33,7 +33,7 @@ FilmPainter::FilmPainter(const GlApi& gl) : gl_(gl), texture_(gl) {
     constexpr int kCells = SurfaceFilm::kCells;
     gl_.ActiveTexture(GL_TEXTURE0 + kFilmUnit);
     gl_.BindTexture(GL_TEXTURE_3D, texture_.name());
-    gl_.TexImage3D(GL_TEXTURE_3D, 0, GL_RG8, kCells, kCells, kCells, 0, GL_RG, GL_UNSIGNED_BYTE, nullptr);
+    gl_.TexImage3D(GL_TEXTURE_3D, 0, GL_RGBA8, kCells, kCells, kCells, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     gl_.setSampling(GL_TEXTURE_3D, GL_LINEAR, GL_REPEAT);
     gl_.ActiveTexture(GL_TEXTURE0);
     gl_.check("making the film's texture");
@@ -41,7 +41,8 @@ FilmPainter::FilmPainter(const GlApi& gl) : gl_(gl), texture_(gl) {
 
 Eigen::AlignedBox3f FilmPainter::update(const EffectPicture& picture) {
     SurfaceFilm& film = *picture.film;
-    const Eigen::Vector2f strength(picture.shows_blood, picture.shows_water);
+    const Eigen::Vector4f strength(picture.shows_blood, picture.shows_water, picture.shows_burns,
+                                   picture.shows_bruises);
     if (!film.takeDue() && strength == strength_) return {};
     Eigen::AlignedBox3f changed = film.takeChanged();
     if (strength != strength_) changed.extend(film.shownBox());
@@ -57,7 +58,7 @@ Eigen::AlignedBox3f FilmPainter::update(const EffectPicture& picture) {
     gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     for (int z = 0; z < kCells; ++z)
         if (slices[size_t(z)])
-            gl_.TexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, z, kCells, kCells, 1, GL_RG, GL_UNSIGNED_BYTE,
+            gl_.TexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, z, kCells, kCells, 1, GL_RGBA, GL_UNSIGNED_BYTE,
                               film.slice(z).data());
     gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     gl_.ActiveTexture(GL_TEXTURE0);

@@ -26,7 +26,7 @@
 
 namespace bonemill {
 
-// Blood and water on the bone, as a texture.
+// What lies on the bone, as a texture.
 //
 // It belongs to the thread of the context.
 class FilmPainter {
@@ -43,7 +43,7 @@ class FilmPainter {
     GlTexture texture_;
     float period_ = 1;
     Eigen::AlignedBox3f shown_;
-    Eigen::Vector2f strength_ = Eigen::Vector2f::Zero();
+    Eigen::Vector4f strength_ = Eigen::Vector4f::Zero();
     Eigen::Vector3f blood_colour_ = Eigen::Vector3f::Zero();
 };
 

@@ -23,9 +23,11 @@ namespace bonemill {
 struct EffectPicture {
     Particles particles;           // dust, water
     std::optional<BurrTurn> turn;  // of the burr's flutes
-    bool shows_blood = false, shows_water = false;
+    bool shows_blood = false, shows_water = false, shows_burns = false, shows_bruises = false;
     Eigen::Vector3f blood_colour = Eigen::Vector3f::Zero();  // linear
-    SurfaceFilm* film = nullptr;  // where blood and water lie on the bone; its changes are taken
+    SurfaceFilm* film = nullptr;  // where all that lies on the bone; its changes are taken
+
+    bool showsFilm() const { return shows_blood || shows_water || shows_burns || shows_bruises; }
 };
 
 // The user wants the tool there; the line to it shows how hard the hand presses.

@@ -30,6 +30,7 @@ void SceneRenderer::setPalette(const std::vector<Eigen::Vector4f>& colours) {
 
 void SceneRenderer::prepare(const EffectNeeds& needs) {
     bone_.setFilm(nullptr);
+    structures_.setFilm(nullptr);
     film_ = needs.film ? std::make_unique<FilmPainter>(gl_) : nullptr;
     particles_ = needs.particles ? std::make_unique<ParticlePainter>(gl_) : nullptr;
     tool_.prepareSpin(needs.spin);
@@ -44,7 +45,8 @@ void SceneRenderer::draw(const FrameView& view, NodeStore& nodes, const ToolMesh
     }
     chooseSurface(view);
     if (film_) {
-        bone_.setFilm(view.effects->shows_blood || view.effects->shows_water ? film_.get() : nullptr);
+        bone_.setFilm(view.effects->showsFilm() ? film_.get() : nullptr);
+        structures_.setFilm(view.effects->shows_bruises ? film_.get() : nullptr);
         look_changed_.extend(film_->update(*view.effects));
     }
     const bool is_quick = view.quality == Quality::kQuick;

@@ -83,6 +83,8 @@ void StructurePainter::set(const NodeMesh& mesh) {
     if (!program_) {
         program_ =
             std::make_unique<Program>(gl_, "structure", shaders::kMeshVertex, shaders::kStructureFragment);
+        bruised_ = std::make_unique<Program>(gl_, "bruised structure", shaders::kMeshVertex,
+                                             std::string("#define FILM\n") + shaders::kStructureFragment);
         section_ = std::make_unique<Program>(gl_, "section of a structure", shaders::kFullScreenVertex,
                                              shaders::kSectionFragment);
     }
@@ -124,12 +126,14 @@ void StructurePainter::drawPart(const Frame& frame, const std::vector<StructureL
                                 GLuint shadow_texture, Part part) const {
     if (shapes_.empty()) return;
     const ClipPlanes clip(gl_, frame.cuts_V);
-    program_->use();
-    frame.setLight(gl_, *program_, shadow_texture);
-    setCutPlanes(*program_, frame.cuts_V);
-    program_->set("camera_from_model", frame.X_CV);
+    const Program& surface = this->surface();
+    surface.use();
+    frame.setLight(gl_, surface, shadow_texture);
+    setCutPlanes(surface, frame.cuts_V);
+    if (film_) film_->setUniforms(surface);
+    surface.set("camera_from_model", frame.X_CV);
     const bool is_behind = part == Part::kBehind;
-    program_->set("is_behind", is_behind ? 1 : 0);
+    surface.set("is_behind", is_behind ? 1 : 0);
     if (is_behind) {
         gl_.Enable(GL_BLEND);
         gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
@@ -143,9 +147,9 @@ void StructurePainter::drawPart(const Frame& frame, const std::vector<StructureL
         const bool is_shown =
             is_behind ? look.mode == StructureMode::kThroughBone : look.mode != StructureMode::kOff;
         if (shape == shapes_.end() || !is_shown) continue;
-        program_->set("structure_colour", look.colour);
-        program_->set("glow", look.glow);
-        shape->second.surface.draw(*program_, frame.cull_from_V);
+        surface.set("structure_colour", look.colour);
+        surface.set("glow", look.glow);
+        shape->second.surface.draw(surface, frame.cull_from_V);
     }
     gl_.DepthFunc(GL_LESS);
     gl_.DepthMask(GL_TRUE);

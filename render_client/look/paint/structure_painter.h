@@ -9,6 +9,7 @@
 #include "render_client/look/camera/view_settings.h"
 #include "render_client/look/gl/gl_api.h"
 #include "render_client/look/model/node_store.h"
+#include "render_client/look/paint/bone_painter.h"
 #include "render_client/look/paint/frame.h"
 
 namespace bonemill {
@@ -23,6 +24,8 @@ class StructurePainter {
     // driver refuses the shader.
     void set(const NodeMesh& mesh);
     void clear();
+    // From now on they are red where this film has bruises, or nowhere when null. It must outlive its use.
+    void setFilm(const FilmPainter* film) { film_ = film; }
 
     // Returns the box (V, m) of structures that look otherwise than in the last call, or came or went.
     Eigen::AlignedBox3f takeChanged(const std::vector<StructureLook>& looks);
@@ -46,8 +49,11 @@ class StructurePainter {
     void countFaces(const Frame& frame, const Shape& shape) const;
     void drawSections(const Frame& frame, const std::vector<StructureLook>& looks) const;
 
+    const Program& surface() const { return film_ ? *bruised_ : *program_; }
+
     const GlApi& gl_;
-    std::unique_ptr<Program> program_, section_;  // null: there was no structure yet
+    std::unique_ptr<Program> program_, bruised_, section_;  // null: there was no structure yet
+    const FilmPainter* film_ = nullptr;
     GlVertexArray no_attributes_;
     std::map<uint32_t, Shape> shapes_;
     Eigen::AlignedBox3f changed_;

@@ -81,8 +81,8 @@ void RenderScene::makeEffects(const topics::SceneInfo& info) {
     effects_.reset();
     if (VisualEffects::anyIn(wish))
         effects_ = std::make_unique<VisualEffects>(wish, info.burr_radius_m(), info.materials());
-    renderer_.prepare({wish.has_bleeding() || wish.has_irrigation(),
-                       wish.has_bone_dust() || wish.has_irrigation(), wish.has_burr_spin()});
+    renderer_.prepare({VisualEffects::needsFilm(wish), wish.has_bone_dust() || wish.has_irrigation(),
+                       wish.has_burr_spin()});
     effect_picture_ = {};
     for (const auto& [leaf, mesh] : std::exchange(early_nodes_, {}))
         if (effects_) effects_->setNode(mesh);
@@ -173,6 +173,8 @@ const EffectPicture* RenderScene::effectPicture() {
     picture.film = effects_->film();
     picture.shows_blood = effects_->bleeding() && shows(ViewerEffect::kBleeding);
     picture.shows_water = effects_->irrigation() && shows(ViewerEffect::kIrrigation);
+    picture.shows_burns = effects_->hasBrowning() && shows(ViewerEffect::kBrowning);
+    picture.shows_bruises = effects_->hasBruising() && shows(ViewerEffect::kBruising);
     if (effects_->bleeding()) picture.blood_colour = effects_->bleeding()->colour();
     return &picture;
 }

@@ -62,15 +62,13 @@ float shineThrough(float thickness) {
 #endif
 
 #ifdef FILM
-uniform sampler3D film;            // blood, water; repeats
-uniform float film_period;         // m, V
-uniform vec3 film_low, film_high;  // V, of what the texture holds now
-uniform vec2 film_strength;
-uniform vec3 blood_colour;         // linear
+#include "film.glsl"
+uniform vec3 blood_colour;  // linear
 
-vec2 filmAt(vec3 p) {
-    if (any(lessThan(p, film_low)) || any(greaterThan(p, film_high))) return vec2(0.0);
-    return texture(film, p / film_period).rg * film_strength;
+// Brown first, then black, in spots.
+vec3 burnt(vec3 albedo, float burn, float spots) {
+    vec3 brown = albedo * mix(vec3(1.0), vec3(0.40, 0.22, 0.11), smoothstep(0.02, 0.35, burn * (0.8 + 0.4 * spots)));
+    return mix(brown, vec3(0.020, 0.015, 0.012), 0.95 * smoothstep(0.72, 1.0, burn * (0.85 + 0.3 * spots)));
 }
 #endif
 
@@ -111,12 +109,13 @@ void main() {
 #ifdef FILM
     vec3 sheen = vec3(0.0);
     float wetness = 0.0;
-    vec2 lying = inside ? vec2(0.0) : filmAt(p_M);
-    if (lying.x + lying.y > 0.0) {  // noise is dear
+    vec4 lying = inside ? vec4(0.0) : filmAt(p_M);
+    if (lying.x + lying.y + lying.z + lying.w > 0.0) {  // noise is dear
         float fine = valueNoise(p_M / film_period * 150.0), coarse = valueNoise(p_M / film_period * 48.0 + 5.0);
         float blood = smoothstep(0.10, 0.46, lying.x * (0.55 + 0.55 * fine + 0.45 * coarse));
         float wet = max(smoothstep(0.05, 0.7, lying.y * (0.7 + 0.6 * coarse)), 0.75 * blood);
         wetness = wet;
+        albedo = bruised(burnt(albedo, lying.z, fine), lying.w);
         albedo = mix(albedo * (1.0 - 0.34 * wet), blood_colour * (0.75 + 0.45 * coarse), 0.95 * blood);
         // The film's own surface is smoother than bone, but ripples.
         vec3 ripple = vec3(fine, coarse, valueNoise(p_M / film_period * 90.0 + 9.0)) - 0.5;

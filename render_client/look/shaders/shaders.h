@@ -10,12 +10,12 @@ namespace bonemill::shaders {
 // materials' colours, with `#define MILLED` as well it is matt and scratched where it was milled; with
 // `#define NEAR_STRUCTURES` what shines through it or is near below it.
 extern const char kMeshVertex[];
-extern const char kBoneFragment[];  // with `#define FILM`: blood and water lie on it
+extern const char kBoneFragment[];  // with `#define FILM`: blood, water, burns and bruises lie on it
 extern const char kCapFragment[];   // the face of a cut; with `#define CT`: the scan on it
 
 // Protected structures, of meshes as bone has them.
-extern const char kStructureFragment[];
-extern const char kSectionFragment[];  // a structure that a cut has opened
+extern const char kStructureFragment[];  // with `#define FILM`: bruises lie on them
+extern const char kSectionFragment[];    // a structure that a cut has opened
 
 // Tool and ghost. Vertex attribute 0 is the position (T, m), 1 the normal.
 extern const char kToolVertex[];

@@ -6,6 +6,10 @@ uniform vec3 structure_colour;  // linear
 uniform float glow;             // 0 to 1: the burr is near
 uniform bool is_behind;         // bone lies before it
 out vec4 colour;
+#ifdef FILM
+in vec3 p_M;
+#include "film.glsl"
+#endif
 
 void main() {
     cutAway();
@@ -13,6 +17,9 @@ void main() {
     vec3 normal = normalize(n_C);
     float facing_eye = abs(dot(normal, to_eye));
     vec3 albedo = mix(structure_colour, vec3(1.0), 0.30 * glow);
+#ifdef FILM
+    albedo = bruised(albedo, filmAt(p_M).w);
+#endif
     float outline = pow(1.0 - facing_eye, 2.0);
     if (is_behind) {
         // Like glass: the outline tells the shape, and bone keeps its own in the middle.

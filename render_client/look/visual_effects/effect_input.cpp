@@ -12,6 +12,7 @@ namespace {
 constexpr double kFastestSpin = 25000;              // rad/s: a turbine of 240,000 rpm
 constexpr double kMaxForce = 1000;                  // N
 constexpr double kMaxPower = 1e4;                   // W
+constexpr double kMaxHeat = 1000;                   // °C
 constexpr double kMaxRemoved = 1e-7;                // m³
 constexpr double kMinBurr = 1e-4, kMaxBurr = 5e-2;  // m
 constexpr double kTouch = 0.05;                     // N
@@ -40,6 +41,10 @@ EffectInput effectInputOf(const topics::ToolState& tool, const topics::SceneInfo
     input.spin_speed = bounded(effects.spin_speed(), -kFastestSpin, kFastestSpin);
     input.burr_force = bounded(effects.burr_force_n(), 0, kMaxForce);
     input.cutting_power = bounded(effects.cutting_power_w(), 0, kMaxPower);
+    if (effects.has_temperature_c()) input.hottest_c = bounded(effects.temperature_c(), 0, kMaxHeat);
+    input.protected_force = bounded(effects.protected_force_n(), 0, kMaxForce);
+    input.is_protected_touched = (effects.events() & topics::EffectState::PROTECTED_TOUCHED) != 0;
+    input.is_protected_damaged = (effects.events() & topics::EffectState::PROTECTED_DAMAGED) != 0;
     input.removed = bounded(effects.removed_mm3() * kCubicMillimetre, 0, kMaxRemoved);
     return input;
 }

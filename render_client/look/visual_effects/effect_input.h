@@ -69,16 +69,22 @@ struct EffectInput {
     std::optional<Pose> X_VT;  // the simulated tool
     double burr_radius = 0;
     bool is_pedal_down = false;
-    double spin_speed = 0;                                     // rad/s about T's +y
-    double burr_force = 0;                                     // N
-    double cutting_power = 0;                                  // W
-    double removed = 0;                                        // m³ since the input before
-    Eigen::Vector3d towards_bone_V = Eigen::Vector3d::Zero();  // unit, from the force; 0: not touching
-    Eigen::Vector3d up_V = Eigen::Vector3d::UnitZ();           // unit, against gravity
+    double spin_speed = 0;                                            // rad/s about T's +y
+    double burr_force = 0;                                            // N
+    double cutting_power = 0;                                         // W
+    double removed = 0;                                               // m³ since the input before
+    std::optional<double> hottest_c;                                  // °C, of the bone
+    double protected_force = 0;                                       // N on protected structures
+    bool is_protected_touched = false, is_protected_damaged = false;  // since the input before
+    Eigen::Vector3d towards_bone_V = Eigen::Vector3d::Zero();         // unit, from the force; 0: not touching
+    Eigen::Vector3d up_V = Eigen::Vector3d::UnitZ();                  // unit, against gravity
+
+    // Where the burr presses on what it touches (V); there must be a pose.
+    Eigen::Vector3f contact() const { return (X_VT->position + burr_radius * towards_bone_V).cast<float>(); }
 };
 
-// The bounds are ±25,000 rad/s, 1000 N, 10 kW, 100 mm³ and 0.1 to 50 mm for the burr. It is for any thread
-// and never throws.
+// The bounds are ±25,000 rad/s, 1000 N, 1000 °C, 10 kW, 100 mm³ and 0.1 to 50 mm for the burr. It is for any
+// thread and never throws.
 EffectInput effectInputOf(const topics::ToolState& tool, const topics::SceneInfo& info);
 
 }  // namespace bonemill

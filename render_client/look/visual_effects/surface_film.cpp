@@ -66,7 +66,7 @@ void SurfaceFilm::forgetSlab(int axis, int from, int to) {
     for (int z = first.z(); z < last.z(); ++z)
         for (int y = first.y(); y < last.y(); ++y)
             for (int x = first.x(); x < last.x(); ++x)
-                for (const Layer layer : {kBlood, kWater}) write(layer, {x, y, z}, 0);
+                for (size_t layer = 0; layer < kLayers; ++layer) write(Layer(layer), {x, y, z}, 0);
 }
 
 float SurfaceFilm::at(Layer layer, const Eigen::Vector3f& p_V) const {
@@ -107,6 +107,14 @@ void SurfaceFilm::add(Layer layer, const Eigen::Vector3f& p_V, float amount, flo
     if (!is_placed_) return;
     changeAround(p_V, radius, [&](const Eigen::Array3i& c, float weight) {
         write(layer, c, std::clamp(values_[layer][texelOf(c)] + amount * weight, 0.0f, 1.0f));
+    });
+}
+
+void SurfaceFilm::raise(Layer layer, const Eigen::Vector3f& p_V, float value, float radius) {
+    if (!is_placed_) return;
+    changeAround(p_V, radius, [&](const Eigen::Array3i& c, float weight) {
+        const float least = std::clamp(value, 0.0f, 1.0f) * std::min(1.0f, 2 * weight);
+        write(layer, c, std::max(values_[layer][texelOf(c)], least));
     });
 }
 

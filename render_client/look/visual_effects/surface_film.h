@@ -1,5 +1,5 @@
-// Blood and water lie on the bone around the burr: 0 to 1 per cell of a grid that follows the burr. What the
-// grid leaves behind is forgotten.
+// Blood, water, burns and bruises lie on the bone around the burr: 0 to 1 per cell of a grid that follows the
+// burr. What the grid leaves behind is forgotten.
 //
 // The grid is a torus: cell (i, j, k) of the volume frame's lattice lies in texel (i, j, k) mod kCells,
 // so that moving it copies nothing. The frame is V, the unit m. It is for one thread and allocates only
@@ -19,7 +19,7 @@ namespace bonemill {
 class SurfaceFilm {
   public:
     static constexpr int kCells = 64;  // per axis
-    enum Layer : size_t { kBlood = 0, kWater = 1, kLayers = 2 };
+    enum Layer : size_t { kBlood, kWater, kBurn, kBruise, kLayers };
 
     explicit SurfaceFilm(float cell);
 
@@ -35,11 +35,13 @@ class SurfaceFilm {
     // Adds to the cells within `radius` (at least the nearest one), less at its rim.
     // Cells stay between 0 and 1.
     void add(Layer layer, const Eigen::Vector3f& p_V, float amount, float radius);
+    // Makes the cells within `radius` at least that strong, less at its rim.
+    void raise(Layer layer, const Eigen::Vector3f& p_V, float value, float radius);
     void scale(Layer layer, const Eigen::Vector3f& p_V, float factor, float radius);
     void scaleAll(Layer layer, float factor);
     void clear();
 
-    // Returns blood and water of each texel of slice z, 0 to 255, x fastest.
+    // Returns all layers of each texel of slice z, 0 to 255, x fastest.
     std::span<const uint8_t> slice(int z) const {
         return {texels_.data() + size_t(z) * kSliceBytes, kSliceBytes};
     }

@@ -31,7 +31,11 @@ MaterialSet bleedingOf(const scene::Bleeding& wish, const VisualEffects::Materia
 }  // namespace
 
 bool VisualEffects::anyIn(const scene::Effects& wish) {
-    return wish.has_bone_dust() || wish.has_bleeding() || wish.has_irrigation() || wish.has_burr_spin();
+    return wish.has_bone_dust() || wish.has_burr_spin() || needsFilm(wish);
+}
+
+bool VisualEffects::needsFilm(const scene::Effects& wish) {
+    return wish.has_bleeding() || wish.has_irrigation() || wish.has_browning() || wish.has_bruising();
 }
 
 VisualEffects::VisualEffects(const scene::Effects& wish, double burr_radius, const Materials& materials) {
@@ -39,7 +43,9 @@ VisualEffects::VisualEffects(const scene::Effects& wish, double burr_radius, con
     if (wish.has_bleeding()) bleeding_.emplace(wish.bleeding(), bleedingOf(wish.bleeding(), materials));
     if (wish.has_irrigation()) irrigation_.emplace(wish.irrigation());
     if (wish.has_burr_spin()) spin_.emplace(wish.burr_spin());
-    if (bleeding_ || irrigation_) film_.emplace(filmFor(burr_radius));
+    if (wish.has_browning()) browning_.emplace(wish.browning());
+    if (wish.has_bruising()) bruising_.emplace(wish.bruising());
+    if (needsFilm(wish)) film_.emplace(filmFor(burr_radius));
     if (bleeding_) surface_.trackFresh();
 }
 
@@ -47,14 +53,23 @@ void VisualEffects::take(const EffectInput& input) {
     input_ = input;
     if (dust_) dust_->take(input);
     if (irrigation_) irrigation_->take(input);
-    if (!input.X_VT || !needsSurface()) return;
+    if (!input.X_VT) return;
+    if (film_) takeToFilm();
+    if (!needsSurface()) return;
     const Eigen::Vector3f centre = input.X_VT->position.cast<float>();
     surface_.focusOn(centre);
     if (!input.is_pedal_down) return;
-    if (film_) film_->centreOn(centre);
     if (trail_.size() >= kMaxTrail) trail_.erase(trail_.begin());
     trail_.push_back({centre, time_});
     if (bleeding_) bleeding_->cutAway(centre, float(input.burr_radius) - film_->cell());
+}
+
+void VisualEffects::takeToFilm() {
+    const bool leaves_trace =
+        input_.is_pedal_down || input_.is_protected_touched || input_.is_protected_damaged;
+    if (leaves_trace) film_->centreOn(input_.X_VT->position.cast<float>());
+    if (browning_) browning_->take(input_, *film_);
+    if (bruising_) bruising_->take(input_, *film_);
 }
 
 void VisualEffects::setNode(const NodeMesh& mesh) {
@@ -71,6 +86,7 @@ void VisualEffects::forget() {
     if (dust_) dust_->clear();
     if (bleeding_) bleeding_->clear();
     if (irrigation_) irrigation_->clear();
+    if (browning_) browning_->clear();
     if (film_) film_->clear();
     if (film_) film_->markDue();
 }

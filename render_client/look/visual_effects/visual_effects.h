@@ -11,6 +11,7 @@
 
 #include "render_client/look/visual_effects/burr_effects.h"
 #include "render_client/look/visual_effects/liquids.h"
+#include "render_client/look/visual_effects/traces.h"
 
 namespace bonemill {
 
@@ -23,6 +24,7 @@ class VisualEffects {
     // `materials` are the scene's; by name those that bleed are found.
     VisualEffects(const scene::Effects& wish, double burr_radius, const Materials& materials = {});
     static bool anyIn(const scene::Effects& wish);
+    static bool needsFilm(const scene::Effects& wish);  // does any of them leave something on the bone?
 
     // Takes a new tool state: what was removed since the one before leaves the burr now.
     void take(const EffectInput& input);
@@ -39,6 +41,8 @@ class VisualEffects {
     const BoneDust* dust() const { return dust_ ? &*dust_ : nullptr; }
     const Bleeding* bleeding() const { return bleeding_ ? &*bleeding_ : nullptr; }
     const Irrigation* irrigation() const { return irrigation_ ? &*irrigation_ : nullptr; }
+    bool hasBrowning() const { return browning_.has_value(); }
+    bool hasBruising() const { return bruising_.has_value(); }
     BurrSpin* spin() { return spin_ ? &*spin_ : nullptr; }
 
   private:
@@ -46,7 +50,8 @@ class VisualEffects {
         Eigen::Vector3f centre;
         double time;
     };
-    bool needsSurface() const { return dust_ || film_; }
+    bool needsSurface() const { return dust_ || bleeding_ || irrigation_; }
+    void takeToFilm();
     void step();
     void stepFilm(double dt);
     void openCuts();
@@ -55,6 +60,8 @@ class VisualEffects {
     std::optional<BoneDust> dust_;
     std::optional<Bleeding> bleeding_;
     std::optional<Irrigation> irrigation_;
+    std::optional<Browning> browning_;
+    std::optional<Bruising> bruising_;
     std::optional<BurrSpin> spin_;
     std::optional<SurfaceFilm> film_;
     BoneSurface surface_;

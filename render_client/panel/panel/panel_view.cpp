@@ -22,7 +22,9 @@ constexpr struct {
                 {"Bleeding", ViewerEffect::kBleeding, "Blood on fresh cuts"},
                 {"Irrigation", ViewerEffect::kIrrigation, "Water, while the pedal is down"},
                 {"Burr spin", ViewerEffect::kBurrSpin, "Flutes that turn"},
-                {"Milling sound", ViewerEffect::kMillingSound, "Motor and cutting, heard here"}};
+                {"Milling sound", ViewerEffect::kMillingSound, "Motor and cutting, heard here"},
+                {"Browning", ViewerEffect::kBrowning, "Bone that got too hot"},
+                {"Bruising", ViewerEffect::kBruising, "Protected structures that were touched"}};
 
 }  // namespace
 
@@ -188,6 +190,10 @@ bool PanelContent::isListed(ViewerEffect effect) const {
             return listed.has_burr_spin();
         case ViewerEffect::kMillingSound:
             return listed.has_milling_sound();
+        case ViewerEffect::kBrowning:
+            return listed.has_browning();
+        case ViewerEffect::kBruising:
+            return listed.has_bruising();
     }
     return false;
 }

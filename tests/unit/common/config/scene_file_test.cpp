@@ -232,6 +232,17 @@ TEST_F(SceneFile, soundNeedsAnEffectThatKnowsTheBurrsWork) {
         "accepted");
 }
 
+TEST_F(SceneFile, tracesNeedTheEffectThatTellsOfThem) {
+    const std::string scene =
+        "volume { path: 'v' } tool { speed_rpm: 9000 }\nmaterial { name: 'n' from_value: 1 "
+        "is_protected: true }\neffects { ";
+    EXPECT_EQ(refusal(scene + "protected_structures {} bruising {} }"), "accepted");
+    EXPECT_NE(refusal(scene + "thermal {} bruising {} }"), "accepted");
+    EXPECT_EQ(refusal(scene + "thermal {} browning {} }"), "accepted");
+    EXPECT_NE(refusal(scene + "protected_structures {} browning {} }"), "accepted");
+    EXPECT_NE(refusal(scene + "thermal {} browning { charred_from_c: 55 } }"), "accepted");
+}
+
 TEST_F(SceneFile, effectsThatReadContactsNeedTheGradientLaw) {
     const std::string scene =
         "volume { path: 'v' } tool { speed_rpm: 9000 }\neffects { energy_removal {} }\n";

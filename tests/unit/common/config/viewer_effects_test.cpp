@@ -19,8 +19,8 @@ TEST(ViewerEffects, OfAllEffectsTheyAloneAreKept) {
     std::set<std::string> kept;
     for (int n = 0; n < type.field_count(); ++n)
         if (reflection.HasField(effects, type.field(n))) kept.insert(type.field(n)->name());
-    EXPECT_EQ(kept,
-              (std::set<std::string>{"bone_dust", "bleeding", "irrigation", "burr_spin", "milling_sound"}));
+    EXPECT_EQ(kept, (std::set<std::string>{"bone_dust", "bleeding", "irrigation", "burr_spin",
+                                           "milling_sound", "browning", "bruising"}));
     EXPECT_TRUE(reflection.GetUnknownFields(effects).empty());
 }
 
