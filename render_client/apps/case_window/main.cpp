@@ -28,7 +28,7 @@ struct WindowOptions {
     CaseRequest request;
     std::string tools_folder;
     std::string command = "bonemill_lab make-case";
-    std::string launcher;  // deploy/bonemill, which starts sessions; empty: none
+    std::string launcher;            // deploy/bonemill, which starts sessions; empty: none
     int width = 1400, height = 900;  // pixels
 };
 
@@ -40,7 +40,8 @@ void addWindowOptions(CLI::App& app, WindowOptions& options) {
         ->type_name("DIR");
     app.add_option("--command", options.command, "what people type for the same without a window")
         ->capture_default_str();
-    app.add_option("--launcher", options.launcher, "bonemill's own script: with it the window starts the case")
+    app.add_option("--launcher", options.launcher,
+                   "bonemill's own script: with it the window starts the case")
         ->type_name("FILE");
     app.add_option("--width", options.width, "of the window, pixels")->check(CLI::Range(640, 16384));
     app.add_option("--height", options.height, "of the window, pixels")->check(CLI::Range(480, 16384));

@@ -15,7 +15,8 @@ constexpr struct {
     HudTone tone;
 } kWords[] = {
     {"overrun",
-     "This PC was too slow for a moment: the force may have been rough. Close other programs; bonemill doctor "
+     "This PC was too slow for a moment: the force may have been rough. Close other programs; bonemill "
+     "doctor "
      "says what else helps.",
      HudTone::kWarning},
     {"stale_device",

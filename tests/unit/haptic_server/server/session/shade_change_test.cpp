@@ -31,7 +31,7 @@ struct Seen {
 };
 
 std::vector<Seen> shadedVertices(const LoadedScene& loaded, const Simulation& simulation) {
-    ShownBone shown(loaded.scene, simulation);
+    ShownBone shown(loaded.scene, simulation, simulation.bone->volume);
     const VertexLook look = shown.look();
     if (!look.shade) return {};
     const ShadeScale& scale = look.shade->scale();
@@ -43,7 +43,7 @@ std::vector<Seen> shadedVertices(const LoadedScene& loaded, const Simulation& si
         const std::optional<NodeMesh> mesh = mesher.mesh(leaf);
         if (!mesh) continue;
         for (size_t n = 0; n < mesh->vertices.size() && n < mesh->materials.size(); ++n) {
-            const int number = mesh->materials[n] - scale.first;
+            const int number = (mesh->materials[n] & ~kMilledBit) - scale.first;
             if (number < 0 || number >= scale.count) continue;
             seen.push_back({test::vertexPlace(*mesh, n), test::vertexNormal(*mesh, n),
                             double(number) / (scale.count - 1)});
