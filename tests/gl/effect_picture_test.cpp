@@ -118,6 +118,24 @@ TEST_F(EffectPictures, BurrSpin) {
     EXPECT_EQ(test::goldenProblem(draw(), "effect_spin"), "");
 }
 
+// The burr rubs where it is, at such a temperature.
+TEST_F(EffectPictures, Browning) {
+    scene::Effects wish;
+    wish.mutable_browning();
+    mill(wish);
+    for (int n = 0; n < 3; ++n) {
+        topics::ToolState tool = test::makeToolState(at_, at_, 1);
+        tool.set_tick(1000 + uint64_t(n));
+        test::setVector(Eigen::Vector3d(0, -2, 0), tool.mutable_force_n());
+        tool.mutable_effects()->set_burr_force_n(2);
+        tool.mutable_effects()->set_temperature_c(58 + 7 * n);
+        scene_->setToolState(tool);
+        at_.position.x() -= 7e-4;
+    }
+    leave(0.5);
+    EXPECT_EQ(test::goldenProblem(draw(), "effect_browning"), "");
+}
+
 // Its nodes come before its scene info, as a restarted server sends them.
 TEST_F(EffectPictures, AfterARestartTheEffectsKnowTheBone) {
     topics::SceneInfo all;

@@ -124,6 +124,47 @@ TEST_F(StructurePictures, WhatLiesUnderThinBoneShinesThrough) {
     EXPECT_EQ(blueOver(2.3e-3), 0);
 }
 
+// The burr pressed the nerve here, and elsewhere cut it.
+TEST_F(StructurePictures, WhatWasTouchedIsRed) {
+    topics::SceneInfo info = test::milledInfo();
+    info.add_materials()->set_name("facial nerve");
+    info.mutable_materials(0)->set_is_protected(true);
+    info.mutable_viewer_effects()->mutable_bruising();
+    info.set_epoch(7);
+    scene_->setSceneInfo(info);
+    showNerve();
+    uint64_t tick = 0;
+    const auto touch = [&](const Eigen::Vector3d& contact, uint32_t events) {
+        Pose X_WT = test::toolInCavity();
+        X_WT.position = contact - Eigen::Vector3d(0, test::kBurrRadius, 0);
+        topics::ToolState tool = test::makeToolState(X_WT, X_WT, 1);
+        tool.set_epoch(7);
+        tool.set_tick(++tick);
+        test::setVector(Eigen::Vector3d(0, -2, 0), tool.mutable_force_n());
+        tool.mutable_effects()->set_events(events);
+        tool.mutable_effects()->set_protected_force_n(2);
+        scene_->setToolState(tool);
+    };
+    const Eigen::Vector3d away(0, -0.006, 0.002), pressed = kNerveCenter + Eigen::Vector3d(5e-4, -1e-3, 3e-4);
+    const auto colourThere = [&] {
+        touch(kNerveCenter + away, 0);
+        draw();                                            // from then on the camera is known
+        for (int n = 0; n < 8; ++n) scene_->advance(0.1);  // the film is drawn anew only now and then
+        const auto [x, y] = pixelOf(pressed);
+        return draw().at(x, y);
+    };
+    const auto whole = colourThere();
+    touch(pressed, topics::EffectState::PROTECTED_TOUCHED);
+    const auto red = colourThere();
+    EXPECT_LT(red[1], 0.6 * whole[1]);
+    EXPECT_GT(red[0], 0.6 * whole[0]);
+    touch(pressed, topics::EffectState::PROTECTED_DAMAGED);
+    const auto dark = colourThere();
+    EXPECT_LT(dark[0], 0.8 * red[0]);
+    scene_->settings().hides_effects.fill(true);
+    EXPECT_EQ(colourThere(), whole);
+}
+
 TEST_F(StructurePictures, Thickness) {
     showBoth();
     scene_->settings().show_thickness = true;

@@ -14,10 +14,10 @@ const Eigen::Vector3f kPlainBone(0.755f, 0.63f, 0.46f);  // the middle of the bo
 
 // Milled bone is of the colour of its dust, which lies in its pores; some of what it is made of is left to
 // see.
-const Eigen::Vector3f kBoneDust(0.93f, 0.89f, 0.81f);
+const Eigen::Vector3f kBoneDust(0.84f, 0.79f, 0.70f);
 constexpr float kPaler = 0.5f;
 const Eigen::Vector3f kBloodshot(0.42f, 0.02f, 0.02f);
-constexpr float kRedder = 0.8f;
+constexpr float kRedder = 0.92f;
 
 Eigen::Vector4f linear(const scene::Color& color) {
     const auto channel = [](double value) { return float(std::pow(std::clamp(value, 0.0, 1.0), kGamma)); };

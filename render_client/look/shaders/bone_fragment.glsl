@@ -67,7 +67,7 @@ uniform vec3 blood_colour;  // linear
 
 // Brown first, then black, in spots.
 vec3 burnt(vec3 albedo, float burn, float spots) {
-    vec3 brown = albedo * mix(vec3(1.0), vec3(0.40, 0.22, 0.11), smoothstep(0.02, 0.35, burn * (0.8 + 0.4 * spots)));
+    vec3 brown = albedo * mix(vec3(1.0), vec3(0.26, 0.135, 0.065), smoothstep(0.02, 0.35, burn * (0.8 + 0.4 * spots)));
     return mix(brown, vec3(0.020, 0.015, 0.012), 0.95 * smoothstep(0.72, 1.0, burn * (0.85 + 0.3 * spots)));
 }
 #endif

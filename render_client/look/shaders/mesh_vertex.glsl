@@ -51,7 +51,7 @@ void main() {
     material_colour = texelFetch(palette, ivec2(int(material), 0), 0);
 #endif
 #ifdef MILLED
-    milled = step(127.5, material);
+    milled = material > 127.5 ? 1.0 : 0.0;
 #endif
 #ifdef GL_ES
     grain = mottling / 255.0;

@@ -7,7 +7,7 @@ namespace {
 
 // Shares of the burr's radius.
 constexpr double kHotPrint = 0.45;  // heat goes so far beside the contact, and below it
-constexpr double kTouchPrint = 0.6, kDamagePrint = 1.15;
+constexpr double kTouchPrint = 0.6, kDamagePrint = 1.45;
 
 constexpr double kSlightest = 0.3;  // of the most that touch does
 

@@ -4,8 +4,8 @@ import type { Vec3 } from '../math/linear';
 import { kMilledBit, type MaterialView } from '../shared/messages';
 import { linearColour } from './structure_colours';
 
-const kBoneDust: Vec3 = [0.93, 0.89, 0.81], kPaler = 0.5;
-const kBloodshot: Vec3 = [0.42, 0.02, 0.02], kRedder = 0.8;
+const kBoneDust: Vec3 = [0.84, 0.79, 0.7], kPaler = 0.5;
+const kBloodshot: Vec3 = [0.42, 0.02, 0.02], kRedder = 0.92;
 
 // Linear colour times alpha, alpha: four numbers for each of 256 vertex numbers.
 export function vertexColours(materials: MaterialView[]): Float32Array {
