@@ -2,7 +2,6 @@
 import { create, fromBinary, toBinary } from '@bufbuild/protobuf';
 import { MeshoptEncoder } from 'meshoptimizer/encoder';
 import * as wire from '../src/link/wire';
-import { kMilledBit } from '../src/shared/messages';
 import { Sample_Topic, SampleSchema, type Sample } from '#proto/gateway_pb';
 
 export const kEpoch = 1_790_000_000_000_000_000n;
@@ -103,10 +102,6 @@ export function dented(n: V3): number {
 // With furrows, into which less light comes.
 export const furrowed = (n: V3) => bumpy(n) * (1 - 0.1 * Math.max(Math.sin(14 * n[2]), 0) ** 4);
 
-// Some of the tiles are of enamel, and some are milled.
-const materialOf = (face: number, a: number, b: number) =>
-  (a + b) % 7 === 0 ? 2 : (a + b) % 7 === 3 && face % 2 === 0 ? kMilledBit : 0;
-
 // About so many triangles.
 export function boneNodes(triangles: number, radius = bumpy, revision = 1): Sample[] {
   const cells = Math.max(1, Math.round(Math.sqrt(triangles / (2 * 6 * kTiles * kTiles))));
@@ -115,7 +110,7 @@ export function boneNodes(triangles: number, radius = bumpy, revision = 1): Samp
     for (let a = 0; a < kTiles; ++a)
       for (let b = 0; b < kTiles; ++b)
         samples.push(sample(Sample_Topic.NODE_MESH, samples.length + 1,
-          nodeMesh(tile(face, a, b, kTiles, cells, [0, 0, 0], radius), revision, materialOf(face, a, b)), revision));
+          nodeMesh(tile(face, a, b, kTiles, cells, [0, 0, 0], radius), revision, (a + b) % 7 === 0 ? 2 : 0), revision));
   return samples;
 }
 
