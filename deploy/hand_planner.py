@@ -9,6 +9,10 @@ import math
 import re
 import typing
 
+class PlanError(Exception):
+    pass
+
+
 Span = tuple[float, float]
 FULL = 65535  # the densest value of a scan as the server saves it
 
@@ -265,6 +269,8 @@ def waypoints(plan, scan_file, iso, labels_file, side=1):
             for p in [*lifted(way.here, end, structures.are_clear_of), end]:
                 taken = burr.take(way.here, p) if plan.most_mm3_per_s < math.inf else 0.0
                 way.go(max(math.dist(way.here, p) / plan.stroke_mm_per_s, taken / plan.most_mm3_per_s, 0.05), p, phase)
+    if way.here is None:
+        raise PlanError("no stroke fits between the structures of this bone; try another seed")
     beside = way.here[1:]
     way.go(1, (plan.free_mm, *beside), "withdraw", remove=False)
     way.go(1.5, (plan.rest_mm, *beside), "rest", remove=False)

@@ -1,4 +1,5 @@
 """Puts a planned hand into a scene's file: for deploy/plan-hand and deploy/make-training-bone."""
+import dataclasses
 import pathlib
 import re
 import subprocess
@@ -8,10 +9,6 @@ import hand_planner
 import hand_plans
 
 WAYPOINTS = re.compile(r"(?:^  waypoint .*\n)+", re.M)
-
-
-class PlanError(Exception):
-    pass
 
 
 def number(text, name):
@@ -29,14 +26,16 @@ def scanned(scene, program, file):
     done = subprocess.run([program, "simulate", "--scene", scene, "--trajectory", trajectory, "--save-volume", file],
                           stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
     if done.returncode:
-        raise PlanError(done.stderr.strip())
+        raise hand_planner.PlanError(done.stderr.strip())
     low, high = number(text, "window_low"), number(text, "window_high")
     return (number(text, "iso_value") - low) / (high - low) * 65535
 
 
-def plan(scene, program, side=1, *, name=None):
-    """Plans the hand of a scene that has one already, by the plan of that name."""
+def plan(scene, program, side=1, *, name=None, deeper_mm=0.0):
+    """Plans the hand of a scene that has one already, by the plan of that name; its fields end so much deeper."""
     plan_of_scene = hand_plans.PLANS[name or scene.stem]
+    fields = tuple(dataclasses.replace(field, deepest_mm=field.deepest_mm + deeper_mm) for field in plan_of_scene.fields)
+    plan_of_scene = dataclasses.replace(plan_of_scene, fields=fields)
     labels = scene.parent / re.search(r'^ *label_path: *"(.*?)"', scene.read_text(), re.M).group(1)
     with tempfile.TemporaryDirectory() as folder:
         volume = pathlib.Path(folder) / "scan.nrrd"

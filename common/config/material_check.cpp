@@ -2,11 +2,10 @@
 
 #include "common/config/field_unit.h"
 #include "common/config/scene_check.h"
+#include "common/geometry/node_mesh.h"
 
 namespace bonemill {
 namespace {
-
-constexpr int kMaxMaterials = 127;  // a vertex tells it in 7 bits
 
 std::string pathOf(int index) {
     return "material[" + std::to_string(index) + "]";
@@ -49,9 +48,9 @@ void checkProtection(const scene::Scene& scene, const RefuseField& refuse) {
 }  // namespace
 
 void checkMaterials(const scene::Scene& scene, const RefuseField& refuse) {
-    if (scene.material_size() > kMaxMaterials)
-        refuse(pathOf(kMaxMaterials),
-               "is one material too many: a scene has at most " + std::to_string(kMaxMaterials));
+    if (scene.material_size() > kMaxVertexMaterials)
+        refuse(pathOf(kMaxVertexMaterials),
+               "is one material too many: a scene has at most " + std::to_string(kMaxVertexMaterials));
     for (int index = 0; index < scene.material_size(); ++index) {
         checkName(scene, index, refuse);
         checkWhere(scene, index, refuse);

@@ -4,6 +4,7 @@
 #include "common/config/field_unit.h"
 #include "common/config/scene_check.h"
 #include "common/config/scene_geometry.h"
+#include "common/geometry/node_mesh.h"
 
 namespace bonemill {
 namespace {
@@ -33,8 +34,8 @@ class TaskChecker {
     void checkZones() const {
         requireFew("zone", task_.zone_size(), kMaxZones, "zones");
         for (int n = 0; n < task_.zone_size(); ++n) checkZone(n);
-        // Both get a colour of their own in the viewer, by one number of 7 bits.
-        constexpr int kMaxColours = 127;
+        // Both get a colour of their own in the viewer, by one number.
+        constexpr int kMaxColours = kMaxVertexMaterials;
         if (task_.zone_size() + scene_.material_size() > kMaxColours)
             refuse_(pathIn("zone", 0), "and what follows are too many beside " +
                                            std::to_string(scene_.material_size()) + " materials: all are " +

@@ -20,6 +20,7 @@ static_assert(sizeof(PackedVertex) == 8);
 
 // A vertex with this bit in its material lies where the scan had bone: milling opened it.
 inline constexpr uint8_t kMilledBit = 0x80;
+inline constexpr int kMaxVertexMaterials = kMilledBit - 1;
 
 struct NodeMesh {
     uint32_t leaf = 0;                                 // LeafId

@@ -10,6 +10,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include "common/process/child_start.h"
+
 namespace bonemill {
 namespace {
 
@@ -27,7 +29,10 @@ bool readSome(int pipe, std::string& text) {
 void readBoth(int out, int err, Captured& captured) {
     std::array<pollfd, 2> pipes{{{out, POLLIN, 0}, {err, POLLIN, 0}}};
     while (pipes[0].fd >= 0 || pipes[1].fd >= 0) {
-        if (poll(pipes.data(), pipes.size(), -1) < 0 && errno != EINTR) return;
+        if (poll(pipes.data(), pipes.size(), -1) < 0) {
+            if (errno == EINTR) continue;
+            return;
+        }
         for (size_t n = 0; n < pipes.size(); ++n)
             if (pipes[n].revents != 0 && !readSome(pipes[n].fd, n == 0 ? captured.out : captured.err))
                 pipes[n].fd = -1;
@@ -37,17 +42,19 @@ void readBoth(int out, int err, Captured& captured) {
 }  // namespace
 
 Captured runCaptured(const std::vector<std::string>& words) {
-    std::vector<char*> arguments;
-    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
+    const std::vector<char*> arguments = argumentsOf(words);
     int out[2], err[2];
-    if (pipe2(out, O_CLOEXEC) != 0 || pipe2(err, O_CLOEXEC) != 0)
-        throw std::system_error(errno, std::generic_category(), "pipe");
+    if (pipe2(out, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
+    if (pipe2(err, O_CLOEXEC) != 0) {
+        close(out[0]);
+        close(out[1]);
+        throw std::system_error(EMFILE, std::generic_category(), "pipe");
+    }
     const pid_t child = fork();
     if (child == 0) {
         dup2(out[1], STDOUT_FILENO);
         dup2(err[1], STDERR_FILENO);
-        execvp(arguments[0], arguments.data());
+        becomeProgram(arguments);
         _exit(kNoProgram);
     }
     close(out[1]);

@@ -70,7 +70,7 @@ usage_of() {  # COMMAND
             echo "  --people N        so many may come with the link (default 1)"
             echo "  --expires TIME    the link ends after so long: 30m, 8h (default), 3d"
             echo "  --address HOST    how guests reach this PC (default: its address in the network)"
-            echo "  --port P          the port (default 8443)"
+            echo "  --port P          the port (default: the first free one from 8443 on)"
             echo "  --in-background   return at once; guests may come until the session ends" ;;
         replay)
             echo "Usage: bonemill replay [FILE] [options] [-- WORDS FOR bonemill_lab replay]"

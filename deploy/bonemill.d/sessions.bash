@@ -107,10 +107,11 @@ newest_recordings() {
 }
 
 list_recordings() {
-    local file
-    while read -r file; do
+    local file all
+    mapfile -t all < <(newest_recordings)
+    for file in "${all[@]:0:10}"; do
         printf '  %-16s %6s MB  %s\n' "$(date -r "$file" '+%Y-%m-%d %H:%M')" "$(($(stat -c %s -- "$file") / 1000000))" "$file"
-    done < <(newest_recordings | head -n 10)
+    done
 }
 
 # result_fields RESULT.json: prints its recording, and the second at which its worst moment is about to come.
@@ -136,7 +137,9 @@ read_result() {
 
 # find_recording [FILE]: a file, the name of one of the user's own, an attempt's result, or the newest one.
 find_recording() {
-    recording=${1:-$(newest_recordings | head -n 1)}
+    local all
+    mapfile -t all < <(newest_recordings)
+    recording=${1:-${all[0]:-}}
     if [[ $recording == *.json ]]; then read_result "$recording"; fi
     [[ -f $recording || $recording == */* ]] || recording=$(recordings_folder)/$recording
     [[ -n $recording ]] || fail "no session has been recorded in $(recordings_folder): name a file, as: bonemill replay session.mcap"

@@ -26,7 +26,7 @@ run_session() {
 # A recorded session is shown as a live one, with its own server and without a hand.
 run_replay() {
     find_recording "$operand"
-    scene_name=replay class_folder="" title[server]=bonemill_lab
+    scene_name=replay class_folder="" title[server]=bonemill_lab option[device]=none
     open_state
     take_number "${option[session]:-}"
     make_log_folder
@@ -104,7 +104,8 @@ command_of() {
         viewer)  # Whoever sits here has the hand, so the window may command, as it may on one PC.
             words=("$bin/render_client" --session "$number" --role operator)
             mapfile -t -O "${#words[@]}" words < <(network_words)
-            [[ -z $class_folder ]] || words+=(--class-folder "$class_folder" --launcher "$self")
+            [[ -n $recording ]] || words+=(--launcher "$self")
+            [[ -z $class_folder ]] || words+=(--class-folder "$class_folder")
             [[ -z ${option[window-size]:-} ]] || words+=(--size "${option[window-size]}") ;;
     esac
 }
@@ -178,7 +179,9 @@ has_ended() {
     unset "pid[$role]"
     case $role:$code in
         viewer:0) end_because 0 "the window was closed" ;;
-        server:0) end_because 0 "the hand has finished, or somebody has ended ${title[server]}" ;;
+        server:0)
+            if [[ -n $recording ]]; then end_because 0 "somebody has ended the replay"; return; fi
+            end_because 0 "the hand has finished, or somebody has ended haptic_server" ;;
         device:0) end_because 0 "the hand has finished, or somebody has ended device_daemon" ;;
         *:2) end_with_error "$role" "$code" ;;
         *) restart "$role" "$code" ;;
@@ -197,6 +200,7 @@ end_with_error() {  # ROLE CODE
 
 # haptic_server goes on from its recording, where it makes one.
 bone_after_restart() {
+    if [[ -n $recording ]]; then echo "the replay begins anew"; return; fi
     if [[ " ${extra[*]} " == *" --no-recording "* ]]; then echo "the bone will be whole again"; else echo "what was milled is kept"; fi
 }
 

@@ -2,10 +2,10 @@
 //
 // The motor has harmonics of the rotation frequency f = |Ω|/2π, up to kHighest, and two gear tones above
 // them; it gets louder with the speed. Cutting is band-passed noise, its strength modulated at the tooth
-// passing frequency flutes·f, and gets louder with the square root of the cutting power. Where the bone
-// under the burr is thinner than kThinWall, the band rises and narrows: surgeons listen for that before they
-// break through. All levels and the frequencies follow their targets with kSmoothing, and every tone keeps
-// its phase, so nothing clicks.
+// passing frequency flutes·f, and gets louder with the square root of the cutting power. Where the burr
+// is nearer to a protected structure than kThinWall, the band rises and narrows: surgeons listen for that
+// before they break through. All levels and the frequencies follow their targets with kSmoothing, and every
+// tone keeps its phase, so nothing clicks.
 //
 // Units are rad/s, N, W; samples lie in -1 .. 1. It is for one thread, and RT-safe after construction
 // (no memory, no lock). The same settings and loads at the same samples give the same samples, in blocks
@@ -26,7 +26,7 @@ struct SoundLoad {
     double spin_speed = 0;     // rad/s, either way
     double burr_force = 0;     // N
     double cutting_power = 0;  // W
-    double wall = 1;           // m of bone left before a protected structure
+    double wall = 1;           // m from the burr to a protected structure
 };
 
 class MillingSynth {

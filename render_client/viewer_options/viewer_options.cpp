@@ -123,7 +123,8 @@ void addPictureOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
            "Folder of this PC with the class' table and reports (--export-dir of its server): the window "
            "opens them")
         ->type_name("DIR");
-    app.add_option("--launcher", options.launcher, "bonemill's own script: with it the window opens replays")
+    app.add_option("--launcher", options.launcher,
+                   "bonemill's own script: with it the window opens replays and makes invitations")
         ->type_name("FILE");
 }
 

@@ -66,7 +66,7 @@ struct ClientOptions {
     bool has_effects = true;          // of the scene, seen and heard
     std::filesystem::path sound_wav;  // empty: none
     std::string class_folder;         // of this PC's server; empty: not known
-    std::string launcher;             // deploy/bonemill, which starts replays; empty: none
+    std::string launcher;             // deploy/bonemill, for replays and invitations; empty: none
     bool chooses_quality = true;      // kQuick where OpenGL is software and pictures follow each other
     int width = 1280;                 // pixels
     int height = 800;

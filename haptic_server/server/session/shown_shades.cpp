@@ -97,7 +97,7 @@ void describeShades(const ShownShades& shades, topics::SceneInfo& info) {
 }
 
 ShownBone::ShownBone(const scene::Scene& scene, const Simulation& simulation, const VoxelVolume& scanned)
-    : scanned_(scanned) {
+    : scanned_(scanned), materials_(simulation.tick.effects.materials) {
     const scene::Scene shown = shownSceneOf(scene, simulation.segment_colors);
     if (!wantsVertexMaterials(shown)) return;
     properties_ = simulation.tick.effects.properties.get();

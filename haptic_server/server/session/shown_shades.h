@@ -30,10 +30,11 @@ void describeShades(const ShownShades& shades, topics::SceneInfo& info);
 class ShownBone {
   public:
     ShownBone(const scene::Scene& scene, const Simulation& simulation, const VoxelVolume& scanned);
-    VertexLook look() noexcept { return {properties_, shade_ ? &*shade_ : nullptr, &scanned_}; }
+    VertexLook look() noexcept { return {properties_, shade_ ? &*shade_ : nullptr, &scanned_, &materials_}; }
 
   private:
     const VoxelVolume& scanned_;
+    const MaterialTable& materials_;
     const BoneProperties* properties_ = nullptr;
     std::optional<ScanShade> shade_;
 };

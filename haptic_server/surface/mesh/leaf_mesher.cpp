@@ -5,6 +5,8 @@
 #include "haptic_server/surface/mesh/smooth_gradient.h"
 
 namespace bonemill {
+
+static_assert(kMaxMaterials == kMaxVertexMaterials);
 namespace {
 
 constexpr uint32_t kNoVertex = UINT32_MAX;
@@ -161,11 +163,24 @@ uint8_t LeafMesher::shownAt(bool is_low_inside, const Eigen::Vector3i& low_voxel
     const MaterialId material = look_.properties
                                     ? materialUnder(inside, is_low_inside ? low : low + stride_[axis], normal)
                                     : kNoMaterial;
-    const uint8_t milled = look_.scanned ? milledBit(low_voxel, axis, low, fraction) : uint8_t(0);
+    const Eigen::Vector3i& outside = is_low_inside ? high_voxel : low_voxel;
+    const bool is_whole = isLaidOpen(material, inside, outside, is_low_inside ? low : low + stride_[axis]);
+    const uint8_t milled =
+        look_.scanned && !is_whole ? milledBit(low_voxel, axis, low, fraction) : uint8_t(0);
     if (!look_.shade || (look_.properties && !look_.shade->scale().stands_for[material]))
         return material | milled;
     const Eigen::Vector3f place = low_voxel.cast<float>() + fraction * Eigen::Vector3f::Unit(axis);
     return look_.shade->under(place.cwiseQuotient(inverse_spacing_), normal) | milled;
+}
+
+// Bone was taken off a protected structure, of which itself nothing is gone here.
+bool LeafMesher::isLaidOpen(MaterialId material, const Eigen::Vector3i& inside,
+                            const Eigen::Vector3i& outside, size_t inside_corner) const noexcept {
+    if (!look_.materials || !look_.properties || !look_.scanned) return false;
+    if (material >= look_.materials->size() || !(*look_.materials)[material].is_protected) return false;
+    if (look_.properties->material(inside) != material) return true;  // it still has bone over it
+    return look_.properties->material(outside) != material &&
+           density_[inside_corner] == look_.scanned->at(inside.x(), inside.y(), inside.z());
 }
 
 // The edge alone decides it, so that leaves agree. What lies beyond the volume never changes.

@@ -37,8 +37,9 @@ namespace bonemill {
 // What vertices show; without any of it they have no material. All must outlive who uses them.
 struct VertexLook {
     const BoneProperties* properties = nullptr;
-    ScanShade* shade = nullptr;            // of what bone was where no material says it
-    const VoxelVolume* scanned = nullptr;  // the bone as it was; never changes
+    ScanShade* shade = nullptr;                // of what bone was where no material says it
+    const VoxelVolume* scanned = nullptr;      // the bone as it was; never changes
+    const MaterialTable* materials = nullptr;  // which of them are protected: laid open is not cut
 };
 
 // It meshes one leaf after another with reused memory, for one thread at a time. Volume and lattice
@@ -70,6 +71,8 @@ class LeafMesher {
     void addVertex(const Eigen::Vector3i& local, int axis);
     uint8_t shownAt(bool is_low_inside, const Eigen::Vector3i& low_voxel, int axis, size_t low,
                     const Eigen::Vector3f& normal, float fraction) const;
+    bool isLaidOpen(MaterialId material, const Eigen::Vector3i& inside, const Eigen::Vector3i& outside,
+                    size_t inside_corner) const noexcept;
     uint8_t milledBit(const Eigen::Vector3i& low_voxel, int axis, size_t low, float fraction) const noexcept;
     MaterialId materialUnder(const Eigen::Vector3i& inside, size_t corner,
                              const Eigen::Vector3f& normal) const noexcept;

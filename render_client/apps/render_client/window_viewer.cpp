@@ -311,19 +311,20 @@ class WindowViewer {
     }
 
     void showFile(const std::string& file) {
-        if (!std::filesystem::exists(file))
+        if (std::error_code none; !std::filesystem::exists(file, none))
             notices_.show({file + " is not there yet", HudTone::kWarning});
         else if (!startApart({"xdg-open", file}))
             notices_.show({"This desktop opens no files by itself: look at " + file, HudTone::kWarning});
     }
 
     void replay(const std::string& result) {
-        if (!std::filesystem::exists(result))
+        if (std::error_code none; !std::filesystem::exists(result, none))
             notices_.show({result + " is not there yet", HudTone::kWarning});
         else if (!startApart({options_.launcher, "replay", result}))
             notices_.show({options_.launcher + " cannot be started", HudTone::kWarning});
         else
-            notices_.show({"The replay opens in a window of its own", HudTone::kPlain});
+            notices_.show(
+                {"The replay opens in a window of its own, if the attempt was recorded", HudTone::kPlain});
     }
 
     void saveAttempts(const topics::Lesson& lesson) {

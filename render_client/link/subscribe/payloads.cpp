@@ -19,9 +19,6 @@ int64_t bricksOf(const topics::DensityGrid& grid) {
     return bricks;
 }
 
-// This is as many as a scene may have: a vertex names one of them in one byte.
-constexpr int kMaxShownMaterials = 255;
-
 // Forgets what is no viewer's business, so that nobody relies on it.
 void keepShownParts(scene::Material& material) {
     scene::Material kept;
@@ -114,7 +111,7 @@ std::optional<DecodedNode> parseNode(std::span<const uint8_t> payload, uint32_t 
 
 std::optional<StructureSurface> parseStructure(std::span<const uint8_t> payload, uint32_t structure) {
     const auto message = parse<topics::StructureMesh>(payload);
-    if (!message || structure == 0 || structure > uint32_t(kMaxShownMaterials)) return std::nullopt;
+    if (!message || structure == 0 || structure > uint32_t(kMaxVertexMaterials)) return std::nullopt;
     std::optional<DecodedNode> node = decodeNodeMesh(message->surface(), structure);
     if (!node || node->mesh.isEmpty() || node->tag.epoch != message->epoch() ||
         std::max(node->mesh.vertices.size(), node->mesh.indices.size() / 3) > kMaxStructureVertices)

@@ -15,9 +15,8 @@ constexpr struct {
     HudTone tone;
 } kWords[] = {
     {"overrun",
-     "This PC was too slow for a moment: the force may have been rough. Close other programs; bonemill "
-     "doctor "
-     "says what else helps.",
+     "The session's PC was too slow for a moment: the force may have been rough. Close other programs there; "
+     "bonemill doctor says what else helps.",
      HudTone::kWarning},
     {"stale_device",
      "The hand was not heard of for a moment: the device sent nothing, and the force went to zero.",

@@ -91,7 +91,8 @@ std::string stiffnessText(const topics::Device& device) {
 
 BurrWork burrWorkOf(const topics::ToolState& tool) {
     if (tool.waits_for_release()) return BurrWork::kIdle;
-    const bool is_at_bone = tool.contacts() > 0 || tool.effects().removed_mm3() > 0;
+    // A scene that tells nothing of its effects does not say whether bone goes where nothing touches.
+    const bool is_at_bone = !tool.has_effects() || tool.contacts() > 0 || tool.effects().removed_mm3() > 0;
     if (tool.buttons() & kButtonRemove) return is_at_bone ? BurrWork::kRemoving : BurrWork::kTurning;
     return tool.buttons() & kButtonAdd ? BurrWork::kAdding : BurrWork::kIdle;
 }

@@ -67,7 +67,6 @@ class RenderScene {
     // The notice is shown until it is replaced; nullopt takes it away.
     void setNotice(std::optional<HudNotice> notice) { hud_input_.notice = std::move(notice); }
 
-    // Takes what people call the scene in a lesson; empty where there is none.
     // Takes how the bone is looked at, where that is not the usual way, and how to leave it.
     void setModes(std::vector<std::string> modes) { hud_input_.modes = std::move(modes); }
 

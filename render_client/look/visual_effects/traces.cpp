@@ -22,7 +22,7 @@ void Browning::take(const EffectInput& input, SurfaceFilm& film) {
     const bool is_working = input.burr_force > 0 && !input.towards_bone_V.isZero();
     const double share =
         (*input.hottest_c - wish_.brown_from_c()) / (wish_.charred_from_c() - wish_.brown_from_c());
-    if (is_falling || !is_working || share <= 0) return;
+    if (is_falling || !is_working || !(share > 0)) return;  // nor what is not a number
     film.raise(SurfaceFilm::kBurn, input.contact(), float(std::min(share, 1.0)),
                float(kHotPrint * input.burr_radius));
 }

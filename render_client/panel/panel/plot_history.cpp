@@ -26,13 +26,16 @@ void PlotHistory::update(const SessionView& session) {
     if (session.tool->epoch() != epoch_) {
         *this = {};
         epoch_ = session.tool->epoch();
+        shown_s_ = session.time_s - kStep;
     }
-    if (session.tool->tick() == tool_tick_) return;
-    tool_tick_ = session.tool->tick();
+    const double due = std::clamp((session.time_s - shown_s_) / kStep, 0.0, double(kLength));
     constexpr double kMillimetres = 1000;
-    force_.add(lengthOf(session.tool->force_n()));
-    torque_.add(kMillimetres * lengthOf(session.tool->torque_nm()));
-    tick_.add(session.status ? session.status->tick_p99_us() : 0);
+    for (int n = 0; n < int(due); ++n) {
+        force_.add(lengthOf(session.tool->force_n()));
+        torque_.add(kMillimetres * lengthOf(session.tool->torque_nm()));
+        tick_.add(session.status ? session.status->tick_p99_us() : 0);
+    }
+    shown_s_ = due < double(kLength) ? shown_s_ + int(due) * kStep : session.time_s;
 }
 
 }  // namespace bonemill

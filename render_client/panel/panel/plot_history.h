@@ -12,7 +12,8 @@ namespace bonemill {
 
 class PlotHistory {
   public:
-    static constexpr size_t kLength = 1000;  // tool states: 10 s
+    static constexpr size_t kLength = 1000;
+    static constexpr double kStep = 0.01;  // s of each value: 10 s in all
 
     // Values over time in a ring, whose oldest one stands at `next`.
     struct Curve {
@@ -24,7 +25,8 @@ class PlotHistory {
         float largest() const;
     };
 
-    // Takes what is new in the session. Another server begins anew.
+    // Takes what the session says at its time_s; until the next call that is the value. Another server begins
+    // anew.
     void update(const SessionView& session);
     const Curve& force() const { return force_; }    // N, on the hand
     const Curve& torque() const { return torque_; }  // N·mm, about the tool point
@@ -32,7 +34,8 @@ class PlotHistory {
 
   private:
     Curve force_, torque_, tick_;
-    uint64_t epoch_ = 0, tool_tick_ = 0;
+    uint64_t epoch_ = 0;
+    double shown_s_ = 0;  // up to there there are values
 };
 
 }  // namespace bonemill

@@ -397,6 +397,7 @@ test('in the air the burr only turns', () => {
     workOf({ buttons, contacts, waitsForRelease: false, effects: { removedMm3 } } as unknown as ToolView);
   assert.deepEqual([at(1, 0, 0), at(1, 3, 0), at(1, 0, 0.1), at(0, 3, 0), at(2, 0, 0)],
     ['turning', 'removing', 'removing', 'idle', 'adding']);
+  assert.equal(workOf({ buttons: 1, contacts: 0, waitsForRelease: false } as unknown as ToolView), 'removing');
   near(loadOf({ forceN: [0.6, 0, 0.8] } as unknown as ToolView), 0.5, 1e-9);
 });
 

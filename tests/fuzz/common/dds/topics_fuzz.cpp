@@ -119,7 +119,7 @@ TEST(TopicsFuzz, SceneInfo) {
         for (const uint32_t index : info->tool().indices()) {
             EXPECT_LT(3 * index + 2, static_cast<uint32_t>(info->tool().vertices_m_size()));
         }
-        EXPECT_LE(info->materials_size(), 255);
+        EXPECT_LE(info->materials_size(), 127);
         for (const scene::Material& material : info->materials()) {
             for (const double part :
                  {material.color().red(), material.color().green(), material.color().blue()})

@@ -22,7 +22,7 @@ export interface SoundLoad {
   spinSpeed: number;  // rad/s, either way
   burrForceN: number;
   cuttingPowerW: number;
-  wallM?: number;  // of bone left before a protected structure
+  wallM?: number;  // from the burr to a protected structure
 }
 
 const clamp = (value: number, low: number, high: number) => Math.min(Math.max(value, low), high);

@@ -57,7 +57,7 @@ export function structureName(id: number, scene?: SceneView): string {
 // In the air the burr only turns.
 export function workOf(tool?: ToolView): Work {
   if (!tool || tool.waitsForRelease) return 'idle';
-  if (tool.buttons & 1) return tool.contacts > 0 || (tool.effects?.removedMm3 ?? 0) > 0 ? 'removing' : 'turning';
+  if (tool.buttons & 1) return !tool.effects || tool.contacts > 0 || tool.effects.removedMm3 > 0 ? 'removing' : 'turning';
   return tool.buttons & 2 ? 'adding' : 'idle';
 }
 

@@ -65,7 +65,7 @@ RC_GTEST_PROP(MeshProperties, IncrementalEqualsFull, ()) {
     VoxelVolume volume = anyVolume();
     LeafLattice lattice(volume, anySize(4));
     const BoneProperties properties(
-        volume, [](const Eigen::Vector3i&) { return *rc::gen::element<MaterialId>(0, 1, 2, 255); });
+        volume, [](const Eigen::Vector3i&) { return *rc::gen::element<MaterialId>(0, 1, 2, 127); });
     Mesher mesher(volume, lattice, MeshGrid::kMaxStepsPerCell, {&properties});
     std::map<LeafId, NodeMesh> model;
     const auto sink = [&](NodeMesh&& mesh) {

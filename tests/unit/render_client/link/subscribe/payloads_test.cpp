@@ -135,8 +135,8 @@ TEST(Payloads, MaterialsAndEffectsOutOfBoundsAreRefused) {
             for (int n = 0; n < count; ++n) info.add_materials();
         };
     };
-    EXPECT_TRUE(accepts(withMaterials(255)));
-    EXPECT_FALSE(accepts(withMaterials(256)));
+    EXPECT_TRUE(accepts(withMaterials(kMaxVertexMaterials)));
+    EXPECT_FALSE(accepts(withMaterials(kMaxVertexMaterials + 1)));
     EXPECT_FALSE(accepts([](topics::SceneInfo& info) {
         info.mutable_viewer_effects()->mutable_spindle()->set_inertia_kg_mm2(kNan);
     }));

@@ -67,6 +67,8 @@ TEST(Hud, ShowsWhatTheServerMeasuresWithUnits) {
 TEST(Hud, InTheAirTheBurrOnlyTurns) {
     HudInput input = liveInput();
     input.tool->set_contacts(0);
+    EXPECT_EQ(find(makeHud(input), "Burr")->value, "removing") << "the scene does not say what is removed";
+    input.tool->mutable_effects();
     EXPECT_EQ(find(makeHud(input), "Burr")->value, "turning");
     input.tool->mutable_effects()->set_removed_mm3(0.01);
     EXPECT_EQ(find(makeHud(input), "Burr")->value, "removing") << "it removes faster than it is led";

@@ -15,8 +15,9 @@ class Plots : public testing::Test {
         session_.tool = &tool_;
         tool_.set_epoch(1);
     }
-    void feel(uint64_t tick, double newtons) {
-        tool_.set_tick(tick);
+    // For so long (s).
+    void feel(double newtons, double seconds = PlotHistory::kStep) {
+        session_.time_s += seconds;
         tool_.clear_force_n();
         tool_.clear_torque_nm();
         for (const double part : {0.6, 0.0, 0.8}) tool_.add_force_n(part * newtons);
@@ -31,34 +32,43 @@ class Plots : public testing::Test {
 };
 
 TEST_F(Plots, FollowForceTorqueAndTick) {
-    for (uint64_t n = 1; n <= 5; ++n) feel(n, double(n));
-    feel(5, 9);  // the same tick again
+    for (int n = 1; n <= 5; ++n) feel(n);
     EXPECT_FLOAT_EQ(history_.force().newest(), 5);
     EXPECT_FLOAT_EQ(history_.torque().newest(), 5);
     EXPECT_FLOAT_EQ(history_.tick().newest(), 80);
-    feel(6, 1);
+    feel(1);
     EXPECT_FLOAT_EQ(history_.force().largest(), 5);
     EXPECT_FLOAT_EQ(history_.force().newest(), 1);
 }
 
-TEST_F(Plots, ForgetWhatIsOldAndAnotherServersPast) {
-    feel(1, 7);
-    for (uint64_t n = 0; n < PlotHistory::kLength; ++n) feel(n + 2, 1);
+TEST_F(Plots, AreTenSecondsLongAtAnyRateOfPictures) {
+    for (const double picture_s : {0.007, 0.05, 0.4}) {
+        feel(7, 0.1);
+        for (double t = 0; t < 9.5; t += picture_s) feel(1, picture_s);
+        EXPECT_FLOAT_EQ(history_.force().largest(), 7) << picture_s;
+        feel(1, 1);
+        EXPECT_FLOAT_EQ(history_.force().largest(), 1) << picture_s;
+    }
+}
+
+TEST_F(Plots, ForgetAnotherServersPastAndWhatIsNoNumber) {
+    feel(7);
+    feel(1, 1000);  // the viewer was asleep
     EXPECT_FLOAT_EQ(history_.force().largest(), 1);
     tool_.set_epoch(2);
-    feel(1, 0.5);
+    feel(0.5);
     EXPECT_FLOAT_EQ(history_.force().largest(), 0.5);
-    feel(2, std::numeric_limits<double>::quiet_NaN());
+    feel(std::numeric_limits<double>::quiet_NaN());
     EXPECT_EQ(history_.force().newest(), 0);
     tool_.clear_force_n();
-    tool_.set_tick(3);
+    session_.time_s += 1;
     history_.update(session_);
     EXPECT_EQ(history_.force().newest(), 0);
 }
 
 class PlotsPanel : public testing::Test, protected test::ControlledPanel {};
 
-TEST_F(PlotsPanel, AreFoldedAtFirstAndThereWithATool) {
+TEST_F(PlotsPanel, AreThereWithATool) {
     switchPanel();
     layOut(1280, 2400);
     EXPECT_FALSE(panel_.find("Plots"));
