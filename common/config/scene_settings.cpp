@@ -1,5 +1,6 @@
 #include "common/config/scene_settings.h"
 
+#include <google/protobuf/stubs/logging.h>
 #include <google/protobuf/text_format.h>
 
 #include <regex>
@@ -72,6 +73,7 @@ std::string quotedText(const std::string& value) {
 }  // namespace
 
 void setField(scene::Scene& scene, const std::string& assignment) {
+    const google::protobuf::LogSilencer silencer;  // what is wrong is said once, and by us
     const std::string refusal = "--set " + assignment + ": ";
     const size_t equals = assignment.find('=');
     if (equals == std::string::npos)

@@ -91,11 +91,8 @@ class MomentFinder {
     // With what the burr lies on as the attempt begins the trainee has done nothing yet.
     void addForce(const TickStep& step) {
         if (force_.is_on && step.t() - force_.last_s > kPause) endForce();
-        if (!step.isInContact()) {
-            was_free_ = true;
-            return;
-        }
-        if (was_free_) extend(force_, step.t(), step.force());
+        if (!step.isInContact() || step.record.removed > 0) has_begun_ = true;
+        if (step.isInContact() && has_begun_) extend(force_, step.t(), step.force());
     }
     void addHeat(const TickStep& step) {
         if (heat_.is_on && step.t() - heat_.last_s > kPause) endHeat();
@@ -160,7 +157,7 @@ class MomentFinder {
     TechniqueScene scene_;
     double force_limit_;
     Spell force_, heat_;
-    bool was_free_ = false;
+    bool has_begun_ = false;
     std::vector<Structure> structures_;
     double damaged_ = 0;  // m³ of all structures
     WorstMoments moments_;

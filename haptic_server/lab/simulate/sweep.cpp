@@ -5,6 +5,7 @@
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
+#include "common/config/scene_file.h"
 #include "haptic_server/lab/simulate/simulate.h"
 
 namespace bonemill {
@@ -53,12 +54,18 @@ Sweep readSweep(const std::string& text) {
 
 std::string simulateSweep(const SimulateOptions& options, const Sweep& sweep) {
     requireNoFiles(options);
+    const auto settingsWith = [&](const std::string& value) {
+        std::vector<std::string> settings = options.settings;
+        settings.push_back(sweep.field + "=" + value);
+        return settings;
+    };
+    for (const std::string& value : sweep.values) loadScene(options.scene, settingsWith(value));
     std::string table =
         sweep.field + "\nvalue            force N  depth mm  gone mm3   p50 us   p99 us  state hash\n";
     nlohmann::json runs = nlohmann::json::array();
     for (const std::string& value : sweep.values) {
         SimulateOptions one = options;
-        one.settings.push_back(sweep.field + "=" + value);
+        one.settings = settingsWith(value);
         nlohmann::json run = nlohmann::json::parse(simulate(one).json);
         table += rowOf(value, run) + "\n";
         run["value"] = value;

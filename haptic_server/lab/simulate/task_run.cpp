@@ -22,7 +22,7 @@ std::string writeAssessment(const AssessmentTarget& target, const LoadedScene& l
     attempt.number = target.number;
     attempt.journal = target.journal;
     attempt.scene_id = loaded.file.stem().string();
-    attempt.scene_title = loaded.scene.has_title() ? loaded.scene.title() : loaded.scene.name();
+    attempt.scene_title = titleOf(loaded.scene);
     attempt.scene_hash = hexText(sceneHashOf(loaded.scene));
     attempt.start_unix_ns =
         std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -34,7 +34,9 @@ std::string writeAssessment(const AssessmentTarget& target, const LoadedScene& l
     if (!result.picture.png.empty())
         pictures.push_back({deviationCaption(result.picture.scale), "image/png", result.picture.png});
     try {
-        ResultFolder(target.folder).write(attempt, std::move(pictures), result.begin_s);
+        const ResultFolder folder(target.folder);
+        folder.write(attempt, std::move(pictures), result.begin_s);
+        folder.writeClassPage();
     } catch (const std::exception& error) {
         files.note(error.what());
     }

@@ -217,7 +217,7 @@ std::string distributionSvg(std::span<const double> values, const std::string& u
     const double most = unit.empty() ? 100 : niceAbove(std::ranges::max(values));
     std::array<double, kBins> counts{};
     for (const double value : values)
-        ++counts[std::min(kBins - 1, size_t(std::max(0.0, value / most) * double(kBins)))];
+        ++counts[size_t(std::clamp(value / most * double(kBins), 0.0, double(kBins - 1)))];
     const Panel panel{46, 4, 190, 70, most, 0, std::ranges::max(counts)};
     std::string content = frameOf(panel, "", "");
     for (size_t bin = 0; bin < kBins; ++bin) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "haptic_server/teaching/attempt_report/charts.h"
@@ -16,7 +17,7 @@ constexpr size_t kMeanOf = 3;  // attempts
 
 using Attempts = std::vector<const AttemptResult*>;
 
-// A scene whose text has changed is another one: its attempts are not compared with those before.
+// A scene whose text has changed is another one, and so are other weights: their attempts are not compared.
 struct SceneAttempts {
     std::string title;
     Attempts all;
@@ -27,7 +28,9 @@ std::vector<SceneAttempts> byScene(const std::vector<AttemptResult>& results) {
     std::vector<SceneAttempts> scenes;
     std::map<std::string, size_t> places;
     for (const AttemptResult& result : results) {
-        const auto [place, is_new] = places.try_emplace(result.scene_hash, scenes.size());
+        const std::optional<Total>& total = result.assessment.total;
+        const std::string kind = result.scene_hash + (total ? total->weights_hash : "");
+        const auto [place, is_new] = places.try_emplace(kind, scenes.size());
         if (is_new) scenes.push_back({result.scene_title, {}, {}});
         SceneAttempts& scene = scenes[place->second];
         scene.all.push_back(&result);
@@ -61,11 +64,12 @@ double meanOfLast(const std::vector<double>& values) {
 }
 
 std::string failedMost(const Attempts& attempts) {
-    std::map<std::string, size_t> failures;
+    std::map<std::pair<std::string, std::string>, size_t> failures;  // by figure and label
     for (const AttemptResult* attempt : attempts)
         for (const GateResult& gate : attempt->assessment.gates)
-            if (!gate.is_passed) ++failures[gate.label];
-    std::vector<std::pair<std::string, size_t>> most(failures.begin(), failures.end());
+            if (!gate.is_passed) ++failures[{gate.figure_id, gate.label}];
+    std::vector<std::pair<std::string, size_t>> most;
+    for (const auto& [gate, count] : failures) most.emplace_back(gate.second, count);
     std::ranges::stable_sort(most, std::ranges::greater{}, &std::pair<std::string, size_t>::second);
     if (most.size() > kMostFailed) most.resize(kMostFailed);
     std::string rows;
@@ -147,6 +151,8 @@ std::string classPage(const std::vector<AttemptResult>& results, const std::stri
     std::string out = pageHead("Class");
     for (const SceneAttempts& scene : byScene(results)) out += sceneOf(scene, reports);
     if (results.empty()) out += element("p", "There is no attempt yet.");
+    if (results.size() >= kMostOnPage)
+        out += element("p", "These are the newest " + std::to_string(kMostOnPage) + " attempts.");
     return out +
            element("footer",
                    "One attempt says little: judge by the mean of three or more. What each figure is, and "

@@ -10,6 +10,7 @@
 namespace bonemill {
 
 inline constexpr char kClassPageName[] = "class.html";
+inline constexpr size_t kMostOnPage = 400;  // attempts
 
 // `results` are in the order of time. Links lead to the reports in `reports`, a folder beside the page.
 std::string classPage(const std::vector<AttemptResult>& results, const std::string& reports);

@@ -89,10 +89,10 @@ std::string totalOf(const Assessment& assessment) {
     if (!assessment.total) return "";
     const Total& total = *assessment.total;
     return element("p",
-                   "Total " + element("b", roundedText(100 * total.score) + " of 100") + "; " +
-                       roundedText(100 * total.done) + " % of the target was reached" +
+                   "Total " + element("b", roundedText(100 * total.score) + " of 100") +
                        " with the teacher's weights, version " + std::to_string(total.weights_version) +
-                       " (" + escaped(total.weights_hash) + ")",
+                       " (" + escaped(total.weights_hash) + "); " + roundedText(100 * total.done) +
+                       " % of what was asked to be removed is gone",
                    "class='total'");
 }
 

@@ -22,7 +22,9 @@ constexpr size_t kMaxStatements = size_t(256) << 20;
 // The text of a file of at most `most` bytes.
 std::string readBounded(const fs::path& file, size_t most) {
     std::ifstream input(file, std::ios::binary);
-    std::string text(most + 1, '\0');
+    std::error_code error;
+    const uintmax_t size = fs::file_size(file, error);
+    std::string text(error ? most + 1 : std::min<uintmax_t>(most, size) + 1, '\0');
     input.read(text.data(), std::streamsize(text.size()));
     const auto count = size_t(input.gcount());
     if (input.bad() || (!input.is_open())) throw UserError(file.string() + ": cannot be read");
@@ -172,10 +174,13 @@ void ResultFolder::write(const AttemptResult& result, std::vector<ReportPicture>
     extras.pictures = std::move(pictures);
     extras.begin_s = begin_s;
     extras.own = read(results(), result.scene_hash, result.pseudonym);
+    std::erase_if(extras.own, [&](const AttemptResult& own) {
+        return result.assessment.total && own.assessment.total &&
+               own.assessment.total->weights_hash != result.assessment.total->weights_hash;
+    });
     extras.comparison = compareWith(read(experts(), result.scene_hash, ""), result);
     writePrivateFile(with(".html"), htmlReport(result, extras));
     LineFile(statements()).append(xapiStatement(result) + "\n");
-    writeClassPage();
 }
 
 void ResultFolder::writeClassPage() const {

@@ -33,18 +33,18 @@ class ResultFolder {
     std::filesystem::path statements() const { return results() / "xapi.jsonl"; }
     std::filesystem::path classPage() const { return class_folder_ / kClassPageName; }
 
-    // Writes STEM.json and STEM.html, each whole or not at all, adds the statement, and writes the class'
-    // page anew. The report shows this person's attempts before, and experts', as they lie there. `begin_s`
-    // is the attempt's in the session. Throws UserError.
+    // Writes STEM.json and STEM.html, each whole or not at all, and adds the statement. The report shows this
+    // person's attempts before, and experts', as they lie there. `begin_s` is the attempt's in the session.
+    // Throws UserError.
     void write(const AttemptResult& result, std::vector<ReportPicture> pictures, double begin_s) const;
-    // The class' page, of the results that lie there. Throws UserError.
+    // The class' page, of the newest results that lie there: reading them takes a while. Throws UserError.
     void writeClassPage() const;
 
     // The results of one scene (by its hash) or of all with an empty hash, and of one person, or of everyone
     // with an empty pseudonym, in the order of time. A person's are looked for by the files' names. What is
     // no result is passed over: a person's edit must not cost the others theirs. At most kMaxRead files are
     // read, the newest by name.
-    static constexpr size_t kMaxRead = 400;
+    static constexpr size_t kMaxRead = kMostOnPage;
     static std::vector<AttemptResult> read(const std::filesystem::path& folder, const std::string& scene_hash,
                                            const std::string& pseudonym);
 

@@ -137,9 +137,18 @@ struct TableWriter::Shared {
         std::string problem = table.append(attempt, line.scene, chain);
         if (!problem.empty())
             spdlog::error("attempt {} is not in the class table: {}", attempt.number(), problem);
+        if (line.judgement && files_problem.empty()) writePage();
         Written written{line.order, attempt.number(), {}, problem.empty() ? files_problem : problem};
         if (attempt.has_verdict() && line.judgement->is_told) written.verdict = attempt.verdict();
         return written;
+    }
+    // It is made of what lies in the results; the table has the attempt already.
+    void writePage() const {
+        try {
+            ResultFolder(std::filesystem::absolute(table.path()).parent_path()).writeClassPage();
+        } catch (const std::exception& error) {
+            spdlog::error("the class' page is not up to date: {}", error.what());
+        }
     }
     void work() {
         std::unique_lock lock(mutex);

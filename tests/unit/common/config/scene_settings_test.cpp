@@ -16,7 +16,6 @@ scene::Scene with(std::initializer_list<const char*> assignments) {
 std::string refusalOf(const char* assignment) {
     scene::Scene scene;
     scene.add_tool()->set_name("first");
-    const std::string before = scene.SerializeAsString();
     try {
         setField(scene, assignment);
     } catch (const UserError& error) {

@@ -58,6 +58,7 @@ TEST(ClassPage, FollowsEachAttemptAndForgetsAPerson) {
     const ResultFolder results(folder / ".");
     results.write(attempt("Ann", 1, 0.2, false), {}, 0);
     results.write(attempt("Bo", 2, 0.4, true), {}, 0);
+    results.writeClassPage();
     std::string page = test::readFile(results.classPage());
     EXPECT_NE(page.find("Ann"), std::string::npos);
     EXPECT_NE(page.find("Bo"), std::string::npos);

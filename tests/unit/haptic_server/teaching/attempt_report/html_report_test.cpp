@@ -52,7 +52,7 @@ TEST(HtmlReport, ShowsGatesBeforeScoresAndScoresBeforeFigures) {
     EXPECT_LT(total, first);
     EXPECT_LT(first, all);
     EXPECT_NE(all, std::string::npos);
-    EXPECT_NE(html.find("97 % of the target was reached"), std::string::npos);
+    EXPECT_NE(html.find("97 % of what was asked to be removed is gone"), std::string::npos);
     EXPECT_LT(html.find("force.median@1"), all);
     EXPECT_GT(html.find("time.pedal@1"), all);
     for (const char* once : {"damage.volume:nerve@1", "force.max@1"})
