@@ -12,7 +12,7 @@ import { decodeMaterials, decodeNode, decoderReady } from '../src/link/node_code
 import { NodeList } from '../src/link/node_list';
 import * as payloads from '../src/link/payloads';
 import { Placement } from '../src/link/place_node';
-import { kVertexBytes, Role, type CommandOrder, type StatusView } from '../src/shared/messages';
+import { kMilledBit, kVertexBytes, Role, type CommandOrder, type StatusView, type ToolView } from '../src/shared/messages';
 import { clockText, readableText } from '../src/shared/format';
 import { OrderDesk, questionBefore, whyNot, whyNotHold } from '../src/orders';
 import { orderText } from '../src/shared/commands';
@@ -23,6 +23,7 @@ import { thinned } from '../src/stroke_pen';
 import { ToolHold } from '../src/tool_hold';
 import { actionOf } from '../src/ui/key_table';
 import { conditions, loadOf, workOf } from '../src/ui/words';
+import { vertexColours } from '../src/view/vertex_colours';
 import { Orbit, frustumPlanes, isBoxSeen, pixelOf } from '../src/view/camera';
 import { makeFrame, type PictureView } from '../src/view/picture_view';
 import { nearStructures } from '../src/view/near_structures';
@@ -390,6 +391,16 @@ test('a long stroke loses points, not its ends', () => {
   const points = Array.from({ length: 1000 }, (_, i): linear.Vec3 => [i, 0, 0]);
   const thin = thinned(points);
   assert.ok(thin.length <= 300 && thin[0][0] === 0 && thin.at(-1)![0] === 999);
+});
+
+test('milled bone is paler, and a cut structure dark red', () => {
+  const texels = vertexColours([
+    { name: 'bone', colour: [0.5, 0.5, 0.5], isProtected: false }, { name: 'nerve', colour: [1, 1, 0], isProtected: true }]);
+  const at = (n: number) => [...texels.slice(4 * n, 4 * n + 4)];
+  for (const i of [0, 1, 2]) assert.ok(at(1 + kMilledBit)[i] > at(1)[i]);
+  assert.ok(at(2 + kMilledBit)[0] < 0.5 && at(2 + kMilledBit)[1] < 0.1);
+  assert.deepEqual(at(0), [0, 0, 0, 0]);
+  assert.ok(at(kMilledBit)[3] > 0, 'bone without a material, too');
 });
 
 test('in the air the burr only turns', () => {

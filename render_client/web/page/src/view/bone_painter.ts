@@ -48,6 +48,8 @@ export class BonePainter {
   private readonly palette: WebGLTexture;
   private readonly nothing: WebGLVertexArrayObject;
 
+  private readonly made = new Map<string, Program>();
+
   constructor(private readonly gl: Gl, private readonly layers: Layers) {
     this.bone = new BoneStore(gl);
     this.light = layers.shadow ? ['SHADOW'] : [];
@@ -58,17 +60,25 @@ export class BonePainter {
     this.nothing = gl.createVertexArray();
   }
 
+  // A way of looking that comes again is not compiled again.
+  private programOf(name: string, vertex: string, fragment: string, words: string[]): Program {
+    const key = [name, ...words].join(' ');
+    const made = this.made.get(key) ?? new Program(this.gl, name, vertex, fragment, words);
+    this.made.set(key, made);
+    return made;
+  }
+
   // One per way of looking, so that none does what is not asked for.
   private makePrograms(): void {
-    const { gl, light } = this;
+    const { light } = this;
     const looks = [
       ...(this.hasColours || this.hasMilled ? ['MATERIALS'] : []), ...(this.hasMilled ? ['MILLED'] : []),
       ...(this.near ? ['NEAR_STRUCTURES'] : []),
     ];
     const of = (words: string[]): Programs => ({
-      surface: new Program(gl, 'bone', mesh_vertex, bone_fragment, [...words, ...light, ...looks]),
-      depth: new Program(gl, 'bone depth', mesh_vertex, depth_fragment, words),
-      structure: new Program(gl, 'structure', mesh_vertex, structure_fragment, [...words, ...light]),
+      surface: this.programOf('bone', mesh_vertex, bone_fragment, [...words, ...light, ...looks]),
+      depth: this.programOf('bone depth', mesh_vertex, depth_fragment, words),
+      structure: this.programOf('structure', mesh_vertex, structure_fragment, [...words, ...light]),
     });
     this.programs = { whole: of([]), cut: of(['CUT']) };
   }

@@ -81,7 +81,7 @@ AttemptJudgement failedJudgement() {
         judged.assessment.figures = {{"force.max", 1, "Force", 6, "N"}};
         judged.assessment.gates = {{"g", "The nerve is whole", "damage.volume:nerve", 0, true, false, "cut"},
                                    {"h", "The target is gone", "target", 90, false, true, "gone"}};
-        judged.assessment.total = Total{0.47, 1, "0"};
+        judged.assessment.total = Total{0.47, 1, 1, "0"};
         return judged;
     };
     judgement.scene_hash = 0xabc;
