@@ -28,8 +28,7 @@ class StartApart : public testing::Test {
 
 TEST_F(StartApart, HandsTheWordsOverAndDoesNotWait) {
     makeProgram("while [ ! -e " + (folder_ / "go") + " ]; do /bin/sleep 0.02; done; echo \"$1\" > " +
-                (folder_ / "part") + "; /bin/mv " + (folder_ / "part") + " " +
-                (folder_ / "told") + "\n");
+                (folder_ / "part") + "; /bin/mv " + (folder_ / "part") + " " + (folder_ / "told") + "\n");
     EXPECT_TRUE(startApart({"xdg-open", "a report; with 'signs'.html"}));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "told")) << "it still waits";
     test::writeFile(folder_ / "go", "");
