@@ -112,7 +112,10 @@ ScaleBar makeScaleBar(double metres_per_pixel, double max_pixels) {
 }
 
 HudBox layOutFigures(HudCanvas& canvas, const Hud& hud) {
-    const float em = canvas.em(), inner = em * kFiguresWidth;
+    // A long title makes it wider, so that one reads which bone it is.
+    constexpr float kWidestTitle = 1.8f;  // times as wide as without
+    const float em = canvas.em(), usual = em * kFiguresWidth;
+    const float inner = std::clamp(canvas.width(hud.title, FontStyle::kBold), usual, kWidestTitle * usual);
     const Spacing space(em);
     const float head = space.line * 2 + em * 0.35f;
     const float body = hud.rows.empty() ? 0 : space.line * float(hud.rows.size()) + em * 0.5f;
