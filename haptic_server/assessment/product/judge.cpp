@@ -67,7 +67,8 @@ double totalOf(double mean, double done, const std::vector<GateResult>& gates) {
     const double quality = mean * done;
     if (gates.empty()) return quality;
     if (passed == double(gates.size())) return kPassMark + (1 - kPassMark) * quality;
-    return kPassMark * quality * passed / double(gates.size());
+    const double held = passed / double(gates.size());
+    return kPassMark * quality * held * held;
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ struct JudgedTask {
 //
 // The total of an attempt that passes all gates lies between kPassMark and 1, that of another one below it: q
 // is the sub-scores' mean by weight times the share of the target that was reached, and 0 where nothing was
-// done; a failed attempt gets q times the share of gates that hold, of what is below kPassMark.
+// done; a failed attempt gets q times the square of the share of gates that hold, of what is below kPassMark.
 inline constexpr double kPassMark = 0.5;
 inline constexpr int kTotalFormula = 2;  // counts the definitions of the total: it is in the weights' hash
 Assessment judge(const JudgedTask& task, Figures figures);

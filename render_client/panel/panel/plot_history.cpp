@@ -28,14 +28,15 @@ void PlotHistory::update(const SessionView& session) {
         epoch_ = session.tool->epoch();
         shown_s_ = session.time_s - kStep;
     }
-    const double due = std::clamp((session.time_s - shown_s_) / kStep, 0.0, double(kLength));
+    constexpr double kRounding = 1e-6;
+    const int due = int(std::clamp((session.time_s - shown_s_) / kStep + kRounding, 0.0, double(kLength)));
     constexpr double kMillimetres = 1000;
-    for (int n = 0; n < int(due); ++n) {
+    for (int n = 0; n < due; ++n) {
         force_.add(lengthOf(session.tool->force_n()));
         torque_.add(kMillimetres * lengthOf(session.tool->torque_nm()));
         tick_.add(session.status ? session.status->tick_p99_us() : 0);
     }
-    shown_s_ = due < double(kLength) ? shown_s_ + int(due) * kStep : session.time_s;
+    shown_s_ = due < int(kLength) ? shown_s_ + due * kStep : session.time_s;
 }
 
 }  // namespace bonemill
