@@ -140,9 +140,9 @@ find_recording() {
     local all
     mapfile -t all < <(newest_recordings)
     recording=${1:-${all[0]:-}}
+    [[ -n $recording ]] || fail "no session has been recorded in $(recordings_folder): name a file, as: bonemill replay session.mcap"
     if [[ $recording == *.json ]]; then read_result "$recording"; fi
     [[ -f $recording || $recording == */* ]] || recording=$(recordings_folder)/$recording
-    [[ -n $recording ]] || fail "no session has been recorded in $(recordings_folder): name a file, as: bonemill replay session.mcap"
-    [[ -f $recording ]] || fail "there is no recording $recording (bonemill list shows the last ones)"
+    [[ -f $recording ]] || fail "there is no recording $(basename -- "$recording") (bonemill list shows the last ones)"
     recording=$(realpath -- "$recording")
 }

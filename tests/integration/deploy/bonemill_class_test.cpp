@@ -49,7 +49,7 @@ TEST_F(BonemillClass, EverySessionLeavesItsResultsInTheClassFolder) {
 TEST_F(BonemillClass, WithoutANameItIsTheDay) {
     const std::string events = eventsOf({"start", rig_.scene()});
     EXPECT_TRUE(
-        std::regex_search(events, std::regex("--export-dir \\S*/classes/20[0-9]{2}-[01][0-9]-[0-3][0-9] ")))
+        std::regex_search(events, std::regex("--export-dir \\S*/classes/20[0-9]{2}-[01][0-9]-[0-3][0-9]\\s")))
         << events;
 }
 
