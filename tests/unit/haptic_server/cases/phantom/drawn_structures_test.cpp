@@ -15,10 +15,10 @@ namespace {
 using Eigen::Vector3d;
 using enum TemporalTissue;
 
-constexpr double kVoxel = 0.2e-3;  // m, as the shipped scene's
+constexpr double kDrawnVoxel = 0.2e-3;  // m, as the shipped scene's
 constexpr double kMostError = 0.03;
 
-VolumeGeometry gridOf(const Eigen::AlignedBox3d& box, double voxel) {
+VolumeGeometry gridOfBox(const Eigen::AlignedBox3d& box, double voxel) {
     VolumeGeometry geometry;
     geometry.dims = (box.sizes() / voxel).array().floor().cast<int>() + 1;
     geometry.spacing.setConstant(voxel);
@@ -27,7 +27,7 @@ VolumeGeometry gridOf(const Eigen::AlignedBox3d& box, double voxel) {
 }
 
 template <class See>
-void forEachVoxel(const VolumeGeometry& grid, See&& see) {
+void forEachPlace(const VolumeGeometry& grid, See&& see) {
     size_t n = 0;
     forEachIndex({Eigen::Vector3i::Zero(), (grid.dims.array() - 1).matrix()}, [&](const Eigen::Vector3i& v) {
         see(n++, v, Vector3d(grid.X_WV * grid.spacing.cwiseProduct(v.cast<double>())));
@@ -38,7 +38,7 @@ void forEachVoxel(const VolumeGeometry& grid, See&& see) {
 Eigen::AlignedBox3d boxOfEar(const TemporalBone& bone) {
     const VolumeGeometry coarse = bone.grid(0.8e-3);
     Eigen::AlignedBox3d box;
-    forEachVoxel(coarse, [&](size_t, const Eigen::Vector3i&, const Vector3d& p) {
+    forEachPlace(coarse, [&](size_t, const Eigen::Vector3i&, const Vector3d& p) {
         if (std::min(bone.distance(kSemicircularCanals, p), bone.distance(kOssicles, p)) < 0.8e-3)
             box.extend(p);
     });
@@ -60,10 +60,10 @@ double drawnVolume(const NodeMesh& mesh) {
 // Voxels that the surface cuts count by the part that lies inside.
 double trueVolume(const TemporalBone& bone, TemporalTissue tissue, const VolumeGeometry& grid) {
     double sum = 0;
-    forEachVoxel(grid, [&](size_t, const Eigen::Vector3i&, const Vector3d& p) {
-        sum += std::clamp(0.5 - bone.distance(tissue, p) / kVoxel, 0.0, 1.0);
+    forEachPlace(grid, [&](size_t, const Eigen::Vector3i&, const Vector3d& p) {
+        sum += std::clamp(0.5 - bone.distance(tissue, p) / kDrawnVoxel, 0.0, 1.0);
     });
-    return sum * kVoxel * kVoxel * kVoxel;
+    return sum * kDrawnVoxel * kDrawnVoxel * kDrawnVoxel;
 }
 
 TEST(DrawnStructures, HoldAsMuchAsTheirShapes) {
@@ -71,7 +71,7 @@ TEST(DrawnStructures, HoldAsMuchAsTheirShapes) {
         TemporalBoneKind kind;
         kind.seed = seed;
         const TemporalBone bone(kind);
-        const VolumeGeometry grid = gridOf(boxOfEar(bone), kVoxel);
+        const VolumeGeometry grid = gridOfBox(boxOfEar(bone), kDrawnVoxel);
         const TemporalScan scan = bone.scan(grid);
         const VoxelVolume volume(grid, 1000);
         const auto materialAt = [&](const Eigen::Vector3i& v) {
