@@ -74,9 +74,9 @@ TEST(TopicsFuzz, StructureMesh) {
         const std::string bytes = message.SerializeAsString();
         return parseStructure({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}, id).has_value();
     };
-    EXPECT_TRUE(parsed(structure, 255));
+    EXPECT_TRUE(parsed(structure, kMaxVertexMaterials));
     EXPECT_FALSE(parsed(structure, 0)) << "no material";
-    EXPECT_FALSE(parsed(structure, 256)) << "more than a scene has";
+    EXPECT_FALSE(parsed(structure, kMaxVertexMaterials + 1)) << "more than a scene has";
     topics::StructureMesh other = structure;
     other.set_epoch(43);
     EXPECT_FALSE(parsed(other, 3)) << "the surface of another run";
