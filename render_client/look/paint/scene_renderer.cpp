@@ -28,7 +28,7 @@ void SceneRenderer::setPalette(const std::vector<Eigen::Vector4f>& colours) {
     changes_.forget();
 }
 
-void SceneRenderer::prepare(const EffectNeeds& needs) {
+void SceneRenderer::prepare(const DrawnEffects& needs) {
     bone_.setFilm(nullptr);
     structures_.setFilm(nullptr);
     film_ = needs.film ? std::make_unique<FilmPainter>(gl_) : nullptr;

@@ -29,7 +29,7 @@ struct PictureArea {
     double aspect() const { return double(width) / height; }
 };
 
-struct EffectNeeds {
+struct DrawnEffects {
     bool film = false, particles = false, spin = false;
 };
 
@@ -54,7 +54,7 @@ class SceneRenderer {
     // Bone shows what is near below its surface from here on.
     void setNearStructures(const NearStructures& near);
     // Makes what a scene's effects need to be drawn, and nothing else. Throws GlError.
-    void prepare(const EffectNeeds& needs);
+    void prepare(const DrawnEffects& needs);
     // As BonePainter::setFaces().
     void setFaces(const CtFaces* faces) { bone_.setFaces(faces); }
     // As BonePainter::setMilledGrey().

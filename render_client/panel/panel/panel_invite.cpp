@@ -57,8 +57,9 @@ void PanelContent::drawCode() {
     list.AddRectFilled(corner, ImVec2(corner.x + edge, corner.y + edge), IM_COL32_WHITE);
     for (int n = 0; n < code.width * code.width; ++n) {
         if (!code.is_dark[size_t(n)]) continue;
-        const ImVec2 low(corner.x + square * float(QrCode::kQuietSquares + n % code.width),
-                         corner.y + square * float(QrCode::kQuietSquares + n / code.width));
+        const int column = QrCode::kQuietSquares + n % code.width,
+                  row = QrCode::kQuietSquares + n / code.width;
+        const ImVec2 low(corner.x + square * float(column), corner.y + square * float(row));
         list.AddRectFilled(low, ImVec2(low.x + square, low.y + square), IM_COL32_BLACK);
     }
     ImGui::Dummy(ImVec2(edge, edge));

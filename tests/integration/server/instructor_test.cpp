@@ -27,7 +27,9 @@ uint64_t surfaceHash(const std::vector<NodeMesh>& nodes) {
     StateHash hash;
     for (const auto& [leaf, node] : by_leaf) {
         hash.addBytes(&leaf, sizeof leaf);
-        for (const auto& key : test::triangleKeys(*node)) hash.addBytes(&key, sizeof key);
+        NodeMesh plain = *node;
+        plain.materials.clear();  // which bone was milled a file does not say
+        for (const auto& key : test::triangleKeys(plain)) hash.addBytes(&key, sizeof key);
     }
     return hash.value();
 }
