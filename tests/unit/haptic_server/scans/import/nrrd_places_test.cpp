@@ -128,10 +128,15 @@ TEST_F(Places, ofNrrdOfWhichTheExtentsContradictTheSpacingsAreRefused) {
 TEST_F(Places, ofLabelsOnAScanOfOtherAxes) {
     writeNrrd(sampleTo("LPS"), "LPS", "LPS");
     const RawVolume scan = importVolumeHere(folder_ / "a.nrrd");
-    std::vector<MaterialRule> rules;  // label n is of material n
+    constexpr int kMaterials = 117;  // two labels are of each
+    std::vector<MaterialRule> rules(kMaterials);
     std::vector<MaterialId> meant;
-    for (uint32_t label = 1; label < 235; ++label) rules.push_back({.labels = {label}});
-    for (size_t n = 0; n < scan.values.size(); ++n) meant.push_back(MaterialId(scan.values[n]));
+    for (uint32_t label = 1; label <= 2 * kMaterials; ++label)
+        rules[(label - 1) % kMaterials].labels.push_back(label);
+    for (size_t n = 0; n < scan.values.size(); ++n) {
+        const int label = int(scan.values[n]);
+        meant.push_back(label == 0 ? kNoMaterial : MaterialId((label - 1) % kMaterials + 1));
+    }
     for (const std::string& code : allOrientations())
         for (const NrrdSpace& space : {kSpaces[0], kSpaces[2], kSpaces[5]}) {
             SCOPED_TRACE(code + " in " + space.name);

@@ -43,7 +43,7 @@ TEST_F(HudLayout, NoTextMakesTheFiguresWider) {
     Hud hud;
     hud.rows = {{"Force", "5.00 N"}};
     const HudBox small = layOutFigures(canvas_, hud);
-    hud.title = hud.state = hud.rows[0].value = std::string(300, 'w');
+    hud.state = hud.rows[0].value = std::string(300, 'w');
     const size_t first = canvas_.vertices().size();
     const HudBox large = layOutFigures(canvas_, hud);
     EXPECT_EQ(large.right, small.right);
@@ -53,6 +53,22 @@ TEST_F(HudLayout, NoTextMakesTheFiguresWider) {
     EXPECT_EQ(with_details.right, small.right);
     EXPECT_GT(with_details.bottom, small.bottom);
     EXPECT_LE(extentSince(first).right, small.right + 1);
+}
+
+TEST_F(HudLayout, ATitleIsReadWholeWithinBounds) {
+    Hud hud;
+    hud.rows = {{"Force", "5.00 N"}};
+    hud.title = "Tooth";
+    const HudBox usual = layOutFigures(canvas_, hud);
+    hud.title = "Temporal bone, left (phantom)";
+    const HudBox wider = layOutFigures(canvas_, hud);
+    EXPECT_GE(wider.right - wider.left, canvas_.width(hud.title, FontStyle::kBold));
+    EXPECT_GT(wider.right, usual.right);
+    hud.title = std::string(300, 'w');
+    const size_t first = canvas_.vertices().size();
+    const HudBox widest = layOutFigures(canvas_, hud);
+    EXPECT_LE(widest.right, 2 * usual.right);
+    EXPECT_LE(extentSince(first).right, widest.right + 1);
 }
 
 TEST_F(HudLayout, ALongNameOfAWatcherIsCutShort) {
