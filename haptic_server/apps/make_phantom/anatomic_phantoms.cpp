@@ -40,13 +40,6 @@ TemporalBoneKind kindOf(const TemporalArguments& arguments) {
     return kind;
 }
 
-void makeTemporalBone(const TemporalArguments& arguments) {
-    requireApart({{"--out", arguments.file}, {"--labels", arguments.labels}}, {});
-    const TemporalBone bone(kindOf(arguments));
-    const TemporalScan scan = bone.scan(bone.grid(arguments.voxel_mm * kMillimetre));
-    writeScan(arguments.file, arguments.labels, scan.ct, scan.labels);
-}
-
 ThirdMolarKind kindOf(const MolarArguments& arguments) {
     using enum ThirdMolarKind::Impaction;
     using enum ThirdMolarKind::Nerve;
@@ -58,10 +51,12 @@ ThirdMolarKind kindOf(const MolarArguments& arguments) {
     return kind;
 }
 
-void makeThirdMolar(const MolarArguments& arguments) {
+// A phantom of a left or a right side.
+template <class Phantom, class Arguments>
+void makeSided(const Arguments& arguments) {
     requireApart({{"--out", arguments.file}, {"--labels", arguments.labels}}, {});
-    const ThirdMolar molar(kindOf(arguments));
-    const MolarScan scan = molar.scan(molar.grid(arguments.voxel_mm * kMillimetre));
+    const Phantom phantom(kindOf(arguments));
+    const auto scan = phantom.scan(phantom.grid(arguments.voxel_mm * kMillimetre));
     writeScan(arguments.file, arguments.labels, scan.ct, scan.labels);
 }
 
@@ -126,11 +121,11 @@ void addAnatomicPhantoms(CLI::App& app, AnatomicArguments& arguments) {
                            makeVertebra, arguments.vertebra),
                 arguments.vertebra);
     addTemporalBone(addPhantom(app, "temporal_bone", "mastoid with air cells and what lies in it as NRRD, HU",
-                               makeTemporalBone, arguments.temporal_bone),
+                               makeSided<TemporalBone, TemporalArguments>, arguments.temporal_bone),
                     arguments.temporal_bone);
     addThirdMolar(
         addPhantom(app, "third_molar", "piece of lower jaw with an impacted third molar as NRRD, HU",
-                   makeThirdMolar, arguments.third_molar),
+                   makeSided<ThirdMolar, MolarArguments>, arguments.third_molar),
         arguments.third_molar);
     addSkullLabels(addPhantom(app, "skull_labels", "structures to spare in the left mastoid of Cranium.inv3",
                               makeSkullLabels, arguments.skull),

@@ -8,6 +8,7 @@
 #include "common/process/work_ahead.h"
 #include "haptic_server/cases/phantom/air_cells.h"
 #include "haptic_server/cases/phantom/lattice_noise.h"
+#include "haptic_server/cases/phantom/sided_grid.h"
 #include "haptic_server/cases/phantom/temporal_shapes.h"
 #include "haptic_server/core/volume/index_box.h"
 
@@ -245,17 +246,7 @@ TemporalBone::TemporalBone(const TemporalBoneKind& kind)
 TemporalBone::~TemporalBone() = default;
 
 VolumeGeometry TemporalBone::grid(double voxel_size) const {
-    constexpr double kMargin = 1;
-    const Vector3d margin = Vector3d::Constant(kMargin);
-    Eigen::AlignedBox3d box(temporalBlock().min() - margin, temporalBlock().max() + margin);
-    VolumeGeometry geometry;
-    geometry.dims = (box.sizes() * kMillimetre / voxel_size).array().ceil().cast<int>() + 1;
-    geometry.spacing.setConstant(voxel_size);
-    geometry.X_WV.position = box.min() * kMillimetre;
-    // The mirror image begins where the left one ends.
-    if (kind_.is_right)
-        geometry.X_WV.position.x() = -(geometry.X_WV.position.x() + voxel_size * (geometry.dims.x() - 1));
-    return geometry;
+    return sidedGrid(temporalBlock(), voxel_size, kind_.is_right);
 }
 
 TemporalScan TemporalBone::scan(const VolumeGeometry& geometry) const {

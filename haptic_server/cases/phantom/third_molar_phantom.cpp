@@ -9,6 +9,7 @@
 #include "common/process/work_ahead.h"
 #include "haptic_server/cases/phantom/lattice_noise.h"
 #include "haptic_server/cases/phantom/molar_shapes.h"
+#include "haptic_server/cases/phantom/sided_grid.h"
 
 namespace bonemill {
 namespace {
@@ -90,17 +91,7 @@ ThirdMolar::ThirdMolar(const ThirdMolarKind& kind)
 ThirdMolar::~ThirdMolar() = default;
 
 VolumeGeometry ThirdMolar::grid(double voxel_size) const {
-    constexpr double kMargin = 1;
-    const Eigen::AlignedBox3d box(jawBlock().min() - Vector3d::Constant(kMargin),
-                                  jawBlock().max() + Vector3d::Constant(kMargin));
-    VolumeGeometry geometry;
-    geometry.dims = (box.sizes() * kMillimetre / voxel_size).array().ceil().cast<int>() + 1;
-    geometry.spacing.setConstant(voxel_size);
-    geometry.X_WV.position = box.min() * kMillimetre;
-    // The mirror image begins where the left one ends.
-    if (kind_.is_right)
-        geometry.X_WV.position.x() = -(geometry.X_WV.position.x() + voxel_size * (geometry.dims.x() - 1));
-    return geometry;
+    return sidedGrid(jawBlock(), voxel_size, kind_.is_right);
 }
 
 MolarScan ThirdMolar::scan(const VolumeGeometry& geometry) const {
