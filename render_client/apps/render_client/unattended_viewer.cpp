@@ -294,6 +294,7 @@ void runOffscreen(const ClientOptions& options) {
         writePng(context.read(), wish.directory / name);
         std::cout << description << std::endl;
     }
+    feed.update();  // the sound lasts until the end
     sound.finish();
 }
 

@@ -2,10 +2,12 @@
 // has changed.
 #include <iostream>
 
+#include "common/log/log.h"
 #include "render_client/link/subscribe/scene_subscriber.h"
 
 int main(int, char** argv) {
     using namespace bonemill;
+    setUpLog("synthetic_client", "info");  // its standard output is for the test
     SceneSubscriber subscriber({.domain = static_cast<uint32_t>(std::stoul(argv[1])),
                                 .session = static_cast<uint32_t>(std::stoul(argv[2]))});
     NodeDigest printed;

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "common/dds/endpoint.h"
+#include "common/log/log.h"
 
 namespace {
 
@@ -29,6 +30,7 @@ void invent(char** argv) {
 }  // namespace
 
 int main(int, char** argv) {
+    setUpLog("synthetic_intruder", "info");  // its standard output is for the test
     const std::string what = argv[3];
     if (what == "viewers")
         invent<dds::ViewerSample>(argv);

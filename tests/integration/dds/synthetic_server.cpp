@@ -10,6 +10,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "common/log/log.h"
 #include "haptic_server/server/publish/publisher.h"
 #include "tests/support/synthetic_nodes.h"
 
@@ -45,6 +46,7 @@ void answerCommands(Publisher& publisher) {
 }  // namespace
 
 int main(int, char** argv) {
+    setUpLog("synthetic_server", "info");  // its standard output is for the test
     Publisher publisher({.domain = static_cast<uint32_t>(std::stoul(argv[1])),
                          .session = static_cast<uint32_t>(std::stoul(argv[2]))});
     publisher.publishSceneInfo(syntheticSceneInfo());
