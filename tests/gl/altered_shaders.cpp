@@ -33,12 +33,12 @@ GlApi alterShaders(const GlApi& gl, std::vector<Alteration> alterations) {
 }
 
 GlApi withoutAntialiasing(const GlApi& gl) {
-    static PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC real_storage = nullptr;
-    real_storage = gl.RenderbufferStorageMultisample;
+    static PFNGLGETINTEGERVPROC real_get = nullptr;
+    real_get = gl.GetIntegerv;
     GlApi altered = gl;
-    altered.RenderbufferStorageMultisample = [](GLenum target, GLsizei, GLenum format, GLsizei width,
-                                                GLsizei height) {
-        real_storage(target, 0, format, width, height);
+    altered.GetIntegerv = [](GLenum name, GLint* value) {
+        real_get(name, value);
+        if (name == GL_MAX_SAMPLES) *value = 0;
     };
     return altered;
 }

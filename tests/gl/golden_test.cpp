@@ -268,7 +268,7 @@ TEST_F(Golden, AnAlertIsShownWithoutFiguresToo) {
 
 TEST_F(Golden, TheComparisonSeesAMissingColour) {
     const GlApi altered =
-        test::alterShaders(context_.gl(), {{"+ material_colour.rgb", "+ 0.9 * material_colour.rrr"}});
+        test::alterShaders(context_.gl(), {{"+ point.material.rgb", "+ 0.9 * point.material.rrr"}});
     begin(altered);
     topics::SceneInfo info = test::milledInfo();
     test::addLayers(info);
@@ -321,7 +321,7 @@ TEST_F(Golden, TheComparisonSeesAnEndoscopeWithoutItsLightsFalloff) {
 }
 
 TEST_F(Golden, TheComparisonSeesTurnedNormalsInTheShader) {
-    expectSeen("plain", {{"vec3 normal = normalize(n_C);", "vec3 normal = -normalize(n_C);"}}, [] {});
+    expectSeen("plain", {{"octahedralOf(normalize(n_C))", "octahedralOf(-normalize(n_C))"}}, [] {});
 }
 
 TEST_F(Golden, TheComparisonSeesACutWithoutItsCap) {
@@ -342,8 +342,10 @@ TEST_F(Golden, TheComparisonSeesATransparentCutWithoutItsCap) {
 }
 
 TEST_F(Golden, TheComparisonSeesAMissingLayer) {
-    expectSeen("transparent", {{"if (inside) albedo = inside_colour;", "if (inside) discard;"}},
-               [this] { scene_->settings().is_transparent = true; });
+    expectSeen(
+        "transparent",
+        {{"return point.inside ? inside_colour : albedo;", "if (point.inside) discard; return albedo;"}},
+        [this] { scene_->settings().is_transparent = true; });
 }
 
 TEST_F(Golden, TheComparisonSeesMirroredNormalsOfTheMeshes) {

@@ -25,6 +25,7 @@
     X(PFNGLBUFFERDATAPROC, BufferData)                                         \
     X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)                 \
     X(PFNGLCLEARPROC, Clear)                                                   \
+    X(PFNGLCLEARBUFFERFVPROC, ClearBufferfv)                                   \
     X(PFNGLCLEARCOLORPROC, ClearColor)                                         \
     X(PFNGLCLEARDEPTHPROC, ClearDepth)                                         \
     X(PFNGLCOLORMASKPROC, ColorMask)                                           \
@@ -45,6 +46,7 @@
     X(PFNGLDRAWARRAYSPROC, DrawArrays)                                         \
     X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced)                       \
     X(PFNGLDRAWBUFFERPROC, DrawBuffer)                                         \
+    X(PFNGLDRAWBUFFERSPROC, DrawBuffers)                                       \
     X(PFNGLDRAWELEMENTSPROC, DrawElements)                                     \
     X(PFNGLENABLEPROC, Enable)                                                 \
     X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray)               \
@@ -76,6 +78,7 @@
     X(PFNGLSTENCILOPPROC, StencilOp)                                           \
     X(PFNGLSTENCILOPSEPARATEPROC, StencilOpSeparate)                           \
     X(PFNGLTEXIMAGE2DPROC, TexImage2D)                                         \
+    X(PFNGLTEXIMAGE2DMULTISAMPLEPROC, TexImage2DMultisample)                   \
     X(PFNGLTEXIMAGE3DPROC, TexImage3D)                                         \
     X(PFNGLTEXPARAMETERIPROC, TexParameteri)                                   \
     X(PFNGLTEXSUBIMAGE3DPROC, TexSubImage3D)                                   \

@@ -59,10 +59,7 @@ std::array<Eigen::Vector3f, 256> boneColoursOf(const std::vector<Eigen::Vector4f
 }
 
 MaterialPalette::MaterialPalette(const GlApi& gl, const std::vector<Eigen::Vector4f>& colours)
-    : gl_(gl),
-      texture_(gl),
-      has_colours_(std::any_of(colours.begin(), colours.begin() + kMilledBit,
-                               [](const Eigen::Vector4f& colour) { return colour.w() > 0; })) {
+    : gl_(gl), texture_(gl) {
     gl_.ActiveTexture(GL_TEXTURE0 + kUnit);
     gl_.BindTexture(GL_TEXTURE_2D, texture_.name());
     gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA16F, kColours, 1, 0, GL_RGBA, GL_FLOAT, colours.data());

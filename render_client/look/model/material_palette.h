@@ -25,14 +25,11 @@ std::array<Eigen::Vector3f, 256> boneColoursOf(const std::vector<Eigen::Vector4f
 
 class MaterialPalette {
   public:
-    // This goes before both shaders of a program that uses the palette.
+    // This goes before the vertices' shader of a program that uses the palette.
     static constexpr char kDefine[] = "#define MATERIALS\n";
 
     // Takes vertexColoursOf() a scene.
     MaterialPalette(const GlApi& gl, const std::vector<Eigen::Vector4f>& colours);
-
-    // Has bone that is not milled other colours than its own?
-    bool hasColours() const { return has_colours_; }
 
     // The program must be in use.
     void setUniforms(const Program& program) const;
@@ -42,7 +39,6 @@ class MaterialPalette {
 
     const GlApi& gl_;
     GlTexture texture_;
-    bool has_colours_;
 };
 
 }  // namespace bonemill

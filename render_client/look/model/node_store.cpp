@@ -146,7 +146,6 @@ void NodeStore::set(const NodeMesh& mesh) {
               mesh.origin,
               mesh.step,
               GLsizei(mesh.indices.size()),
-              std::ranges::any_of(mesh.materials, [](uint8_t m) { return (m & kMilledBit) != 0; }),
               std::move(sorted.parts),
               {}};
     gl_.BindVertexArray(node.layout.name());
@@ -223,24 +222,32 @@ size_t NodeStore::triangleCount() const {
     return count;
 }
 
-bool NodeStore::hasMilled() const {
-    return std::ranges::any_of(nodes_, [](const auto& node) { return node.second.has_milled; });
-}
-
 size_t NodeStore::draw(const Program& program, const Eigen::Matrix4f& clip_from_V) const {
     const GLint origin = program.uniform("origin");
     const GLint step = program.uniform("step");
     size_t triangles = 0;
-    for (const auto& [leaf, node] : nodes_) {
-        const Sight sight = sightOf(node.box, clip_from_V);
+    for (const Node* node : fromTheEye(clip_from_V)) {
+        const Sight sight = sightOf(node->box, clip_from_V);
         if (sight == Sight::kOutside) continue;
-        program.set(origin, node.origin);
-        program.set(step, node.step);
-        gl_.BindVertexArray(node.layout.name());
-        triangles += sight == Sight::kInside ? drawRun(0, node.index_count) : drawParts(node, clip_from_V);
+        program.set(origin, node->origin);
+        program.set(step, node->step);
+        gl_.BindVertexArray(node->layout.name());
+        triangles += sight == Sight::kInside ? drawRun(0, node->index_count) : drawParts(*node, clip_from_V);
     }
     gl_.BindVertexArray(0);
     return triangles;
+}
+
+std::vector<const NodeStore::Node*> NodeStore::fromTheEye(const Eigen::Matrix4f& clip_from_V) const {
+    std::vector<std::pair<float, const Node*>> nodes;
+    nodes.reserve(nodes_.size());
+    for (const auto& [leaf, node] : nodes_)
+        nodes.emplace_back(clip_from_V.row(3).dot(node.box.center().homogeneous()), &node);
+    std::ranges::stable_sort(nodes, {}, [](const auto& node) { return node.first; });
+    std::vector<const Node*> sorted;
+    sorted.reserve(nodes.size());
+    for (const auto& [depth, node] : nodes) sorted.push_back(node);
+    return sorted;
 }
 
 // Parts that lie side by side in the buffer are drawn at once.

@@ -62,8 +62,6 @@ class NodeStore {
     size_t nodeCount() const { return nodes_.size(); }
     size_t triangleCount() const;
     const UploadCount& uploads() const { return uploads_; }
-    // Is there a vertex with kMilledBit?
-    bool hasMilled() const;
 
     // From now on, or no longer, the store knows where it changes; that takes memory and time.
     void trackChanges(bool wants_changes) { tracks_changes_ = wants_changes; }
@@ -86,7 +84,7 @@ class NodeStore {
     void setScan(uint32_t leaf, const std::vector<VertexScan>& scan, uint64_t stamp);
 
     // Draws what may be inside the view volume of clip_from_V with the program in use (uniforms origin and
-    // step). Returns the number of triangles drawn.
+    // step), the nearest first: what it hides is not drawn. Returns the number of triangles drawn.
     size_t draw(const Program& program, const Eigen::Matrix4f& clip_from_V) const;
 
   private:
@@ -101,12 +99,12 @@ class NodeStore {
         Eigen::Vector3f origin;   // V, m
         Eigen::Vector3f step;     // V, m
         GLsizei index_count;
-        bool has_milled;
         std::vector<NodePart> parts;
         std::optional<NodeMesh>
             mesh;  // what the buffers hold, while changes are tracked or once it was milled
     };
     void remove(uint32_t leaf);
+    std::vector<const Node*> fromTheEye(const Eigen::Matrix4f& clip_from_V) const;
     size_t drawParts(const Node& node, const Eigen::Matrix4f& clip_from_V) const;
     size_t drawRun(size_t first_index, size_t count) const;
     void uploadMaterials(const std::vector<uint8_t>& materials, Node& node);

@@ -106,6 +106,9 @@ void NearStructurePainter::setUniforms(const Program& program, bool shows_thickn
 BonePainter::BonePainter(const GlApi& gl)
     : gl_(gl),
       depth_(gl, "bone depth", shaders::kMeshVertex, shaders::kDepthFragment),
+      surface_(gl, "bone's surface",
+               std::string(MaterialPalette::kDefine) + "#define MILLED\n" + shaders::kMeshVertex,
+               shaders::kBoneSurfaceFragment),
       cap_(gl, "cap", shaders::kFullScreenVertex, shaders::kCapFragment),
       no_attributes_(gl),
       palette_(std::make_unique<MaterialPalette>(gl, vertexColoursOf({}))) {}
@@ -114,89 +117,114 @@ void BonePainter::setPalette(const std::vector<Eigen::Vector4f>& colours) {
     palette_ = std::make_unique<MaterialPalette>(gl_, colours);
 }
 
-// Each combination of what the surface shows has a program of its own, made when it is first seen.
-const Program& BonePainter::surface(bool has_milled) {
-    const bool has_film = hasFilm(), has_colours = has_milled || palette_->hasColours();
-    std::unique_ptr<Program>& program = surfaces_[size_t(has_colours ? 1 : 0) + size_t(has_film ? 2 : 0) +
-                                                  size_t(near_ ? 4 : 0) + size_t(has_milled ? 8 : 0)];
+// Each combination of what bone shows has a program of its own, made when it is first seen.
+const Program& BonePainter::shading(const SurfaceMaps& maps) {
+    const bool has_samples = maps.samples() > 0;
+    std::unique_ptr<Program>& program =
+        shadings_[size_t(hasFilm() ? 1 : 0) + size_t(near_ ? 2 : 0) + size_t(has_samples ? 4 : 0)];
     if (program) return *program;
-    const std::string both = std::string(has_colours ? MaterialPalette::kDefine : "") +
-                             (near_ ? "#define NEAR_STRUCTURES\n" : "") +
-                             (has_milled ? "#define MILLED\n" : "");
-    program = std::make_unique<Program>(gl_, "bone", both + shaders::kMeshVertex,
-                                        both + (has_film ? "#define FILM\n" : "") + shaders::kBoneFragment);
+    const std::string words =
+        std::string(hasFilm() ? "#define FILM\n" : "") + (near_ ? "#define NEAR_STRUCTURES\n" : "") +
+        (has_samples ? "#define SAMPLES " + std::to_string(maps.samples()) + "\n" : std::string());
+    program = std::make_unique<Program>(gl_, "bone", shaders::kFullScreenVertex,
+                                        words + shaders::kBoneShadeFragment);
     return *program;
 }
 
-void BonePainter::drawOpaque(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture) {
-    const Look look{{1, 0}, kInsideSolid};
+void BonePainter::drawOpaque(const Frame& frame, const NodeStore& nodes, const BoneLayer& layer,
+                             GLuint shadow_texture) {
+    const Place place{frame, nodes, layer, shadow_texture};
     if (frame.cuts_V.any()) beginMarking();
-    if (!frame.has_shadow) {  // where the processor draws, only what is seen is shaded
-        drawDepth(frame, nodes);
-        gl_.DepthFunc(GL_EQUAL);
-    }
-    drawSurface(frame, nodes, shadow_texture, look);
-    gl_.DepthFunc(GL_LESS);
+    drawSurface(place, {{1, 0}, kInsideSolid});
     if (!frame.cuts_V.any()) return;
     gl_.DepthFunc(GL_ALWAYS);  // at its rim the cap is as deep as the surface
-    drawCap(frame, shadow_texture, 1);
+    drawCap(place, 1);
     gl_.DepthFunc(GL_LESS);
-    gl_.Disable(GL_STENCIL_TEST);
 }
 
-void BonePainter::drawTransparent(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
-                                  double opacity, const std::function<void()>& draw_tool) {
-    drawFarWall(frame, nodes, shadow_texture);
-    if (frame.cuts_V.any()) markOpened(frame, nodes);
+void BonePainter::drawTransparent(const Frame& frame, const NodeStore& nodes, const BoneLayer& layer,
+                                  GLuint shadow_texture, double opacity,
+                                  const std::function<void()>& draw_tool) {
+    const Place place{frame, nodes, layer, shadow_texture};
+    drawFarWall(place);
+    if (frame.cuts_V.any()) markOpened(place);
     draw_tool();
+    drawInnerWall(place);
+    findNearestLayer(place, GL_BACK);
+    drawFoundLayer(place, {{float(opacity), kOutline}, kInsideGlass});
+    if (!frame.cuts_V.any()) return;
     gl_.Enable(GL_BLEND);
     gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    drawInnerWall(frame, nodes, shadow_texture);
-    findNearestLayer(frame, nodes, GL_BACK);
-    drawFoundLayer(frame, nodes, shadow_texture, {{float(opacity), kOutline}, kInsideGlass});
-    if (frame.cuts_V.any()) {
-        gl_.Enable(GL_STENCIL_TEST);
-        gl_.DepthFunc(GL_LEQUAL);
-        drawCap(frame, shadow_texture, std::min(float(opacity) + kCapOpacity, 1.0f));
-        gl_.DepthFunc(GL_LESS);
-        gl_.Disable(GL_STENCIL_TEST);
-    }
+    gl_.DepthFunc(GL_LEQUAL);
+    drawCap(place, std::min(float(opacity) + kCapOpacity, 1.0f));
+    gl_.DepthFunc(GL_LESS);
     gl_.Disable(GL_BLEND);
 }
 
-void BonePainter::drawSurface(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
-                              const Look& look) {
-    const ClipPlanes clip(gl_, frame.cuts_V);
-    const Program& surface = this->surface(nodes.hasMilled());
-    surface.use();
-    frame.setLight(gl_, surface, shadow_texture);
-    setCutPlanes(surface, frame.cuts_V);
-    surface.set("camera_from_model", frame.X_CV);
-    surface.set("grain_size", float(kGrain) * frame.bone_radius);
-    surface.set("opacity", look.opacity);
-    surface.set("inside_colour", look.inside);
-    surface.set("shows_scan", milled_grey_ ? 1 : 0);
-    surface.set("grey_of_density", milled_grey_.value_or(Eigen::Vector2f::UnitX()));
-    palette_->setUniforms(surface);
-    if (hasFilm()) film_->setUniforms(surface);
-    if (near_) near_->setUniforms(surface, shows_thickness_);
-    triangles_drawn_ = nodes.draw(surface, frame.cull_from_V);
+// Takes the surface as depth, faces and stencil are tested now. Leaves faces and stencil untested.
+void BonePainter::drawSurface(const Place& place, const Look& look) {
+    gather(place);
+    gl_.Disable(GL_STENCIL_TEST);
+    gl_.CullFace(GL_BACK);
+    gl_.Disable(GL_CULL_FACE);
+    shade(place, look);
 }
 
-void BonePainter::drawDepth(const Frame& frame, const NodeStore& nodes) const {
+void BonePainter::gather(const Place& place) {
+    const Frame& frame = place.frame;
+    const ClipPlanes clip(gl_, frame.cuts_V);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, place.layer.surface);
+    place.layer.maps.clear();
+    surface_.use();
+    setCutPlanes(surface_, frame.cuts_V);
+    surface_.set("camera_from_model", frame.X_CV);
+    surface_.set("clip_from_camera", frame.clip_from_camera);
+    palette_->setUniforms(surface_);
+    triangles_drawn_ = place.nodes.draw(surface_, frame.cull_from_V);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, place.layer.picture);
+}
+
+void BonePainter::shade(const Place& place, const Look& look) {
+    const Frame& frame = place.frame;
+    const Program& shading = this->shading(place.layer.maps);
+    shading.use();
+    frame.setLight(gl_, shading, place.shadow_texture);
+    place.layer.maps.setUniforms(shading);
+    shading.set("tangents", frame.tangents);
+    shading.set("shift", frame.shift);
+    shading.set("model_from_camera", Eigen::Matrix4f(frame.X_CV.inverse()));
+    shading.set("grain_size", float(kGrain) * frame.bone_radius);
+    shading.set("opacity", look.opacity);
+    shading.set("inside_colour", look.inside);
+    shading.set("shows_scan", milled_grey_ ? 1 : 0);
+    shading.set("grey_of_density", milled_grey_.value_or(Eigen::Vector2f::UnitX()));
+    if (hasFilm()) film_->setUniforms(shading);
+    if (near_) near_->setUniforms(shading, shows_thickness_);
+    gl_.Disable(GL_DEPTH_TEST);
+    gl_.Enable(GL_BLEND);
+    gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    gl_.BindVertexArray(no_attributes_.name());
+    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+    gl_.BindVertexArray(0);
+    gl_.Disable(GL_BLEND);
+    gl_.Enable(GL_DEPTH_TEST);
+}
+
+void BonePainter::drawDepth(const Place& place) const {
+    const Frame& frame = place.frame;
     const ClipPlanes clip(gl_, frame.cuts_V);
     depth_.use();
     setCutPlanes(depth_, frame.cuts_V);
     depth_.set("camera_from_model", frame.X_CV);
     depth_.set("clip_from_camera", frame.clip_from_camera);
     gl_.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    nodes.draw(depth_, frame.cull_from_V);
+    place.nodes.draw(depth_, frame.cull_from_V);
     gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
 // Draws the farthest front face where there is another one before it: the far wall of a cavity, or of the
 // skull. Leaves the depth clear, and in the stencil how many layers there are.
-void BonePainter::drawFarWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture) {
+void BonePainter::drawFarWall(const Place& place) {
     gl_.ClearDepth(0);
     gl_.Clear(GL_DEPTH_BUFFER_BIT);
     gl_.ClearDepth(1);
@@ -207,47 +235,40 @@ void BonePainter::drawFarWall(const Frame& frame, const NodeStore& nodes, GLuint
     gl_.StencilFunc(GL_ALWAYS, 0, kAllBits);
     gl_.StencilOp(GL_KEEP, GL_INCR, GL_INCR);
     gl_.DepthFunc(GL_GREATER);
-    drawDepth(frame, nodes);
+    drawDepth(place);
 
     gl_.StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
     gl_.StencilMask(kAllBits);
     gl_.StencilFunc(GL_LEQUAL, 2, kLayers);
-    gl_.Enable(GL_BLEND);
-    gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    drawFoundLayer(frame, nodes, shadow_texture, {{kFarWallOpacity, 0}, kInsideGlass});
-    gl_.Disable(GL_BLEND);
-    gl_.Disable(GL_STENCIL_TEST);
+    drawFoundLayer(place, {{kFarWallOpacity, 0}, kInsideGlass});
     gl_.Clear(GL_DEPTH_BUFFER_BIT);
 }
 
 // The wall is strong where it belongs to a cavity or something else is behind it: that is
 // what one wants to see.
-void BonePainter::drawInnerWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture) {
-    findNearestLayer(frame, nodes, GL_FRONT);
+void BonePainter::drawInnerWall(const Place& place) {
+    findNearestLayer(place, GL_FRONT);
     gl_.Enable(GL_STENCIL_TEST);
     gl_.StencilFunc(GL_LEQUAL, 2, kLayers);
-    drawFoundLayer(frame, nodes, shadow_texture, {{kWallOpacity, kOutline}, kInsideGlass});
+    drawFoundLayer(place, {{kWallOpacity, kOutline}, kInsideGlass});
     gl_.Enable(GL_CULL_FACE);
     gl_.CullFace(GL_FRONT);
+    gl_.Enable(GL_STENCIL_TEST);
     gl_.StencilFunc(GL_GREATER, 2, kLayers);
-    drawFoundLayer(frame, nodes, shadow_texture, {{kLastWallOpacity, 0}, kInsideGlass});
-    gl_.Disable(GL_STENCIL_TEST);
+    drawFoundLayer(place, {{kLastWallOpacity, 0}, kInsideGlass});
 }
 
-void BonePainter::findNearestLayer(const Frame& frame, const NodeStore& nodes, GLenum culled) const {
+void BonePainter::findNearestLayer(const Place& place, GLenum culled) const {
     gl_.Enable(GL_CULL_FACE);
     gl_.CullFace(culled);
-    drawDepth(frame, nodes);
+    drawDepth(place);
 }
 
-// Culls as the layer was found, and switches culling off afterwards.
-void BonePainter::drawFoundLayer(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
-                                 const Look& look) {
+// Culls as the layer was found, and leaves culling off.
+void BonePainter::drawFoundLayer(const Place& place, const Look& look) {
     gl_.DepthFunc(GL_EQUAL);
-    drawSurface(frame, nodes, shadow_texture, look);
+    drawSurface(place, look);
     gl_.DepthFunc(GL_LESS);
-    gl_.CullFace(GL_BACK);
-    gl_.Disable(GL_CULL_FACE);
 }
 
 // From here on the stencil says which side of the nearest surface is seen.
@@ -259,22 +280,24 @@ void BonePainter::beginMarking() const {
     gl_.StencilOpSeparate(GL_BACK, GL_KEEP, GL_KEEP, GL_REPLACE);
 }
 
-void BonePainter::markOpened(const Frame& frame, const NodeStore& nodes) const {
+void BonePainter::markOpened(const Place& place) const {
     beginMarking();
-    drawDepth(frame, nodes);
+    drawDepth(place);
     gl_.StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
     gl_.StencilMask(kAllBits);
     gl_.Disable(GL_STENCIL_TEST);
     gl_.Clear(GL_DEPTH_BUFFER_BIT);
 }
 
-void BonePainter::drawCap(const Frame& frame, GLuint shadow_texture, float opacity) const {
+void BonePainter::drawCap(const Place& place, float opacity) const {
+    const Frame& frame = place.frame;
+    gl_.Enable(GL_STENCIL_TEST);
     gl_.StencilFunc(GL_EQUAL, kOpened, kOpened);
     gl_.StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
     gl_.StencilMask(kAllBits);
     const Program& cap = faces_ ? faces_->cap() : cap_;
     cap.use();
-    frame.setLight(gl_, cap, shadow_texture);
+    frame.setLight(gl_, cap, place.shadow_texture);
     setCutPlanes(cap, frame.cuts_C);
     cap.set("near_far", frame.near_far);
     cap.set("tangents", frame.tangents);
@@ -289,6 +312,7 @@ void BonePainter::drawCap(const Frame& frame, GLuint shadow_texture, float opaci
     gl_.BindVertexArray(no_attributes_.name());
     gl_.DrawArrays(GL_TRIANGLES, 0, 3);
     gl_.BindVertexArray(0);
+    gl_.Disable(GL_STENCIL_TEST);
 }
 
 }  // namespace bonemill

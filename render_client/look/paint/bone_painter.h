@@ -21,6 +21,7 @@
 #include "render_client/look/model/node_store.h"
 #include "render_client/look/paint/frame.h"
 #include "render_client/look/paint/scan_painters.h"
+#include "render_client/look/paint/surface_maps.h"
 #include "render_client/look/structures/near_structures.h"
 #include "render_client/look/visual_effects/surface_film.h"
 
@@ -71,12 +72,13 @@ class BonePainter {
     // Throws GlError with the compiler's log when the driver refuses a shader.
     explicit BonePainter(const GlApi& gl);
 
-    // Both draw into the bound framebuffer, whose depth and stencil are clear, and leave depth test and depth
-    // writes on. draw_tool draws opaque things. They throw GlError with the compiler's log when the driver
-    // refuses the surface's shader with what it is to show for the first time.
-    void drawOpaque(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture);
-    void drawTransparent(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, double opacity,
-                         const std::function<void()>& draw_tool);
+    // Both draw into the layer's picture, whose depth and stencil are clear, and leave it bound, with depth
+    // test and depth writes on. draw_tool draws opaque things. They throw GlError with the compiler's log
+    // when the driver refuses the surface's shader with what it is to show for the first time.
+    void drawOpaque(const Frame& frame, const NodeStore& nodes, const BoneLayer& layer,
+                    GLuint shadow_texture);
+    void drawTransparent(const Frame& frame, const NodeStore& nodes, const BoneLayer& layer,
+                         GLuint shadow_texture, double opacity, const std::function<void()>& draw_tool);
 
     // From now on bone has these colours (vertexColoursOf()).
     void setPalette(const std::vector<Eigen::Vector4f>& colours);
@@ -104,22 +106,31 @@ class BonePainter {
         Eigen::Vector2f opacity;  // facing the eye, and what the outline adds
         Eigen::Vector3f inside;   // linear colour of the surface seen from within
     };
+    // Where bone is drawn, and in which light.
+    struct Place {
+        const Frame& frame;
+        const NodeStore& nodes;
+        const BoneLayer& layer;
+        GLuint shadow_texture;
+    };
     bool hasFilm() const { return film_ && !(near_ && shows_thickness_); }
-    const Program& surface(bool has_milled);
-    void drawSurface(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, const Look& look);
-    void drawDepth(const Frame& frame, const NodeStore& nodes) const;
-    void drawFarWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture);
-    void drawInnerWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture);
-    void findNearestLayer(const Frame& frame, const NodeStore& nodes, GLenum culled) const;
-    void drawFoundLayer(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, const Look& look);
-    void markOpened(const Frame& frame, const NodeStore& nodes) const;
+    const Program& shading(const SurfaceMaps& maps);
+    void drawSurface(const Place& place, const Look& look);
+    void gather(const Place& place);
+    void shade(const Place& place, const Look& look);
+    void drawDepth(const Place& place) const;
+    void drawFarWall(const Place& place);
+    void drawInnerWall(const Place& place);
+    void findNearestLayer(const Place& place, GLenum culled) const;
+    void drawFoundLayer(const Place& place, const Look& look);
+    void markOpened(const Place& place) const;
     void beginMarking() const;
-    void drawCap(const Frame& frame, GLuint shadow_texture, float opacity) const;
+    void drawCap(const Place& place, float opacity) const;
 
     const GlApi& gl_;
-    Program depth_, cap_;
-    // By what the surface shows (surface()); null until it is shown first.
-    std::array<std::unique_ptr<Program>, 16> surfaces_;
+    Program depth_, surface_, cap_;
+    // By what bone shows (shading()); null until it is shown first.
+    std::array<std::unique_ptr<Program>, 8> shadings_;
     GlVertexArray no_attributes_;
     std::unique_ptr<MaterialPalette> palette_;
     const FilmPainter* film_ = nullptr;

@@ -112,10 +112,12 @@ RenderTargets::RenderTargets(const GlApi& gl, int width, int height, Quality qua
       height_(height),
       quality_(quality),
       scene_(gl),
+      scene_surface_(gl),
       resolved_(gl),
       occlusion_(gl),
       shadow_(gl),
       bone_(gl),
+      bone_surface_(gl),
       finished_(gl),
       scene_colour_(gl),
       scene_depth_(gl),
@@ -147,14 +149,33 @@ void RenderTargets::makeScene() {
     gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER,
                                 scene_depth_.name());
     checkComplete("scene");
+
+    maps_.emplace(gl_, width_, height_, samples);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, scene_surface_.name());
+    gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER,
+                                scene_depth_.name());
+    maps_->attach();
+    checkComplete("scene's surface");
 }
 
 void RenderTargets::makeKept() {
     makeLayer(bone_, bone_colour_, bone_depth_, "bone");
+    maps_.emplace(gl_, width_, height_, 0);
+    makeSurface(bone_surface_, bone_depth_, "bone's surface");
+    makeSurface(scene_surface_, depth_texture_, "scene's surface");
     makeTexture(finished_colour_, GL_RGBA8, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, finished_.name());
     gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, finished_colour_.name(), 0);
     checkComplete("finished picture");
+}
+
+// What the maps take there is tested against this depth.
+void RenderTargets::makeSurface(const GlFramebuffer& surface, const GlTexture& depth,
+                                const char* what) const {
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, surface.name());
+    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, depth.name(), 0);
+    maps_->attach();
+    checkComplete(what);
 }
 
 void RenderTargets::makeResolved() {

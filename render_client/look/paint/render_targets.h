@@ -10,6 +10,7 @@
 #include "render_client/look/camera/view_settings.h"
 #include "render_client/look/gl/gl_api.h"
 #include "render_client/look/paint/frame.h"
+#include "render_client/look/paint/surface_maps.h"
 
 namespace bonemill {
 
@@ -95,8 +96,11 @@ class RenderTargets {
     GLuint occlusionTexture() const { return occlusion_texture_.name(); }
     GLuint shadowTexture() const { return shadow_texture_.name(); }
 
+    BoneLayer sceneLayer() const { return {scene(), scene_surface_.name(), *maps_}; }
+
     // In quick quality only.
     GLuint bone() const { return bone_.name(); }
+    BoneLayer keptLayer() const { return {bone_.name(), bone_surface_.name(), *maps_}; }
     GLuint boneDepthTexture() const { return bone_depth_.name(); }
     GLuint finished() const { return finished_.name(); }
 
@@ -112,6 +116,7 @@ class RenderTargets {
     void makeScene();
     void makeKept();
     void makeResolved();
+    void makeSurface(const GlFramebuffer& surface, const GlTexture& depth, const char* what) const;
     void makeLayer(const GlFramebuffer& layer, const GlTexture& colour, const GlTexture& depth,
                    const char* what) const;
     void makeOcclusion();
@@ -124,10 +129,11 @@ class RenderTargets {
     int width_;
     int height_;
     Quality quality_;
-    GlFramebuffer scene_, resolved_, occlusion_, shadow_, bone_, finished_;
+    GlFramebuffer scene_, scene_surface_, resolved_, occlusion_, shadow_, bone_, bone_surface_, finished_;
     GlRenderbuffer scene_colour_, scene_depth_;
     GlTexture colour_texture_, depth_texture_, occlusion_texture_, shadow_texture_, bone_colour_, bone_depth_,
         finished_colour_;
+    std::optional<SurfaceMaps> maps_;
 };
 
 }  // namespace bonemill

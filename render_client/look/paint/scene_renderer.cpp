@@ -193,7 +193,7 @@ void SceneRenderer::drawKeptBone(Frame frame, const FrameView& view, const NodeS
     gl_.Clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
     passes_.drawBackground();
     frame.cull_from_V = part.zoom(targets_->width(), targets_->height()) * frame.cull_from_V;
-    bone_.drawOpaque(frame, nodes, targets_->shadowTexture());
+    bone_.drawOpaque(frame, nodes, targets_->keptLayer(), targets_->shadowTexture());
     structures_.draw(frame, view.structures, targets_->shadowTexture());
     drawStrokes(frame, view);
 }
@@ -301,13 +301,14 @@ void SceneRenderer::drawSolids(const Frame& frame, const FrameView& view, const 
                                const ToolMesh& tool) {
     const auto draw_tool = [&] { tool_.drawTool(frame, view, tool, targets_->shadowTexture()); };
     if (view.bone_opacity) {
-        bone_.drawTransparent(frame, nodes, targets_->shadowTexture(), *view.bone_opacity, [&] {
-            structures_.drawSolid(frame, view.structures, targets_->shadowTexture());
-            draw_tool();
-        });
+        bone_.drawTransparent(frame, nodes, targets_->sceneLayer(), targets_->shadowTexture(),
+                              *view.bone_opacity, [&] {
+                                  structures_.drawSolid(frame, view.structures, targets_->shadowTexture());
+                                  draw_tool();
+                              });
         return drawStrokes(frame, view);
     }
-    bone_.drawOpaque(frame, nodes, targets_->shadowTexture());
+    bone_.drawOpaque(frame, nodes, targets_->sceneLayer(), targets_->shadowTexture());
     structures_.draw(frame, view.structures, targets_->shadowTexture());
     drawStrokes(frame, view);
     draw_tool();

@@ -1,3 +1,4 @@
+#include "octahedral.glsl"
 layout(location = 0) in vec3 steps;
 layout(location = 1) in vec2 octahedral;
 #ifdef MATERIALS
@@ -17,9 +18,7 @@ out vec2 scanned;
 out vec3 p_M;
 #endif
 #ifdef NEAR_STRUCTURES
-uniform sampler3D near_structures;  // linear colour of the nearest, its distance as a share of the reach
-uniform vec3 near_first;            // V, m: of the texture's first corner
-uniform vec3 near_extent;           // m: of the texture
+#include "near_structure.glsl"
 out vec4 near_structure;
 #endif
 uniform vec3 origin;
@@ -35,12 +34,6 @@ out float gl_ClipDistance[3];
 out vec3 kept;
 #endif
 invariant gl_Position;  // a layer is found by its depth first and then drawn where the depth is equal
-
-vec3 unitVector(vec2 uv) {
-    vec3 v = vec3(uv, 1.0 - abs(uv.x) - abs(uv.y));
-    if (v.z < 0.0) v.xy = (1.0 - abs(v.yx)) * vec2(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1.0);
-    return normalize(v);
-}
 
 void main() {
     vec4 p = vec4(origin + step * steps, 1.0);
@@ -64,8 +57,6 @@ void main() {
     kept = vec3(dot(cut_planes[0], p), dot(cut_planes[1], p), dot(cut_planes[2], p));
 #endif
 #ifdef NEAR_STRUCTURES
-    vec3 at = (p.xyz - near_first) / near_extent;
-    bool is_near = all(greaterThan(at, vec3(0.0))) && all(lessThan(at, vec3(1.0)));
-    near_structure = is_near ? textureLod(near_structures, at, 0.0) : vec4(0.0, 0.0, 0.0, 1.0);
+    near_structure = nearStructureAt(p.xyz);
 #endif
 }

@@ -1,17 +1,19 @@
 // These are the GLSL sources (without #version) of everything that is drawn over or into the scene, each with
-// what its file includes. kBoneFragment stands in bone_fragment.glsl, and so on; the page for browsers takes
+// what its file includes. kCapFragment stands in cap_fragment.glsl, and so on; the page for browsers takes
 // the same files, and what differs there asks for GL_ES. Colours are linear until toneMap().
 #pragma once
 
 namespace bonemill::shaders {
 
 // Bone. Vertex attribute 0 of a mesh is the position (quantisation steps), 1 the normal (octahedral, ±127), 2
-// the material, 3 what the scan measured. With `#define MATERIALS` before both shaders, bone has its
-// materials' colours, with `#define MILLED` as well it is matt and scratched where it was milled; with
-// `#define NEAR_STRUCTURES` what shines through it or is near below it.
+// the material, 3 what the scan measured. What the surface has in each pixel is gathered first, with `#define
+// MATERIALS` and `#define MILLED` before the vertices' shader, and shaded then: with `#define FILM` blood, water,
+// burns and bruises lie on it, with `#define NEAR_STRUCTURES` it shows what shines through it or is near below
+// it. The page shades each triangle (bone_fragment.glsl), with the words that it has a use for.
 extern const char kMeshVertex[];
-extern const char kBoneFragment[];  // with `#define FILM`: blood, water, burns and bruises lie on it
-extern const char kCapFragment[];   // the face of a cut; with `#define CT`: the scan on it
+extern const char kBoneSurfaceFragment[];
+extern const char kBoneShadeFragment[];  // with `#define SAMPLES 4`: of so many per pixel
+extern const char kCapFragment[];        // the face of a cut; with `#define CT`: the scan on it
 
 // Protected structures, of meshes as bone has them.
 extern const char kStructureFragment[];  // with `#define FILM`: bruises lie on them
