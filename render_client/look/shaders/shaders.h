@@ -7,9 +7,9 @@ namespace bonemill::shaders {
 
 // Bone. Vertex attribute 0 of a mesh is the position (quantisation steps), 1 the normal (octahedral, ±127), 2
 // the material, 3 what the scan measured. What the surface has in each pixel is gathered first, with `#define
-// MATERIALS` and `#define MILLED` before the vertices' shader, and shaded then: with `#define FILM` blood, water,
-// burns and bruises lie on it, with `#define NEAR_STRUCTURES` it shows what shines through it or is near below
-// it. The page shades each triangle (bone_fragment.glsl), with the words that it has a use for.
+// MATERIALS` and `#define MILLED` before the vertices' shader, and shaded then: with `#define FILM` blood,
+// water, burns and bruises lie on it, with `#define NEAR_STRUCTURES` it shows what shines through it or is
+// near below it. The page shades each triangle (bone_fragment.glsl), with the words that it has a use for.
 extern const char kMeshVertex[];
 extern const char kBoneSurfaceFragment[];
 extern const char kBoneShadeFragment[];  // with `#define SAMPLES 4`: of so many per pixel
