@@ -1,14 +1,14 @@
 // The readers of a build with BONEMILL_WITH_SCANS: all formats.
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <string_view>
 
 #include "common/base/user_error.h"
-#include "common/text/printed_text.h"
+#include "haptic_server/scans/archive/unpack_archive.h"
+#include "haptic_server/scans/archive/unpacked_scan.h"
 #include "haptic_server/scans/dicom/dicom_folder.h"
 #include "haptic_server/scans/formats/volume_file.h"
 #include "haptic_server/scans/import/import_volume.h"
+#include "haptic_server/scans/import/packed_scan.h"
 
 namespace bonemill {
 namespace {
@@ -22,18 +22,6 @@ std::string lowerCase(std::string text) {
 bool isFolder(const std::filesystem::path& path) {
     std::error_code error;
     return std::filesystem::is_directory(path, error);
-}
-
-bool isZip(const std::filesystem::path& path) {
-    char head[4] = {};
-    std::ifstream(path, std::ios::binary).read(head, sizeof head);
-    return std::string_view(head, sizeof head) == std::string_view("PK\3\4", 4);
-}
-
-void refuseZip(const std::filesystem::path& path, const std::string& name) {
-    if (name.ends_with(".zip") || isZip(path))
-        throw UserError(path.string() + ": is a zip archive; unpack it first: unzip " +
-                        quoted(path.string()) + " -d DIR, and give DIR");
 }
 
 }  // namespace
@@ -54,7 +42,6 @@ RawVolume readVolume(const std::filesystem::path& path, const ImportOptions& opt
     if (is_folder) return importDicomFolder(path, wish);
     if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return importNifti(path);
     if (name.ends_with(".inv3")) return importInv3(path);
-    refuseZip(path, name);
     if (isDicomDirectory(path)) return importDicomDirectory(path, wish);
     if (name.ends_with(".dcm") || isDicom(path)) return importDicomFile(path, wish);
     if (name.ends_with(".stl") || name.ends_with(".ply"))
@@ -62,14 +49,30 @@ RawVolume readVolume(const std::filesystem::path& path, const ImportOptions& opt
     throw UserError(
         path.string() +
         ": is of no known type; give a folder with a DICOM series or PNG or TIFF images, or a file "
-        ".nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd, .inv3, .dcm, .stl or .ply");
+        ".nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd, .inv3, .dcm, .stl or .ply, or a .zip or .tar of them");
 }
 
 std::vector<std::string> readSeries(const std::filesystem::path& path) {
-    if (!isFolder(path)) refuseZip(path, lowerCase(path.filename().string()));
     if (!isFolder(path) && !isDicomDirectory(path) && !isDicom(path))
         throw UserError(path.string() + ": is no DICOM file; give a folder with DICOM series");
     return listDicomSeries(path);
+}
+
+bool isPacked(const std::filesystem::path& path) {
+    return isArchive(path);
+}
+
+void sendPackedAsChild(int pipe, const std::filesystem::path& path) {
+    sendArchiveAsChild(pipe, path);
+}
+
+void readUnpacked(const std::filesystem::path& path, const StartReader& start, const ReadUnpacked& read) {
+    const UnpackedScan scan(path, start);
+    try {
+        read(scan.path(), [&](const std::string& text) { return scan.named(text); });
+    } catch (const UserError& error) {
+        throw UserError(scan.named(error.what()));
+    }
 }
 
 }  // namespace bonemill

@@ -10,6 +10,7 @@
 #include "common/files/require_file.h"
 #include "haptic_server/scans/confined/guarded_import.h"
 #include "haptic_server/scans/confined/shared_name.h"
+#include "haptic_server/scans/import/packed_scan.h"
 
 namespace bonemill {
 namespace {
@@ -19,6 +20,7 @@ using nlohmann::json;
 // These words stand behind the program's name, and before the path.
 constexpr char kReadVolumeWord[] = "read-volume";  // then the options
 constexpr char kReadSeriesWord[] = "read-series";
+constexpr char kUnpackWord[] = "unpack-scan";
 
 // As one word, for the program that reads.
 std::string textOfOptions(const ImportOptions& options) {
@@ -87,6 +89,35 @@ void requireThere(const std::filesystem::path& path) {
     requireFile(path);
 }
 
+StartReader startUnpacking(const std::filesystem::path& path) {
+    if (reader_program.empty()) return forkOf([=](int pipe) { sendPackedAsChild(pipe, path); });
+    return spawnReader({reader_program, kUnpackWord, path.string()});
+}
+
+RawVolume importPlain(const std::filesystem::path& path, const ImportOptions& options) {
+    if (reader_program.empty()) return importGuarded(path, [&] { return importVolumeHere(path, options); });
+    return importFrom(path,
+                      spawnReader({reader_program, kReadVolumeWord, path.string(), textOfOptions(options)}));
+}
+
+Lines listPlain(const std::filesystem::path& path) {
+    if (reader_program.empty()) return linesGuarded(path, [&] { return listSeriesHere(path); });
+    return linesFrom(path, spawnReader({reader_program, kReadSeriesWord, path.string()}));
+}
+
+// What `read` returns of the scan; of one out of an archive, with the texts that `rename` has named anew.
+template <class Result>
+Result ofUnpacked(const std::filesystem::path& path, const auto& read, const auto& rename) {
+    if (!isPacked(path)) return read(path);
+    requireThere(path);
+    Result result;
+    readUnpacked(path, startUnpacking(path), [&](const std::filesystem::path& scan, const auto& named) {
+        result = read(scan);
+        rename(result, named);
+    });
+    return result;
+}
+
 }  // namespace
 
 void setReaderProgram(const std::string& program) {
@@ -104,12 +135,16 @@ void runReaderIfCalled(int argc, char** argv) {
         shareNameOfFileBeingRead(kName);
         readLinesAsChild(kPipe, words[2], [&] { return listSeriesHere(words[2]); });
     }
+    if (argc == 3 && words[1] == kUnpackWord) {
+        shareNameOfFileBeingRead(kName);
+        sendPackedAsChild(kPipe, words[2]);
+    }
 }
 
 RawVolume importVolume(const std::filesystem::path& path, const ImportOptions& options) {
-    if (reader_program.empty()) return importGuarded(path, [&] { return importVolumeHere(path, options); });
-    return importFrom(path,
-                      spawnReader({reader_program, kReadVolumeWord, path.string(), textOfOptions(options)}));
+    return ofUnpacked<RawVolume>(
+        path, [&](const std::filesystem::path& scan) { return importPlain(scan, options); },
+        [](RawVolume& raw, const auto& named) { raw.description = named(raw.description); });
 }
 
 RawVolume importVolumeHere(const std::filesystem::path& path, const ImportOptions& options) {
@@ -126,8 +161,9 @@ RawVolume importVolumeHere(const std::filesystem::path& path, const ImportOption
 }
 
 std::vector<std::string> listSeries(const std::filesystem::path& path) {
-    if (reader_program.empty()) return linesGuarded(path, [&] { return listSeriesHere(path); });
-    return linesFrom(path, spawnReader({reader_program, kReadSeriesWord, path.string()}));
+    return ofUnpacked<Lines>(path, listPlain, [](Lines& lines, const auto& named) {
+        for (std::string& line : lines) line = named(line);
+    });
 }
 
 std::vector<std::string> listSeriesHere(const std::filesystem::path& path) {

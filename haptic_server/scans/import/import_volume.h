@@ -8,6 +8,8 @@
 //   .dcm, any DICOM file  a multi-frame file; of a single slice its series, of a DICOMDIR its folder
 //   folder                PNG or TIFF images, one of each slice
 //   .stl .ply             closed surface
+//   .zip .tar .tar.gz     archive of one of these but the last (docs/teach/volumes.md#archives)
+//   .tgz .tar.xz
 //
 // Lengths in m, world frame W = LPS of the file (x to the patient's left, y back, z up). Start-up
 // only: allocates, and starts a process that reads (guarded_import.h); not RT-safe, not for two threads at
@@ -39,7 +41,8 @@ struct ImportOptions {
 // Throws UserError with one message: what is wrong, in which file, what to do.
 RawVolume importVolume(const std::filesystem::path& path, const ImportOptions& options = {});
 
-// Does the same in this process: for debuggers and sanitizers. A damaged DICOM file may abort it.
+// Does the same in this process, but for archives: for debuggers and sanitizers. A damaged DICOM file may
+// abort it.
 RawVolume importVolumeHere(const std::filesystem::path& path, const ImportOptions& options = {});
 
 // A table of the DICOM stacks in a folder, and which of them to take for bone: printable lines. Throws

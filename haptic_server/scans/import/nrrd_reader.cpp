@@ -1,9 +1,12 @@
 // The readers of a build without BONEMILL_WITH_SCANS: NRRD.
+#include <unistd.h>
+
 #include <cctype>
 #include <string>
 
 #include "common/base/user_error.h"
 #include "haptic_server/scans/import/import_volume.h"
+#include "haptic_server/scans/import/packed_scan.h"
 
 namespace bonemill {
 
@@ -23,5 +26,15 @@ std::vector<std::string> readSeries(const std::filesystem::path& path) {
                     ": this program was built without the readers of scans (BONEMILL_WITH_SCANS=OFF), DICOM "
                     "among them; take one of all components");
 }
+
+bool isPacked(const std::filesystem::path&) {
+    return false;
+}
+
+void sendPackedAsChild(int, const std::filesystem::path&) {
+    _exit(kUserErrorExitCode);
+}
+
+void readUnpacked(const std::filesystem::path&, const StartReader&, const ReadUnpacked&) {}
 
 }  // namespace bonemill

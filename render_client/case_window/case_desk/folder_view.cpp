@@ -7,8 +7,9 @@
 namespace bonemill {
 namespace {
 
-constexpr std::array<const char*, 12> kEndings = {".nrrd", ".nhdr", ".nii", ".nii.gz", ".mha", ".mhd",
-                                                  ".inv3", ".dcm",  ".stl", ".ply",    ".ima", "dicomdir"};
+constexpr std::array<const char*, 17> kEndings = {
+    ".nrrd", ".nhdr", ".nii",     ".nii.gz", ".mha", ".mhd",    ".inv3", ".dcm",   ".stl",
+    ".ply",  ".ima",  "dicomdir", ".zip",    ".tar", ".tar.gz", ".tgz",  ".tar.xz"};
 
 bool looksLikeScan(std::string name) {
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });

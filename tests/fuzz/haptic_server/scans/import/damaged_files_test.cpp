@@ -14,6 +14,7 @@
 #include "haptic_server/scans/import/import_volume.h"
 #include "tests/support/stl_writer.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/unit/haptic_server/scans/import/archive_files.h"
 #include "tests/unit/haptic_server/scans/import/dicom_bytes.h"
 #include "tests/unit/haptic_server/scans/import/dicom_seg_bytes.h"
 #include "tests/unit/haptic_server/scans/import/picture_files.h"
@@ -182,6 +183,15 @@ TEST_F(DamagedFiles, metaImageDetached) {
 TEST_F(DamagedFiles, inv3) {
     writeInv3File(folder_ / "a.inv3", sample_, {});
     fuzz("a.inv3");
+}
+
+// They are unpacked by a process of their own, and what comes of it is read by another one.
+TEST_F(DamagedFiles, archives) {
+    writeNrrdFile(folder_ / "ct.nrrd", sample_, {});
+    for (const char* const name : {"a.zip", "a.tar", "a.tar.gz", "a.tar.xz"}) {
+        writeArchive(folder_ / name, {{"readme.txt", "x"}, {"scan/ct.nrrd", readBytes(folder_ / "ct.nrrd")}});
+        fuzz(importVolume, name, name, 4 * kDicomShare);
+    }
 }
 
 TEST_F(DamagedFiles, segments) {

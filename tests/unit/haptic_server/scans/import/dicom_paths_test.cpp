@@ -1,4 +1,4 @@
-// A path may name what leads to a series instead of its folder: a DICOMDIR, one slice, an archive.
+// A path may name what leads to a series instead of its folder: a DICOMDIR, one slice.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -97,19 +97,6 @@ TEST_F(DicomPaths, AMultiFrameFileNeedsNoEnding) {
     }
     writeDicomFile(folder_ / "frames.IMA", frames);
     EXPECT_EQ(importVolume(folder_ / "frames.IMA").geometry.dims.z(), 3);
-}
-
-TEST_F(DicomPaths, AZipIsRefusedWithTheWayOut) {
-    writeBytes(folder_ / "scan.zip", "PK\3\4 and so on");
-    writeBytes(folder_ / "my scan", "PK\3\4 and so on");
-    const std::string path = folder_.path().string();
-    for (const auto& read : {std::function<void(const std::string&)>([](auto& file) { importVolume(file); }),
-                             std::function<void(const std::string&)>([](auto& file) { listSeries(file); })}) {
-        expectUserError([&] { read(folder_ / "scan.zip"); },
-                        {"unpack it first: unzip " + path + "/scan.zip -d DIR"});
-        expectUserError([&] { read(folder_ / "my scan"); },
-                        {"unpack it first: unzip '" + path + "/my scan' -d DIR"});
-    }
 }
 
 TEST_F(DicomPaths, OtherFilesAreStillOfNoKnownType) {
