@@ -12,7 +12,9 @@
 namespace bonemill {
 
 void addCaseOptions(CLI::App& app, CaseRequest& request) {
-    app.add_option("scan", request.scan, "folder of a DICOM series or of images, a file, or an archive of them")->required();
+    app.add_option("scan", request.scan,
+                   "folder of a DICOM series or of images, a file, or an archive of them")
+        ->required();
     app.add_option("--out", request.out, "new folder for the case")->required()->type_name("DIR");
     app.add_option("--series", request.series,
                    "UID of the series; default: the one that list-series recommends");

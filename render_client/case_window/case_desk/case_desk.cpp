@@ -82,11 +82,12 @@ void CaseDesk::poll() {
     }
     if (worker_.isBusy()) return;
     busy_with_.clear();
+    is_making_ = false;
     if (std::exchange(wants_series_, false)) return listSeriesOf();
     if (std::exchange(wants_scan_, false)) return readScan();
     if (std::exchange(wants_labels_, false)) return readLabels();
-    if (std::exchange(wants_case_, false)) return makeIt();
-    if (scan_ && !is_held_ && sought_key_ != keyOfNow()) lookForBone();
+    if (scan_ && sought_key_ != keyOfNow()) return is_held_ ? void() : lookForBone();
+    if (std::exchange(wants_case_, false)) makeIt();
 }
 
 CaseRequest CaseDesk::request() const {
@@ -118,6 +119,7 @@ void CaseDesk::open(const std::string& path) {
     labels_.reset();
     series_.clear();
     lines_.clear();
+    dropWishToMake("another scan was opened");
     wants_labels_ = false;
     wants_series_ = true;
 }
@@ -138,6 +140,7 @@ void CaseDesk::takeSeries(const SeriesRow& row) {
 
 // What was chosen of another scan means nothing in this one.
 void CaseDesk::chooseSeries(size_t row) {
+    dropWishToMake("another series was chosen");
     request_.iso.reset();
     request_.at_mm.clear();
     request_.from_mm.clear();
@@ -214,6 +217,9 @@ bool CaseDesk::isBoneOfNow() const {
 
 void CaseDesk::keepPiece(size_t piece, bool is_kept) {
     const auto number = uint32_t(piece + 1);
+    if (!found_key_ || found_key_->iso != request_.iso)
+        return say(DeskLine::Kind::kWarning, "piece " + std::to_string(number) +
+                                                 " was of another iso-value; choose among those of this one");
     std::erase(request_.drop_pieces, number);
     if (!is_kept) request_.drop_pieces.push_back(number);
     std::ranges::sort(request_.drop_pieces);

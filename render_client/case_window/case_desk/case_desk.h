@@ -86,6 +86,7 @@ class CaseDesk {
     void hold(bool is_held) { is_held_ = is_held; }
     const CaseBone* bone() const { return bone_.get(); }
     bool isBoneOfNow() const;
+    // Of pieces that are no longer those of the iso-value this is refused, and said.
     void keepPiece(size_t piece, bool is_kept);
     // The bone's surface (V, m), and a number that changes with it.
     const std::vector<NodeMesh>& surface() const { return surface_; }
@@ -118,7 +119,10 @@ class CaseDesk {
     std::string& tools() { return request_.tools; }
     std::string& out() { return request_.out; }
     std::string& title() { return request_.title; }
+    // Work that is under way is waited for; then the case is made, or is said why not.
     void make();
+    bool takesMake() const { return (worker_.isBusy() && !is_making_) || whyNotYet().empty(); }
+    bool waitsToMake() const { return wants_case_; }
     // The scene of the case that was made last; empty: none was.
     const std::string& madeScene() const { return made_scene_; }
 
@@ -141,6 +145,7 @@ class CaseDesk {
     void takeBone(const std::shared_ptr<const CaseBone>& bone, const std::vector<NodeMesh>& surface,
                   const BoneKey& key);
     void readLabels();
+    void dropWishToMake(const char* why);
     void makeIt();
     void takeReport(const std::string& report);
     void replan();
@@ -153,6 +158,7 @@ class CaseDesk {
     Worker worker_;
     std::string busy_with_;
     bool wants_series_ = false, wants_scan_ = false, wants_labels_ = false, wants_case_ = false;
+    bool is_making_ = false;
 
     std::vector<SeriesRow> series_;
     std::shared_ptr<const RawVolume> scan_;

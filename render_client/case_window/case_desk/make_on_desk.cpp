@@ -1,5 +1,6 @@
 // The last step of the desk: the case is made.
 #include <sstream>
+#include <utility>
 
 #include "haptic_server/cases/casework/case_request.h"
 #include "render_client/case_window/case_desk/case_desk.h"
@@ -13,11 +14,20 @@ std::string CaseDesk::commandLine() const {
 }
 
 void CaseDesk::make() {
-    if (whyNotYet().empty()) wants_case_ = true;
+    if (is_making_) return say(DeskLine::Kind::kWarning, "the case is being made already");
+    if (takesMake()) wants_case_ = true;
+}
+
+void CaseDesk::dropWishToMake(const char* why) {
+    if (std::exchange(wants_case_, false))
+        say(DeskLine::Kind::kWarning, std::string("the case was not made: ") + why);
 }
 
 void CaseDesk::makeIt() {
+    if (const std::string why_not = whyNotYet(); !why_not.empty())
+        return say(DeskLine::Kind::kWarning, "the case was not made: " + why_not);
     lines_.clear();
+    is_making_ = true;
     begin("making the case",
           [this, request = request(), version = version_, command = commandLine()]() -> Worker::Done {
               std::ostringstream report;

@@ -243,7 +243,6 @@ void CaseScreen::buildPieces() {
     const float rows = std::min(float(bone->pieces.size()), 5.5f);
     ImGui::TextUnformatted("Pieces of bone (ticked: kept)");
     if (ImGui::BeginChild("pieces", ImVec2(0, rows * ImGui::GetFrameHeightWithSpacing()))) {
-        ImGui::BeginDisabled(!desk_.isBoneOfNow());
         const std::vector<uint32_t> dropped = desk_.request().drop_pieces;
         for (size_t n = 0; n < bone->pieces.size(); ++n) {
             const CasePiece& piece = bone->pieces[n];
@@ -259,7 +258,6 @@ void CaseScreen::buildPieces() {
             if (ImGui::SmallButton("show")) desk_.moveCross(piece.middle);
             ImGui::PopID();
         }
-        ImGui::EndDisabled();
     }
     ImGui::EndChild();
     if (bone->noise_pieces > 0) say(printed("%zu smaller ones are taken for noise.", bone->noise_pieces));
@@ -344,9 +342,12 @@ void CaseScreen::buildCase() {
     const std::string why_not = desk_.whyNotYet();
     ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0.13f, 0.48f, 0.26f, 1));
     ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImVec4(0.18f, 0.60f, 0.33f, 1));
-    if (button("Make the case", why_not.empty())) desk_.make();
+    if (button("Make the case", desk_.takesMake())) desk_.make();
     ImGui::PopStyleColor(2);
-    if (!why_not.empty()) say(why_not);
+    if (desk_.waitsToMake())
+        say("The case is made after this: " + desk_.busyWith());
+    else if (!why_not.empty())
+        say(why_not);
     if (!desk_.madeScene().empty()) {
         say("Made: " + desk_.madeScene(), ImVec4(0.45f, 0.9f, 0.55f, 1));
         if (!offers_milling_)

@@ -147,6 +147,64 @@ TEST_F(Desk, MakesTheCaseThatItsCommandLineMakes) {
     EXPECT_NE(text(folder_ / "case/case.textproto").find("A ball, from above"), std::string::npos);
 }
 
+// Until it works beside the window; what is clicked then waits.
+void beginWork(CaseDesk& desk) {
+    while (desk.busyWith().empty()) desk.poll();
+}
+
+TEST_F(Desk, MakesTheCaseThatWasAskedForWhileItWasBusy) {
+    CaseDesk& desk = open();
+    desk.setIso(400);
+    beginWork(desk);
+    ASSERT_TRUE(desk.takesMake()) << desk.whyNotYet();
+    desk.make();
+    EXPECT_TRUE(desk.waitsToMake());
+    test::settle(desk);
+    EXPECT_FALSE(desk.madeScene().empty()) << said();
+    EXPECT_EQ(desk.bone()->mapping.iso_value, 400);
+}
+
+TEST_F(Desk, AsksForNoCaseTwice) {
+    CaseDesk& desk = open();
+    desk.make();
+    beginWork(desk);
+    EXPECT_FALSE(desk.takesMake());
+    desk.make();
+    EXPECT_NE(said().find("being made already"), std::string::npos) << said();
+    test::settle(desk);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "case_2"));
+}
+
+TEST_F(Desk, SaysWhyACaseThatWasAskedForIsNotMade) {
+    CaseDesk& desk = open();
+    for (const double too_high : {5000.0, 6000.0}) {
+        desk.setIso(too_high);
+        beginWork(desk);
+        desk.make();
+        if (too_high == 6000) desk.open(folder_ / "head");
+        test::settle(desk);
+        EXPECT_TRUE(desk.madeScene().empty());
+        EXPECT_NE(said().find("the case was not made: "), std::string::npos) << said();
+    }
+    EXPECT_NE(said().find("another scan was opened"), std::string::npos) << said();
+}
+
+TEST_F(Desk, KeepsWhatIsTickedWhileItLooksForBone) {
+    CaseDesk& desk = open();
+    desk.keepPiece(0, false);
+    beginWork(desk);
+    desk.keepPiece(1, false);
+    desk.keepPiece(0, true);
+    test::settle(desk);
+    EXPECT_FALSE(desk.bone()->pieces[0].is_dropped);
+    EXPECT_TRUE(desk.bone()->pieces[1].is_dropped);
+    desk.setIso(400);
+    beginWork(desk);
+    desk.keepPiece(1, false);
+    EXPECT_TRUE(desk.request().drop_pieces.empty()) << "they may be other pieces";
+    EXPECT_NE(said().find("piece 2 was of another iso-value"), std::string::npos) << said();
+}
+
 TEST_F(Desk, SaysWhatIsWrongAndLives) {
     CaseDesk& desk = open();
     desk.open(folder_ / "nowhere");

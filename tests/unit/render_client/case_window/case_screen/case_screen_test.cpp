@@ -107,6 +107,28 @@ TEST_F(Screen, MovesTheIsoValueAndDropsAPiece) {
     EXPECT_EQ(screen.desk.request().drop_pieces, std::vector<uint32_t>{2});
 }
 
+// The picture shows the piece ticked, and the button pressed, before bone was looked for anew.
+TEST_F(Screen, KeepsClicksWhileItIsBusy) {
+    test::ClickedScreen& screen = open();
+    const PixelPoint piece = screen.placeOf("piece 2"), make = screen.placeOf("Make the case");
+    const auto click = [&](const PixelPoint& place) {
+        screen.moveTo(place);
+        screen.press(place, true);
+        screen.press(place, false);
+    };
+    screen.desk.setIso(400);
+    while (screen.desk.busyWith().empty()) screen.desk.poll();
+    click(make);
+    EXPECT_TRUE(screen.desk.waitsToMake());
+    screen.look();
+    EXPECT_FALSE(screen.desk.madeScene().empty());
+    screen.desk.keepPiece(0, false);
+    while (screen.desk.busyWith().empty()) screen.desk.poll();
+    click(piece);
+    EXPECT_EQ(screen.desk.request().drop_pieces, (std::vector<uint32_t>{1, 2}));
+    screen.look();
+}
+
 TEST_F(Screen, MakesTheCase) {
     test::ClickedScreen& screen = open();
     screen.screen.offerMilling();
