@@ -1,10 +1,13 @@
 #include "haptic_server/cases/casework/case_plan.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
+#include "common/text/printed_text.h"
 
 namespace bonemill {
 namespace {
@@ -38,6 +41,22 @@ class ScanBone {
         return volume_.at(voxel.x(), voxel.y(), voxel.z()) >= volume_.iso();
     }
     double reach() const { return volume_.spacing().cwiseProduct(volume_.dims().cast<double>()).norm(); }
+    // The bone that lies farthest out: the hand reaches it whatever is below. There is some.
+    Eigen::Vector3d outermost(const Eigen::Vector3d& outwards) const {
+        const Eigen::Vector3d out_V = X_VW_.rotation * outwards;
+        Eigen::Vector3d best = Eigen::Vector3d::Zero();
+        double most = -std::numeric_limits<double>::infinity();
+        const Eigen::Vector3i dims = volume_.dims();
+        for (int k = 0; k < dims.z(); ++k)
+            for (int j = 0; j < dims.y(); ++j)
+                for (int i = 0; i < dims.x(); ++i) {
+                    const Eigen::Vector3d p_V = volume_.spacing().cwiseProduct(Eigen::Vector3d(i, j, k));
+                    if (p_V.dot(out_V) <= most || volume_.at(i, j, k) < volume_.iso()) continue;
+                    most = p_V.dot(out_V);
+                    best = p_V;
+                }
+        return volume_.geometry().X_WV * best;
+    }
     // The first bone on the way from far out to the middle, within so much of it; else the middle.
     Eigen::Vector3d surface(const Eigen::Vector3d& middle, const Eigen::Vector3d& outwards,
                             double within) const {
@@ -51,6 +70,14 @@ class ScanBone {
     const VoxelVolume& volume_;
     Pose X_VW_;
 };
+
+// A quarter of the burr's radius is as fine as a part's voxels would be (docs/teach/volumes.md). The largest
+// one is as large as round burrs for bone are.
+std::optional<double> fittingRadius(const Eigen::Vector3d& spacing) {
+    constexpr double kVoxels = 4, kStep = 0.5e-3, kDefault = 1e-3, kLargest = 8e-3;
+    const double radius = std::ceil(kVoxels * std::sqrt(spacing.squaredNorm() / 3) / kStep - 1e-6) * kStep;
+    return radius > kDefault ? std::optional(std::min(radius, kLargest)) : std::nullopt;
+}
 
 Eigen::Vector3d toWorld(const VolumeGeometry& geometry, const Eigen::Vector3d& voxel) {
     return geometry.X_WV * Eigen::Vector3d(voxel.cwiseProduct(geometry.spacing));
@@ -155,13 +182,26 @@ CasePlan planCase(const CaseBone& bone, const CaseRequest& request) {
     const Eigen::Vector3d from = pointOf(request.from_mm).value_or(2 * middle - bone.middle) - middle;
     if (from.norm() > kMinOutwards * kMillimetre) plan.outwards = from.normalized();
     plan.start = scan.surface(middle, plan.outwards, within);
+    if (!plan.region && !scan.isBone(plan.start)) plan.start = scan.outermost(plan.outwards);
+    if (!plan.region && request.tools.empty()) plan.burr_radius = fittingRadius(bone.volume.spacing());
     if (plan.region && !scan.isBone(plan.start))
         throw UserError("there is no bone at --at " + textOf(middle) + " for a hand that comes from " +
                         textOf(middle + within * plan.outwards) + "; the bone's middle is " +
                         textOf(bone.middle));
     plan.remarks.push_back("the hand begins at " + textOf(plan.start) + " and comes from " +
                            textOf(plan.start + 0.05 * plan.outwards));
+    if (plan.burr_radius) plan.remarks.push_back(burrRemark(plan));
     return plan;
+}
+
+std::string burrRemark(const CasePlan& plan) {
+    if (!plan.burr_radius) return {};
+    return printed(
+               "All of the bone can be milled, with the scan's own coarse voxels: the case begins on its "
+               "outside, with "
+               "a ball of %g mm, which is as fine as they bear.",
+               2 * *plan.burr_radius * kPerMillimetre) +
+           " For finer work make a case of a part.";
 }
 
 CasePlan planCase(const RawVolume& scan, const CaseRequest& request) {

@@ -42,7 +42,14 @@ struct CasePlan : CaseFacts {
     std::optional<Eigen::AlignedBox3d> region = {};       // W, m; none: all of the bone
     Eigen::Vector3d outwards = Eigen::Vector3d::UnitZ();  // W: from the bone to the hand
     Eigen::Vector3d start = Eigen::Vector3d::Zero();      // W, m: on the bone, where the hand begins
+    // m: of a burr for voxels that are too coarse for the default one. Where a part is milled voxels suit
+    // burrs.
+    std::optional<double> burr_radius = {};
 };
+
+// For people, who read it before they mill: where a case of all of the bone begins, and with which burr;
+// empty: the plan has no burr of its own.
+std::string burrRemark(const CasePlan& plan);
 
 // Looks at the request's iso-value and at the pieces that it leaves out. This is the long part of the work.
 // Start-up only; any thread may call it. Throws UserError where there is no bone.

@@ -16,6 +16,7 @@
 #include "common/config/scene_file.h"
 #include "common/digest/digest.h"
 #include "common/files/require_file.h"
+#include "common/text/printed_text.h"
 #include "haptic_server/cases/casework/case_figures.h"
 #include "haptic_server/cases/casework/case_plan.h"
 #include "haptic_server/cases/casework/case_request.h"
@@ -33,6 +34,7 @@ constexpr char kScanOfCase[] = "scan.nrrd", kLabelsOfCase[] = "labels.nrrd";
 constexpr double kViewAside = 30, kViewUp = 12,
                  kMostElevation = 80;  // deg, so that the tool does not hide its place
 constexpr double kViewOfRegion = 2.2;  // distances of its edge
+constexpr double kViewOfBurr = 40;     // of its radius
 constexpr double kWarningMm = 2;
 
 void assign(const Eigen::Vector3d& p, scene::Vec3* out) {
@@ -55,14 +57,33 @@ void describeVolume(const CasePlan& plan, const CaseRequest& request, bool has_l
     if (request.voxel_mm) volume->mutable_region()->set_resample_mm(*request.voxel_mm);
 }
 
-std::string taskOf(const CaseRequest& request) {
-    if (request.credit.empty()) return request.task;
-    return request.task + (request.task.empty() ? "" : " ") + "Scan: " + request.credit;
+// Whoever mills reads it beside the scene.
+std::string taskOf(const CasePlan& plan, const CaseRequest& request) {
+    std::string task = request.task;
+    const auto add = [&](const std::string& text) {
+        if (!text.empty()) task += (task.empty() ? "" : " ") + text;
+    };
+    add(burrRemark(plan));
+    if (!request.credit.empty()) add("Scan: " + request.credit);
+    return task;
 }
 
-// Its neutral pose holds the burr on the bone, the shaft towards the hand.
+// The thesis' tool, larger: its shaft and the grid of its distances are as many times as large.
+void describeTools(const CasePlan& plan, const std::vector<scene::Tool>& tools, scene::Scene& scene) {
+    for (const scene::Tool& tool : tools) *scene.add_tool() = tool;
+    if (!plan.burr_radius) return;
+    const scene::Tool usual;
+    scene::Tool& tool = *scene.add_tool();
+    const double radius_mm = *plan.burr_radius * kPerMillimetre;
+    tool.set_name(printed("%g mm ball", 2 * radius_mm));
+    tool.set_burr_radius_mm(radius_mm);
+    tool.set_sdf_spacing_mm(usual.sdf_spacing_mm() * radius_mm / usual.burr_radius_mm());
+}
+
+// Its neutral pose holds the burr on the bone, one that is chosen for coarse voxels just above it; the shaft
+// points towards the hand.
 void describeHand(const CasePlan& plan, scene::Device* device) {
-    assign(plan.start, device->mutable_p_wd_mm());
+    assign(plan.start + plan.burr_radius.value_or(0) * plan.outwards, device->mutable_p_wd_mm());
     const auto q = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), plan.outwards);
     device->mutable_q_wd()->set_w(q.w());
     device->mutable_q_wd()->set_x(q.x());
@@ -76,9 +97,10 @@ void describeView(const CasePlan& plan, const CaseRequest& request, scene::Camer
     const double azimuth = std::atan2(eye.x(), -eye.y()) / kDegree, elevation = std::asin(eye.z()) / kDegree;
     camera->set_azimuth_deg(std::round(std::remainder(azimuth - kViewAside, 360)));
     camera->set_elevation_deg(std::round(std::clamp(elevation + kViewUp, -kMostElevation, kMostElevation)));
-    if (!plan.region) return;
+    if (!plan.region && !plan.burr_radius) return;
     assign(plan.start, camera->mutable_target_mm());
-    camera->set_distance_mm(kViewOfRegion * request.size_mm);
+    camera->set_distance_mm(plan.region ? kViewOfRegion * request.size_mm
+                                        : std::round(kViewOfBurr * *plan.burr_radius * kPerMillimetre));
 }
 
 void describeStructures(const std::vector<CaseLabel>& labels, scene::Scene& scene) {
@@ -133,9 +155,9 @@ scene::Scene sceneOfCase(const CasePlan& plan, const CaseRequest& request,
     scene::Scene scene;
     scene.set_name(name);
     if (!request.title.empty()) scene.set_title(request.title);
-    if (const std::string task = taskOf(request); !task.empty()) scene.set_task(task);
+    if (const std::string task = taskOf(plan, request); !task.empty()) scene.set_task(task);
     describeVolume(plan, request, !request.labels.empty(), scene.mutable_volume());
-    for (const scene::Tool& tool : tools) *scene.add_tool() = tool;
+    describeTools(plan, tools, scene);
     describeEffects(tools, scene.mutable_effects());
     describeStructures(labels, scene);
     describeHand(plan, scene.mutable_device());

@@ -92,6 +92,33 @@ TEST_F(MakeCase, IsASceneThatRunsWithTheSameVoxels) {
     EXPECT_TRUE(before.geometry.X_WV.position.isApprox(after.geometry.X_WV.position));
 }
 
+// Voxels of 1 mm are too coarse for the default burr of 1 mm; below the bone's top is a hole along the hand's
+// way.
+TEST_F(MakeCase, OfAllBoneBeginsWhereItCanBeMilledWithABurrThatFits) {
+    request_.at_mm.clear();
+    request_.tools.clear();
+    request_.task = "Find your way.";
+    writeScan(request_.scan, [](const Eigen::Vector3i& v) {
+        const Eigen::Vector3d p = v.cast<double>() - Eigen::Vector3d(20, 20, 20);
+        const double d = std::max(p.norm() - 12, 4 - p.head<2>().norm());
+        return int16_t(std::clamp(500 - 700 * d, -1000.0, 1500.0));
+    });
+    const std::string said = make();
+    EXPECT_NE(said.find("a ball of 8 mm"), std::string::npos) << said;
+    EXPECT_EQ(said.find("coarse for a burr"), std::string::npos) << said;
+    const LoadedScene loaded = loadScene(folder_ / "case/case.textproto");
+    EXPECT_EQ(loaded.scene.task().rfind("Find your way. All of the bone can be milled", 0), 0u);
+    const Simulation simulation = makeSimulation(loaded);
+    EXPECT_EQ(simulation.tools[0].name, "8 mm ball");
+    EXPECT_DOUBLE_EQ(simulation.tools[0].burr.radius, 4e-3);
+    const Eigen::Vector3d bone = simulation.X_WD.position - Eigen::Vector3d(0, 0, 4e-3);
+    const Eigen::Vector3i top = (bone * 1e3).array().round().cast<int>();
+    EXPECT_GE(simulation.bone->volume.at(top.x(), top.y(), top.z()), simulation.bone->volume.iso());
+    EXPECT_GT(bone.z(), 30e-3) << "the bone's top";
+    EXPECT_NEAR(loaded.scene.camera().target_mm().z(), bone.z() * 1e3, 0.01);
+    EXPECT_EQ(loaded.scene.camera().distance_mm(), 160);
+}
+
 TEST_F(MakeCase, TakesSegmentsByTheirNames) {
     request_.labels = folder_ / "DOE^JOHN/labels.seg.nrrd";
     const auto label = [](const Eigen::Vector3i& v, int layer) {
