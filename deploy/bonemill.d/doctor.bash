@@ -6,7 +6,7 @@ fine() { printf '  ok       %s\n' "$1"; }
 advise() { printf '  better   %s\n             %s\n' "$1" "$2"; }
 
 doctor() {
-    read_words doctor "--interface" "$@"
+    read_words doctor "--interface --domain" "$@"
     [[ -z $operand ]] || fail "doctor takes no word (see: bonemill doctor --help)"
     open_state
     local can_start=true
@@ -45,7 +45,7 @@ look_at_network() {
         return
     fi
     echo "  For viewers on other PCs:"
-    { "$share/check-network" --interface "$interface" 2>&1 || true; } | sed 's/^/  /'
+    { "$share/check-network" --interface "$interface" --domain "${option[domain]:-0}" 2>&1 || true; } | sed 's/^/  /'
 }
 
 look_at_display() {

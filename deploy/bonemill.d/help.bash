@@ -37,9 +37,11 @@ network_options() {
   --profile P       network: one-pc, lab, classroom, or a Cyclone DDS file (docs/lab/network.md)
   --interface I     this PC's interface to the others
   --peer ADDRESS    a PC to look for where multicast does not work; may be repeated
-  --domain D        DDS domain, 0 (default) to 230
 TEXT
+    domain_option
 }
+
+domain_option() { echo "  --domain D        DDS domain, 0 (default) to 230"; }
 
 usage_of() {  # COMMAND
     case $1 in
@@ -71,6 +73,7 @@ usage_of() {  # COMMAND
             echo "  --expires TIME    the link ends after so long: 30m, 8h (default), 3d"
             echo "  --address HOST    how guests reach this PC (default: its address in the network)"
             echo "  --port P          the port (default: the first free one from 8443 on)"
+            domain_option
             echo "  --in-background   return at once; guests may come until the session ends" ;;
         replay)
             echo "Usage: bonemill replay [FILE] [options] [-- WORDS FOR bonemill_lab replay]"
@@ -89,8 +92,9 @@ usage_of() {  # COMMAND
             echo "Sessions that run: number, scene, device, start, processes, logs, class folder. Then the scenes that can be"
             echo "started, and the last recordings." ;;
         doctor)
-            echo "Usage: bonemill doctor [--interface I]"
-            echo "Says what this PC lacks, and what to type: programs, real time, network (of interface I), display, OpenGL,"
-            echo "devices, what was left running. It installs nothing. The exit code is 1 when no session can be started." ;;
+            echo "Usage: bonemill doctor [--interface I] [--domain D]"
+            echo "Says what this PC lacks, and what to type: programs, real time, network (of interface I, and a firewall's ports"
+            echo "for domain D), display, OpenGL, devices, what was left running. It installs nothing. The exit code is 1 when no"
+            echo "session can be started." ;;
     esac
 }

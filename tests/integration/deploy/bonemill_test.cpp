@@ -351,6 +351,15 @@ TEST_F(Bonemill, WatchFindsTheSessionAndItsNetwork) {
     EXPECT_TRUE(viewer.isRunning());
 }
 
+TEST_F(Bonemill, EveryCommandThatReachesASessionTakesItsDomain) {
+    for (const char* command : {"start", "host", "watch", "invite", "replay", "doctor"}) {
+        expectRefusal(rig_.call({command, "--domain", "231"}), "--domain 231: give a number from 0 to 230");
+        EXPECT_TRUE(has(rig_.call({command, "--help"}).out, "--domain D")) << command;
+    }
+    const std::string doctor = rig_.call({"doctor", "--interface", "lo", "--domain", "2"}).out;
+    EXPECT_TRUE(has(doctor, "UDP 7900 to 8039")) << doctor;
+}
+
 TEST_F(Bonemill, WatchLooksAtAnotherPC) {
     Process viewer(rig_.words({"watch", "192.0.2.7", "--interface", "eth7", "--session", "3"}));
     ASSERT_TRUE(rig_.awaitStarts("render_client", 1)) << viewer.errSoFar();
