@@ -1,14 +1,55 @@
 #include "common/cli/command_line.h"
 
 #include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
 
 #include "common/base/user_error.h"
 #include "common/cli/version.h"
 
 namespace bonemill {
+namespace {
+
+// What does not go together is said when someone tries: a list of it beside each option is read by nobody.
+class HelpFormatter : public CLI::Formatter {
+  public:
+    std::string make_option_opts(const CLI::Option* option) const override {
+        std::string words;
+        if (option->get_type_size() != 0) {
+            words = " " + takes(option->get_type_name());
+            if (!option->get_default_str().empty()) words += "=" + option->get_default_str();
+            if (option->get_expected_min() > 1) words += " x " + std::to_string(option->get_expected());
+            if (option->get_required()) words += " REQUIRED";
+        }
+        const char* separator = " with ";
+        for (const CLI::Option* needed : option->get_needs())
+            words += std::exchange(separator, ", ") + needed->get_name();
+        return words == " " ? "" : words;
+    }
+
+  private:
+    // CLI11 names the type twice: "UINT:UINT in [1 - 9]", "TEXT:{a,b}", "WIDTH:NUMBER".
+    static std::string takes(const std::string& type) {
+        const size_t colon = type.find(':');
+        if (colon == std::string::npos) return type;
+        const std::string name = type.substr(0, colon), check = type.substr(colon + 1);
+        if (check.starts_with('{')) return check;
+        const size_t range = check.find(" in [");
+        return range == std::string::npos ? name : name + check.substr(range);
+    }
+};
+
+void setFormatter(CLI::App& app, const std::shared_ptr<HelpFormatter>& formatter) {
+    app.formatter(formatter);
+    for (CLI::App* verb : app.get_subcommands({})) setFormatter(*verb, formatter);
+}
+
+}  // namespace
 
 bool parseCommandLine(CLI::App& app, int argc, const char* const* argv, const std::string& program) {
     app.set_version_flag("--version", program + " " + versionText(), "Print the version and end");
+    setFormatter(app, std::make_shared<HelpFormatter>());
     try {
         app.parse(argc, argv);
         return true;
