@@ -6,6 +6,7 @@ usage() {
 Usage: bonemill COMMAND [options]
   start [SCENE]    start a session on this PC with the best hand it finds: haptic arm, SpaceMouse, gamepad or mouse
   list             sessions that run, and scenes that can be started
+  sessions         the last attempts of all classes: when, what, who, score
   stop [N|all]     end a session
   watch [HOST]     a window on a session of this PC, or of HOST
   host [SCENE]     start a session that other PCs watch
@@ -84,6 +85,11 @@ usage_of() {  # COMMAND
             echo "  --no-viewer       without a window of its own"
             echo "  --window-size WxH size of the window"
             network_options ;;
+        sessions)
+            echo "Usage: bonemill sessions [--tab-separated]"
+            echo "The last attempts of all classes of this user, the newest first: start, scene, trainee, score, and the result,"
+            echo "as bonemill replay takes it; (no recording) where it was not recorded, or that is gone."
+            echo "  --tab-separated   for programs: result, recording, start, scene, trainee, score, a line each" ;;
         stop)
             echo "Usage: bonemill stop [N|all]"
             echo "Ends session N, or all sessions; without a word the one that runs. It waits until they have ended." ;;

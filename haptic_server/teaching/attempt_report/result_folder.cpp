@@ -142,8 +142,8 @@ Forgotten forgetResults(const fs::path& class_folder, const std::string& pseudon
     Forgotten forgotten;
     eachResult(class_folder, [&](const fs::path& file, const AttemptResult& result) {
         if (result.pseudonym != pseudonym) return;
-        fs::path report = file;
-        deleteFile(report.replace_extension(".html"), forgotten);
+        for (const char* beside : {".html", ".png"})
+            deleteFile(fs::path(file).replace_extension(beside), forgotten);
         deleteFile(file, forgotten);
     });
     forgetStatements(ResultFolder(class_folder).statements(), pseudonym, forgotten);

@@ -1,6 +1,6 @@
-// The folder of a class' results: beside the class table, one JSON file and one report per attempt, and the
-// statements for learning record stores. They say who did what, so that they are their user's alone. Normal
-// threads; it waits for the disk.
+// The folder of a class' results: beside the class table, one JSON file and one report per attempt, the
+// picture that a window may have left of its bone (STEM.png), and the statements for learning record stores.
+// They say who did what, so that they are their user's alone. Normal threads; it waits for the disk.
 #pragma once
 
 #include <filesystem>
@@ -18,8 +18,8 @@ struct Forgotten {
     std::vector<std::string> problems;  // what could not be deleted, with its reason
 };
 
-// Deletes results, reports and statements of this pseudonym in the folders `results` and `experts` of a
-// class' folder, whatever the files' names are.
+// Deletes results, reports, pictures and statements of this pseudonym in the folders `results` and `experts`
+// of a class' folder, whatever the files' names are.
 Forgotten forgetResults(const std::filesystem::path& class_folder, const std::string& pseudonym);
 
 class ResultFolder {

@@ -14,9 +14,11 @@
 #include "common/process/start_apart.h"
 #include "render_client/apps/render_client/hand_feed.h"
 #include "render_client/apps/render_client/inviter.h"
+#include "render_client/apps/render_client/past_list.h"
 #include "render_client/apps/render_client/scene_feed.h"
 #include "render_client/hand/controls/announcing.h"
 #include "render_client/hand/controls/key_table.h"
+#include "render_client/hand/controls/past_attempts.h"
 #include "render_client/hand/controls/viewer_controls.h"
 #include "render_client/hand/window/glfw_window.h"
 #include "render_client/link/subscribe/session_list.h"
@@ -144,6 +146,7 @@ class WindowViewer {
         if (const auto notice = remarks_.update(session, wishes)) notices_.show(*notice);
         if (!is_minimised) panel_.layOut(controls_, session, wishes);
         carryOut(wishes);
+        past_.follow(options_.launcher, controls_.isPanelOpen(), session);
         if (const auto notice = hand_.update(session, wishes.hold_tool, Clock::now())) notices_.show(*notice);
         window_.showCrosshair(controls_.toolHold().isHolding());
         announce();
@@ -151,6 +154,7 @@ class WindowViewer {
         notices_.showOutcomes(feed_.subscriber());
         notices_.removeOld();
         if (is_minimised) return pause();
+        pictureAttempt(session);
         scene_.setWatchers(watchers(session));
         scene_.setMouse(mouseOverScene(width, height));
         scene_.setFrameRate(frame_rate_.perSecond());
@@ -203,6 +207,7 @@ class WindowViewer {
         session.class_folder = options_.class_folder;
         session.has_launcher = !options_.launcher.empty();
         session.invitation = inviter_.invitation();
+        session.past = &past_.list();
         session.time_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
         session.realtime_ns =
             std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -300,6 +305,19 @@ class WindowViewer {
         return watchers;
     }
 
+    // The bone that an attempt has left, as whoever sits here sees it, and nothing over it.
+    void pictureAttempt(const SessionView& session) {
+        const std::string stem = attempt_ends_.take(session);
+        if (stem.empty()) return;
+        const ViewSettings shown = scene_.settings();
+        scene_.settings().show_hud = false;
+        scene_.settings().stereo = StereoMode::kOff;
+        scene_.settings().slices.are_shown = false;
+        scene_.draw(PastList::kPictureWidth, PastList::kPictureHeight, 1);
+        past_.keep(stem, readPicture(window_.gl(), PastList::kPictureWidth, PastList::kPictureHeight));
+        scene_.settings() = shown;
+    }
+
     void savePicture(int width, int height) {
         try {
             const std::filesystem::path name = nextName("bonemill_%04d.png");
@@ -355,6 +373,8 @@ class WindowViewer {
     Notices notices_;
     Attendance attendance_;
     Inviter inviter_;
+    PastList past_;
+    AttemptEnds attempt_ends_;
     FrameRate frame_rate_;
     AnnounceClock announce_clock_;
     EyeReporter eye_watch_;

@@ -30,6 +30,14 @@ struct Invitation {
     std::string problem;  // why there is no link
 };
 
+// An attempt of this PC that has left a result.
+struct PastAttempt {
+    std::string stem;                          // of its files, in its class' folder
+    bool is_recorded = true;                   // and can be seen again
+    std::string start, scene, trainee, score;  // for people
+    std::string picture;                       // PNG of the bone that it left; empty: none
+};
+
 struct SessionView {
     std::string name;  // of this viewer
     topics::Viewer::Role role = topics::Viewer::OPERATOR;
@@ -46,6 +54,7 @@ struct SessionView {
     std::vector<OfferedSession> offered = {};                     // to choose from; empty: nothing to choose
     const std::map<uint32_t, topics::Remark>* remarks = nullptr;  // by place
     std::vector<FaultEntry> faults = {};                          // of the session, the first one first
+    const std::vector<PastAttempt>* past = nullptr;               // the newest one first
     bool has_launcher = false;      // bonemill can be asked for replays and invitations
     Invitation invitation = {};     // the last one that was asked for
     std::string class_folder = {};  // of this PC, with the class' table, page and reports; empty: not known

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/attempts_csv/attempts_csv.h"
+#include "render_client/hand/controls/past_attempts.h"
 #include "render_client/look/hud/effect_lines.h"
 #include "render_client/look/hud/figure_text.h"
 #include "render_client/look/hud/hud_canvas.h"
@@ -126,10 +127,7 @@ void LessonCards::buildSummary(const topics::Attempt& attempt) {
     ImGui::PopTextWrapPos();
     if (button("Close")) draft_.closeSummary();
     ImGui::SameLine();
-    const std::string& results = attempt.verdict().results();
-    const bool is_name = !results.empty() && results.find('/') == std::string::npos;  // not a place elsewhere
-    if (!session_.class_folder.empty() && is_name) {
-        const std::string stem = session_.class_folder + "/results/" + results;
+    if (const std::string stem = resultStemOf(attempt, session_); !stem.empty()) {
         if (button("Report")) wishes_.open_file = stem + ".html";
         ImGui::SameLine();
         if (session_.has_launcher && button("Replay")) wishes_.replay_of = stem + ".json";

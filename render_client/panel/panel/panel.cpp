@@ -193,7 +193,7 @@ void Panel::layOut(ViewerControls& controls, const SessionView& session, Wishes&
     plots_.update(session);
     lesson_.follow(session);
     controls.dropIdleQuestion(session);
-    if (session.lesson) pictures_.follow(*session.lesson);
+    pictures_.follow(session);
     if (wishes.next_trainee) lesson_.trainee.fill(0);
     if (wishes.write_note) remark_.wants_keyboard = true;
     if (wishes.write_note) remark_.place = wishes.note_place;

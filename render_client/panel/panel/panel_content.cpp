@@ -34,6 +34,8 @@ void PanelContent::build() {
             &Content::buildHold);
     section(isReplay(session_), "Replay", &Content::buildReplay);
     section(session_.lesson && session_.lesson->scenes_size() > 0, "Lesson", &Content::buildLesson);
+    section(session_.has_launcher && session_.past && !session_.past->empty(), "Last sessions",
+            &Content::buildPast);
     section(true, "View", &Content::buildView);
     section(hasStructures(), "Structures", &Content::buildStructures);
     section(hasEffects(), "Effects", &Content::buildEffects);

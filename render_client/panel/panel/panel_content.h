@@ -69,6 +69,10 @@ class PanelContent {
     bool isRowClicked(const std::string& name);
     void buildAttempts(const topics::Lesson& lesson);
     void buildAttempt(const topics::Lesson& lesson, const topics::Attempt& attempt);
+    // These lead to attempts of before (panel_past.cpp).
+    void buildPast();
+    void buildPastAttempt(const PastAttempt& attempt, const std::string& number);
+    void showPicture(const std::string& name, float size);
     // This leads a replay (panel_session.cpp).
     void buildReplay();
     // These say how the session goes (panel_session.cpp).

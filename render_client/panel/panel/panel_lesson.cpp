@@ -11,8 +11,7 @@
 namespace bonemill {
 namespace {
 
-constexpr float kPictureWidth = 92, kPictureHeight = 69;  // pixels at scale 1
-constexpr float kFolded = 0.5f;                           // of the picture, where the text is folded
+constexpr float kFolded = 0.5f;  // of the picture, where the text is folded
 constexpr int kRowsOfTable = 4;
 constexpr float kColumnWidth = 4.3f;  // letters' heights
 
@@ -94,14 +93,7 @@ void PanelContent::buildScene(const topics::Lesson& lesson, const topics::SceneC
     const std::string title = sceneTitle(lesson, scene.id()), details = detailsOf(scene);
     ImGui::PushID(scene.id().c_str());
     ImGui::BeginGroup();
-    const float size = is_chosen ? scale_ : scale_ * kFolded;
-    const auto picture = pictures_.find(scene.id());
-    if (picture != pictures_.end() && picture->second.number > 0) {
-        ImGui::Image(ImTextureID(intptr_t(picture->second.number)),
-                     ImVec2(kPictureWidth * size, kPictureHeight * size));
-    } else {
-        ImGui::Dummy(ImVec2(kPictureWidth * size, kPictureHeight * size));
-    }
+    showPicture(scene.id(), is_chosen ? 1 : kFolded);
     ImGui::SameLine();
     ImGui::BeginGroup();
     ImGui::BeginDisabled(!is_possible);

@@ -17,15 +17,19 @@ ScenePicture decoded(const std::string& png) {
 
 }  // namespace
 
-void ScenePictures::follow(const topics::Lesson& lesson) {
+void ScenePictures::follow(const SessionView& session) {
     std::set<std::string> known;
-    for (const topics::SceneChoice& scene : lesson.scenes()) {
-        if (!known.insert(scene.id()).second) continue;  // two of one name would take turns
-        ScenePicture& picture = pictures_[scene.id()];
-        if (picture.png == scene.picture()) continue;
-        picture = decoded(scene.picture());
+    const auto take = [&](const std::string& name, const std::string& png) {
+        if (!known.insert(name).second) return;  // two of one name would take turns
+        ScenePicture& picture = pictures_[name];
+        if (picture.png == png) return;
+        picture = decoded(png);
         if (picture.pixels.width > 0) picture.number = ++last_number_;
-    }
+    };
+    if (session.lesson)
+        for (const topics::SceneChoice& scene : session.lesson->scenes()) take(scene.id(), scene.picture());
+    if (session.past)
+        for (const PastAttempt& attempt : *session.past) take(attempt.stem, attempt.picture);
     std::erase_if(pictures_, [&](const auto& entry) { return !known.contains(entry.first); });
 }
 

@@ -81,7 +81,7 @@ const topics::SceneChoice* sceneOf(const topics::Lesson& lesson, const std::stri
 // Returns what the panel is called, and the button that opens it.
 std::string panelTitle(const SessionView& session);
 
-// The pictures of the scenes that can be chosen, decoded from PNG once.
+// The pictures of the scenes that can be chosen, and of past attempts, decoded from PNG once.
 struct ScenePicture {
     std::string png;  // that it was decoded from
     int number = 0;   // the panel's picture of this number; 0: there is none
@@ -91,8 +91,8 @@ struct ScenePicture {
 class ScenePictures {
   public:
     // Decodes what is new; a picture that is none, or larger than 512 pixels, is left out.
-    void follow(const topics::Lesson& lesson);
-    // By the scene's id. Numbers are never used again.
+    void follow(const SessionView& session);
+    // By the scene's id, or the attempt's stem. Numbers are never used again.
     const std::map<std::string, ScenePicture>& all() const { return pictures_; }
 
   private:

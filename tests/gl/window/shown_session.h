@@ -3,7 +3,9 @@
 
 #include <atomic>
 #include <mutex>
+#include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "common/device_messages/device_messages.h"
@@ -34,6 +36,11 @@ class ShownSession {
         const std::lock_guard lock(mutex_);
         status_.mutable_device()->set_name(device);
         status_.mutable_device()->set_kind(uint32_t(kind));
+    }
+
+    void teach(const topics::Lesson& lesson) {
+        const std::lock_guard lock(mutex_);
+        lesson_ = lesson;
     }
 
     // Returns all that have come so far, oldest first.
@@ -72,8 +79,13 @@ class ShownSession {
             }
             publisher_.publishStatus(status());
             publisher_.publishToolState(tool());
+            publishLesson();
             std::this_thread::sleep_for(std::chrono::milliseconds(30));
         }
+    }
+    void publishLesson() {
+        const std::lock_guard lock(mutex_);
+        if (lesson_) publisher_.publishLesson(*std::exchange(lesson_, std::nullopt));
     }
     void carryOut(const topics::Command& command) {
         const std::lock_guard lock(mutex_);
@@ -96,6 +108,7 @@ class ShownSession {
     topics::SceneInfo info_;
     topics::Status status_;
     std::vector<topics::Command> commands_;
+    std::optional<topics::Lesson> lesson_;  // to be published
     uint32_t last_checkpoint_ = 0;
     std::atomic<bool> stop_ = false;
     std::thread thread_;

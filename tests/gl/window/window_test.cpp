@@ -15,6 +15,7 @@
 #include "tests/gl/golden.h"
 #include "tests/gl/window/shown_session.h"
 #include "tests/gl/window/virtual_display.h"
+#include "tests/support/class_lesson.h"
 #include "tests/support/controlled_panel.h"
 #include "tests/support/places.h"
 
@@ -51,13 +52,13 @@ std::string number(double value) {
 // The viewer is in a window that covers the display.
 class WindowedViewer {
   public:
-    explicit WindowedViewer(const std::string& name, const std::string& role)
+    WindowedViewer(const std::string& name, const std::string& role, const std::string& more)
         : process_({"/bin/sh", "-c",
                     "cd " + folder_.path().string() + " && exec " + test::binDir() +
                         "/render_client --quality full --size " + std::to_string(kWidth) + "x" +
                         std::to_string(kHeight) + " --domain " + std::to_string(testDomain()) +
                         " --session " + std::to_string(testSession()) + " --name " + name + " --role " +
-                        role}) {}
+                        role + " " + more}) {}
 
     // Returns the picture of the next F12.
     std::filesystem::path nextPicture() {
@@ -97,8 +98,8 @@ class Window : public testing::Test {
         return std::nullopt;
     }
     // Shows the whole model when this returns.
-    WindowedViewer& start(const std::string& name, const std::string& role) {
-        viewers_.push_back(std::make_unique<WindowedViewer>(name, role));
+    WindowedViewer& start(const std::string& name, const std::string& role, const std::string& more = "") {
+        viewers_.push_back(std::make_unique<WindowedViewer>(name, role, more));
         waitFor(name + " to show the model", [&] {
             if (!viewers_.back()->process().isRunning())
                 throw std::runtime_error(name + " has ended: " + viewers_.back()->process().errSoFar());
@@ -331,6 +332,31 @@ TEST_F(Window, ThePanelWorksByMouse) {
     panel.click("End");
     EXPECT_TRUE(waitForCommand(7).shut_down());
     EXPECT_EQ(session_.commands().back().role(), Viewer::INSTRUCTOR);
+}
+
+// The bone fills the middle, and nothing lies over it.
+TEST_F(Window, ThePictureOfAnAttemptLiesBesideItsResult) {
+    const test::TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "results");
+    topics::Lesson lesson = test::makeLesson();
+    lesson.set_is_running(true);
+    session_.teach(lesson);
+    WindowedViewer& viewer = start("teacher", "operator", "--class-folder " + folder.path().string());
+    const Picture before = look(viewer);
+    lesson.set_is_running(false);
+    topics::Attempt& attempt = *lesson.add_attempts();
+    attempt.set_number(3);
+    attempt.mutable_verdict()->set_results("20261120T100000Z_P08_3");
+    session_.teach(lesson);
+    const std::filesystem::path file = folder / "results/20261120T100000Z_P08_3.png";
+    waitFor(file, [&] { return std::filesystem::exists(file); });
+    EXPECT_EQ(std::filesystem::status(file).permissions(),
+              std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+    const Picture picture = test::readPng(file);
+    EXPECT_EQ(picture.width(), 320);
+    EXPECT_EQ(picture.height(), 240);
+    expectGolden(picture, "attempt");
+    EXPECT_EQ(look(viewer).width(), before.width());
 }
 
 TEST_F(Window, AViewerOnlyLooks) {

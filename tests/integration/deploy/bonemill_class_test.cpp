@@ -107,6 +107,38 @@ TEST_F(BonemillClass, ReplaysTheWorstMomentOfAnAttempt) {
     }
 }
 
+// Classes lie side by side; the newest attempt is the first one, whatever its class.
+TEST_F(BonemillClass, ListsTheLastAttemptsOfAllClasses) {
+    EXPECT_TRUE(has(rig_.call({"sessions"}).out, "No attempt has left a result"));
+    const std::string classes = rig_.folder() / "data/bonemill/classes/",
+                      recordings = rig_.folder() / "logs/bonemill/recordings";
+    std::filesystem::create_directories(recordings);
+    test::writeFile(recordings + "/7_a.mcap", "a");
+    const auto leave = [&](const std::string& of_class, const std::string& name, const std::string& text) {
+        std::filesystem::create_directories(classes + of_class + "/results");
+        test::writeFile(classes + of_class + "/results/" + name, text);
+    };
+    const auto result = [](const std::string& who, const std::string& more) {
+        return R"({"pseudonym": ")" + who + R"(", "scene": {"id": "pedicle", "title": "A\tpedicle"},)" +
+               R"("start_unix_ns": 1795000000000000000, )" + more + "}";
+    };
+    leave("Group 3", "20261118T100000Z_P07_1.json",
+          result("P07", R"("exam": false, "journal": "7_a.mcap", "total": {"score": 0.814})"));
+    leave("Group 3", "20261120T100000Z_P08_1.json", result("P08", R"("exam": true, "journal": "")"));
+    leave("2026-11-19", "20261119T100000Z_P09_1.json",
+          result("P09", R"("exam": false, "journal": "gone.mcap", "passed": false)"));
+    leave("2026-11-19", "20261121T100000Z_P10_1.json", "no JSON");
+    leave("2026-11-19", "20261122T100000Z_P10_1.json", "[1]");
+    const std::string out = rig_.call({"sessions"}).out;
+    EXPECT_EQ(test::linesOf(out), 3) << out;
+    EXPECT_TRUE(std::regex_search(out, std::regex("A pedicle +P08 +examination [^\n]*\n[^\n]*P09 +not passed"
+                                                  "[^\n]*recording\\)\n[^\n]*P07 +score 81 of 100 +/")))
+        << out;
+    const std::string last =
+        classes + "Group 3/results/20261118T100000Z_P07_1.json\t" + recordings + "/7_a.mcap\t";
+    EXPECT_TRUE(has(rig_.call({"sessions", "--tab-separated"}).out, last)) << out;
+}
+
 TEST_F(BonemillClass, InvitesAGuestToTheSessionThatRuns) {
     EXPECT_TRUE(has(rig_.call({"invite", "Anna"}).err, "no session of yours runs"));
     Process session(

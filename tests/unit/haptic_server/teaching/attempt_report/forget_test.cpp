@@ -15,6 +15,7 @@ TEST(Forget, NothingOfAPersonIsLeftAndAllOfTheOthers) {
     const fs::path root = folder / ".";
     const ResultFolder results(root);
     for (uint32_t n = 1; n <= 2; ++n) results.write(test::typicalResult("P07", n), {}, 0);
+    test::writeFile(results.results() / (fileStemOf(test::typicalResult("P07", 2)) + ".png"), "P07's bone");
     AttemptResult other = test::typicalResult("P0", 3);
     other.journal = "other.mcap";
     results.write(other, {}, 0);
@@ -23,7 +24,7 @@ TEST(Forget, NothingOfAPersonIsLeftAndAllOfTheOthers) {
 
     const Forgotten forgotten = forgetResults(root, "P07");
     EXPECT_TRUE(forgotten.problems.empty());
-    EXPECT_EQ(forgotten.deleted.size(), 2 * 2 + 1 + 1);
+    EXPECT_EQ(forgotten.deleted.size(), 2 * 2 + 1 + 1 + 1);
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root)) {
         if (!entry.is_regular_file()) continue;
         EXPECT_EQ(test::readFile(entry.path()).find("P07"), std::string::npos) << entry.path();

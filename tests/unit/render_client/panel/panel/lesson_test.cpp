@@ -300,12 +300,14 @@ TEST(ScenePictures, WhatIsNoPictureIsLeftOut) {
     topics::Lesson lesson = test::makeLesson();
     lesson.mutable_scenes(0)->set_picture("not a picture");
     lesson.mutable_scenes(1)->set_picture("\x89PNG\r\n\x1a\n and then nothing");
+    SessionView session;
+    session.lesson = &lesson;
     ScenePictures pictures;
-    pictures.follow(lesson);
+    pictures.follow(session);
     EXPECT_EQ(pictures.all().size(), 3u);
     for (const auto& [id, picture] : pictures.all()) EXPECT_EQ(picture.number, 0) << id;
     lesson.mutable_scenes()->DeleteSubrange(1, 2);
-    pictures.follow(lesson);
+    pictures.follow(session);
     EXPECT_EQ(pictures.all().size(), 1u);
 }
 

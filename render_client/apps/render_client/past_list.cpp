@@ -1,0 +1,53 @@
+#include "render_client/apps/render_client/past_list.h"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <exception>
+#include <utility>
+
+#include "common/files/whole_file.h"
+#include "common/process/run_captured.h"
+
+namespace bonemill {
+namespace {
+
+template <class Value>
+bool isReady(const std::future<Value>& future) {
+    return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+}  // namespace
+
+void PastList::follow(const std::string& launcher, bool is_open, const SessionView& session) {
+    if (launcher.empty()) return;
+    take();
+    if (made_.valid()) return;
+    const topics::Lesson* const lesson = session.lesson;
+    const bool has_attempts = lesson && !lesson->attempts().empty();
+    const std::string newest = has_attempts ? lesson->attempts().rbegin()->verdict().results() : "";
+    const std::string now = std::to_string(is_open) + newest + ' ' + std::to_string(kept_);
+    if (std::exchange(seen_, now) == now || !is_open) return;
+    made_ = std::async(std::launch::async, [launcher] {
+        return pastAttemptsOf(runCaptured({launcher, "sessions", "--tab-separated"}).out);
+    });
+}
+
+void PastList::take() {
+    try {
+        if (isReady(made_)) list_ = made_.get();
+        if (!isReady(keeping_)) return;
+        keeping_.get();
+        ++kept_;
+    } catch (const std::exception& error) {
+        spdlog::warn("{}", error.what());
+    }
+}
+
+void PastList::keep(const std::string& stem, Picture picture) {
+    keeping_ = std::async(std::launch::async, [stem, picture = std::move(picture)] {
+        writePrivateFile(stem + ".png", pngOf(picture));
+    });
+}
+
+}  // namespace bonemill

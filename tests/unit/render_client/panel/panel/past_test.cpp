@@ -1,0 +1,53 @@
+// Clicks on attempts of before in the control panel, without OpenGL.
+#include <gtest/gtest.h>
+
+#include "tests/support/controlled_panel.h"
+
+namespace bonemill {
+namespace {
+
+class PanelPast : public testing::Test, protected test::ControlledPanel {
+  protected:
+    PanelPast() {
+        switchPanel();
+        session_.past = &past_;
+        session_.has_launcher = true;
+        show();
+    }
+    void show() {
+        for (int n = 0; n < 3; ++n) layOut(900, 2400);
+    }
+    void click(const std::string& label) {
+        const auto place = panel_.find(label);
+        ASSERT_TRUE(place) << label;
+        wishes_ = {};
+        send(MouseMoveEvent{*place});
+        send(MouseButtonEvent{MouseButton::kLeft, true, *place, {}, 0});
+        send(MouseButtonEvent{MouseButton::kLeft, false, *place, {}, 0});
+        show();
+    }
+
+    static PastAttempt attempt(const std::string& stem, bool is_recorded) {
+        return {stem, is_recorded, "2026-11-20 11:36", "Pedicle", "P07", "score 81 of 100", ""};
+    }
+
+    std::vector<PastAttempt> past_{attempt("/class/results/b", true), attempt("/class/results/a", false)};
+};
+
+TEST_F(PanelPast, ReportAndReplayAreAClickAway) {
+    click("Report##past 2");
+    EXPECT_EQ(wishes_.open_file, "/class/results/a.html");
+    click("Replay##past 1");
+    EXPECT_EQ(wishes_.replay_of, "/class/results/b.json");
+    EXPECT_FALSE(panel_.find("Replay##past 2")) << "it was not recorded";
+}
+
+TEST_F(PanelPast, IsThereWhereTheLauncherIs) {
+    EXPECT_TRUE(panel_.find("Report##past 1"));
+    session_.has_launcher = false;
+    show();
+    EXPECT_FALSE(panel_.find("Report##past 1"));
+}
+
+}  // namespace
+}  // namespace bonemill
