@@ -114,7 +114,7 @@ list_recordings() {
     done
 }
 
-# result_fields RESULT.json: prints its recording, and the second at which its worst moment is about to come.
+# result_fields RESULT.json: prints its recording, and the second of its worst moment.
 result_fields() {
     python3 - "$1" <<'PY'
 import json, sys
@@ -122,17 +122,20 @@ with open(sys.argv[1], encoding="utf-8") as file:
     result = json.load(file)
 worst = max(result.get("moments", []), key=lambda moment: moment["severity"], default=None)
 print(result.get("journal", ""))
-print(max(0, worst["t_s"] - 3) if worst else "")
+print(worst["t_s"] if worst else "")
 PY
 }
 
-# An attempt's result says which recording it is in, and --at is its worst moment.
+# before SECOND LEAD: prints the second so much before it, from 0 on.
+before() { awk -v second="$1" -v lead="$2" 'BEGIN { print (second > lead ? second - lead : 0) }'; }
+
+# An attempt's result says which recording it is in, and when its worst moment is: a replay begins just before it.
 read_result() {
     local fields
     mapfile -t fields < <(result_fields "$1" 2>/dev/null)
     [[ -n ${fields[0]:-} ]] || fail "$1 is no result of an attempt with a recording"
     recording=$(recordings_folder)/$(basename -- "${fields[0]}")
-    [[ -z ${fields[1]:-} ]] || : "${option[at]:=${fields[1]}}"
+    [[ -z ${fields[1]:-} || -n ${option[at]:-} ]] || option[at]=$([[ -n ${option[clip]:-} ]] && echo "${fields[1]}" || before "${fields[1]}" 3)
 }
 
 # find_recording [FILE]: a file, the name of one of the user's own, an attempt's result, or the newest one.

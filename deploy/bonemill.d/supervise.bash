@@ -6,7 +6,7 @@
 readonly restart_after_s=2 most_restarts=3
 declare -A title=([server]=haptic_server [device]=device_daemon [viewer]=render_client)
 declare -A pid=() started_s=() due_s=() restarts=([server]=0 [device]=0 [viewer]=0)
-end_code="" recording=""
+end_code="" recording="" clip=""
 roles=()
 
 run_session() {
@@ -32,7 +32,19 @@ run_replay() {
     make_log_folder
     say "session $number, a replay of $recording; logs in $logs"
     roles=(server)
+    [[ -z ${option[clip]:-} ]] || begin_clip
     go_on
+}
+
+# A video off screen, of a replay that waits for it. Who looks at another session meanwhile has the processors first. It is
+# played slowly, since a processor alone draws few pictures per second; the video is as fast as the session was.
+readonly clip_speed=0.25
+begin_clip() {
+    clip=$(realpath -m -- "${option[clip]}")
+    : "${option[seconds]:=10}"
+    option[at]=$(before "${option[at]:-0}" "$(awk -v seconds="${option[seconds]}" 'BEGIN { print seconds / 2 }')")
+    extra+=(--paused --speed "$clip_speed")
+    renice -n 10 $$ >/dev/null || true
 }
 
 # Starts the programs of `roles` and a window, and stays until they end.
@@ -79,6 +91,7 @@ ask_real_time() {
 }
 
 choose_viewer() {
+    [[ -z $clip ]] || return 0
     [[ $flags != *" --no-viewer "* ]] || return 0
     has_display && return
     flags+="--no-viewer "
@@ -104,7 +117,8 @@ command_of() {
         viewer)  # Whoever sits here has the hand, so the window may command, as it may on one PC.
             words=("$bin/render_client" --session "$number" --role operator)
             mapfile -t -O "${#words[@]}" words < <(network_words)
-            [[ -n $recording ]] || words+=(--launcher "$self")
+            if [[ -n $clip ]]; then clip_words; else words+=(--launcher "$self"); fi
+            [[ -z $recording || -n $clip ]] || words+=(--recording "$recording")
             [[ -z $class_folder ]] || words+=(--class-folder "$class_folder")
             [[ -z ${option[window-size]:-} ]] || words+=(--size "${option[window-size]}") ;;
     esac
@@ -115,6 +129,14 @@ replay_words() {
     mapfile -t -O "${#words[@]}" words < <(network_words)
     [[ -z ${option[at]:-} ]] || words+=(--at "${option[at]}")
     words+=("${extra[@]}")
+}
+
+clip_words() {
+    local view
+    words+=(--offscreen --video "$clip" --seconds "${option[seconds]}" --wait-complete --start-replay)
+    IFS=, read -ra view <<<"${option[view]:-}"
+    [[ ${#view[@]} -eq 0 ]] || words+=(--camera-azimuth-deg "${view[0]}" --camera-elevation-deg "${view[1]}"
+        --camera-distance-mm "${view[2]}" --camera-target-mm "${view[@]:3}")
 }
 
 # launch ROLE. A process group of its own keeps the terminal's Ctrl-C from it, so that the order of the end is ours.
@@ -144,6 +166,7 @@ say_how_to_watch() {
     [[ -z ${option[profile]:-} || ${option[profile]} == one-pc ]] ||
         say "viewers on other PCs: bonemill watch --profile ${option[profile]} --interface THEIRS --session $number" \
             "(without multicast: bonemill watch $(uname -n) --session $number)"
+    [[ -z $clip ]] || return 0
     if [[ -n ${pid[viewer]:-} ]]; then say "close the window or press Ctrl-C to end"; else say "Ctrl-C ends it, or: bonemill stop $number"; fi
 }
 
@@ -178,12 +201,14 @@ has_ended() {
     wait "${pid[$role]}" || code=$?
     unset "pid[$role]"
     case $role:$code in
-        viewer:0) end_because 0 "the window was closed" ;;
+        viewer:0) [[ -n $clip ]] && end_because 0 "the clip is written: $clip" && return
+            end_because 0 "the window was closed" ;;
         server:0)
             if [[ -n $recording ]]; then end_because 0 "somebody has ended the replay"; return; fi
             end_because 0 "the hand has finished, or somebody has ended haptic_server" ;;
         device:0) end_because 0 "the hand has finished, or somebody has ended device_daemon" ;;
         *:2) end_with_error "$role" "$code" ;;
+        viewer:*) if [[ -n $clip ]]; then end_with_error "$role" "$code"; else restart "$role" "$code"; fi ;;
         *) restart "$role" "$code" ;;
     esac
 }

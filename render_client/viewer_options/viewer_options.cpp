@@ -123,9 +123,14 @@ void addPictureOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
            "Folder of this PC with the class' table and reports (--export-dir of its server): the window "
            "opens them")
         ->type_name("DIR");
-    app.add_option("--launcher", options.launcher,
-                   "bonemill's own script: with it the window opens replays and makes invitations")
-        ->type_name("FILE");
+    CLI::Option* const launcher =
+        app.add_option("--launcher", options.launcher,
+                       "bonemill's own script: with it the window opens replays and makes invitations")
+            ->type_name("FILE");
+    app.add_option("--recording", options.recording,
+                   "The recording that is replayed here (.mcap): the window makes clips of it")
+        ->type_name("FILE")
+        ->needs(launcher);
 }
 
 void addCameraOptions(CLI::App& app, RawOptions& raw) {
@@ -153,6 +158,8 @@ void addVideoOptions(CLI::App& app, VideoOptions& video, CLI::Option* offscreen)
     app.add_option("--seconds", video.seconds, "The video is so long at most; 0: until the session ends")
         ->check(within(0, kMaxSeconds))
         ->capture_default_str()
+        ->needs(file);
+    app.add_flag("--start-replay", video.starts_replay, "A replay that waits goes on when the video begins")
         ->needs(file);
 }
 

@@ -29,7 +29,8 @@ inline constexpr char kWithoutDisplay[] =
 struct VideoOptions {
     std::filesystem::path path;  // .mp4
     double fps = 30;
-    double seconds = 0;  // 0: until the session ends
+    double seconds = 0;          // 0: until the session ends
+    bool starts_replay = false;  // a replay that waits goes on when the video begins
 };
 
 struct OffscreenOptions {
@@ -67,6 +68,7 @@ struct ClientOptions {
     std::filesystem::path sound_wav;  // empty: none
     std::string class_folder;         // of this PC's server; empty: not known
     std::string launcher;             // deploy/bonemill, for replays and invitations; empty: none
+    std::string recording;            // that is replayed here, for clips; empty: not known
     bool chooses_quality = true;      // kQuick where OpenGL is software and pictures follow each other
     int width = 1280;                 // pixels
     int height = 800;

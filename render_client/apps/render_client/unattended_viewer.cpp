@@ -13,6 +13,7 @@
 #include "common/base/user_error.h"
 #include "common/rt/clock.h"
 #include "render_client/apps/render_client/scene_feed.h"
+#include "render_client/hand/controls/session_view.h"
 #include "render_client/hand/window/glfw_window.h"
 #include "render_client/look/hud/hud_canvas.h"
 #include "render_client/look/offscreen/osmesa_context.h"
@@ -144,11 +145,14 @@ class VideoViewer {
 
     void run() {
         waitForServer(feed_, options_);
+        if (wish_.starts_replay)
+            feed_.subscriber().sendCommand(commandWith(&topics::Command::set_pause_milling, false));
         VideoClock clock(wish_.fps, isReplay());
         const uint64_t most = wish_.seconds > 0 ? uint64_t(std::ceil(wish_.seconds * wish_.fps)) : UINT64_MAX;
         uint64_t drawn = 0, frames = 0;
-        while (frames < most && !isOver()) {
+        while (frames < most) {
             feed_.update();
+            if (isOver()) break;
             const uint64_t due = clock.due(now(), expected());
             if (due == 0) {
                 feed_.updateUntil(Clock::now() + kLook, stopRequested);
@@ -194,7 +198,18 @@ class VideoViewer {
         return !replay.is_playing() && now() >= replay.length_s() - kEndS;
     }
 
-    bool isOver() { return stopRequested() || !feed_.subscriber().hasServer() || isAtEnd(); }
+    // A replay's clock waits for who was kept from listening, by a long picture or a busy PC: its server is
+    // gone only when it does not come back.
+    bool isGone() {
+        if (feed_.subscriber().hasServer())
+            missed_since_.reset();
+        else if (!missed_since_)
+            missed_since_ = Clock::now();
+        const auto patience = isReplay() ? SceneSubscriber::kServerTimeout : std::chrono::seconds(0);
+        return missed_since_ && Clock::now() - *missed_since_ >= patience;
+    }
+
+    bool isOver() { return stopRequested() || isGone() || isAtEnd(); }
 
     const ClientOptions& options_;
     const VideoOptions& wish_;
@@ -203,6 +218,7 @@ class VideoViewer {
     RenderScene scene_;
     SceneFeed feed_;
     Clock::time_point looked_ = Clock::now();
+    std::optional<Clock::time_point> missed_since_;  // the server
 };
 
 void makeFolder(const std::filesystem::path& folder) {

@@ -5,15 +5,15 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <map>
 
 #include "common/attempts_csv/attempts_csv.h"
 #include "common/base/user_error.h"
-#include "common/commands/command_text.h"
 #include "common/files/whole_file.h"
 #include "common/process/start_apart.h"
+#include "render_client/apps/render_client/clip_maker.h"
 #include "render_client/apps/render_client/hand_feed.h"
 #include "render_client/apps/render_client/inviter.h"
+#include "render_client/apps/render_client/notices.h"
 #include "render_client/apps/render_client/past_list.h"
 #include "render_client/apps/render_client/scene_feed.h"
 #include "render_client/hand/controls/announcing.h"
@@ -34,59 +34,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kMinimisedPause{50};
 constexpr uint32_t kNoSession = UINT32_MAX;  // no server is asked for it
-constexpr std::chrono::seconds kNoticeTime{6};
 
 const topics::Lesson* lessonOf(const SceneSubscriber& subscriber) {
     return subscriber.lesson() ? &*subscriber.lesson() : nullptr;
 }
-
-std::string traineeOf(const SceneSubscriber& subscriber) {
-    return subscriber.lesson() ? subscriber.lesson()->trainee() : "";
-}
-
-// Shows over the picture, for a while, what the user should notice.
-class Notices {
-  public:
-    explicit Notices(RenderScene& scene) : scene_(scene) {}
-
-    void show(HudNotice notice) {
-        spdlog::log(notice.tone == HudTone::kGood ? spdlog::level::info : spdlog::level::warn, "{}",
-                    notice.text);
-        scene_.setNotice(std::move(notice));
-        end_ = Clock::now() + kNoticeTime;
-    }
-    void showOutcomes(SceneSubscriber& subscriber) {
-        for (const CommandOutcome& outcome : subscriber.takeOutcomes())
-            outcome.isDone() ? show({doneText(outcome.command, traineeOf(subscriber)), HudTone::kGood})
-                             : show({outcomeText(outcome), HudTone::kWarning});
-    }
-    void removeOld() {
-        if (Clock::now() >= end_) scene_.setNotice(std::nullopt);
-    }
-
-  private:
-    RenderScene& scene_;
-    Clock::time_point end_;
-};
-
-// Logs who comes and goes.
-class Attendance {
-  public:
-    void update(const std::vector<topics::Viewer>& others) {
-        std::map<uint64_t, std::string> here;
-        for (const topics::Viewer& other : others) {
-            here[other.sender()] = other.name();
-            if (!here_.contains(other.sender()))
-                spdlog::info("{} ({}) is watching", other.name(), roleName(other.role()));
-        }
-        for (const auto& [sender, name] : here_)
-            if (!here.contains(sender)) spdlog::info("{} is no longer watching", name);
-        here_ = std::move(here);
-    }
-
-  private:
-    std::map<uint64_t, std::string> here_;  // names by sender
-};
 
 // Returns the first free name in the current folder. `format` has one %d.
 std::filesystem::path nextName(const char* format) {
@@ -165,6 +116,10 @@ class WindowViewer {
         if (wishes.save_attempts && session.lesson) saveAttempts(*session.lesson);
         if (!wishes.open_file.empty()) showFile(wishes.open_file);
         if (!wishes.replay_of.empty()) replay(wishes.replay_of);
+        if (wishes.make_clip)
+            notices_.show(clips_.make(options_, session.status->session_s(), scene_.camera(),
+                                      nextName("bonemill_clip_%04d.mp4")));
+        if (const auto notice = clips_.news()) notices_.show(*notice);
         if (!wishes.invite.empty())
             inviter_.invite(options_.launcher, options_.subscriber.session, wishes.invite, wishes.invite_as);
         window_.show();
@@ -208,6 +163,7 @@ class WindowViewer {
         session.has_launcher = !options_.launcher.empty();
         session.invitation = inviter_.invitation();
         session.past = &past_.list();
+        session.has_clips = !options_.recording.empty();
         session.time_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
         session.realtime_ns =
             std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -374,6 +330,7 @@ class WindowViewer {
     Attendance attendance_;
     Inviter inviter_;
     PastList past_;
+    ClipMaker clips_;
     AttemptEnds attempt_ends_;
     FrameRate frame_rate_;
     AnnounceClock announce_clock_;

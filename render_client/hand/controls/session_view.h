@@ -56,6 +56,7 @@ struct SessionView {
     std::vector<FaultEntry> faults = {};                          // of the session, the first one first
     const std::vector<PastAttempt>* past = nullptr;               // the newest one first
     bool has_launcher = false;      // bonemill can be asked for replays and invitations
+    bool has_clips = false;         // and for a clip of this replay
     Invitation invitation = {};     // the last one that was asked for
     std::string class_folder = {};  // of this PC, with the class' table, page and reports; empty: not known
 };

@@ -28,6 +28,7 @@ struct Wishes {
     std::optional<HudNotice> notice;      // why something was not done
     bool save_picture = false;
     bool save_attempts = false;                 // of the lesson, as CSV
+    bool make_clip = false;                     // of the moment of the replay
     std::string replay_of;                      // an attempt's results, to be seen again; empty: none
     std::string invite;                         // this person; empty: nobody
     std::string invite_as;                      // the person's role

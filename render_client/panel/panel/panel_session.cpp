@@ -212,6 +212,9 @@ void PanelContent::buildReplay() {
                " or a right click on the bone: when was it removed there?");
     ImGui::PopTextWrapPos();
     ImGui::EndDisabled();
+    if (session_.has_clips &&
+        button("Clip", "Writes the ten seconds around this moment as a video, seen from here"))
+        wishes_.make_clip = true;
 }
 
 void PanelContent::buildRemarks() {

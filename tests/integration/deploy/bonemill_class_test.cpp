@@ -107,6 +107,36 @@ TEST_F(BonemillClass, ReplaysTheWorstMomentOfAnAttempt) {
     }
 }
 
+// The words' ends are the stand-ins' to say: the viewer leaves when the clip is written.
+TEST_F(BonemillClass, AClipIsAVideoOfAReplayThatWaitsForIt) {
+    const std::string recordings = rig_.folder() / "logs/bonemill/recordings",
+                      result = rig_.folder() / "r.json", clip = rig_.folder() / "c.mp4";
+    std::filesystem::create_directories(recordings);
+    test::writeFile(recordings + "/1_a.mcap", "a");
+    test::writeFile(result, R"({"journal": "1_a.mcap", "moments": [{"t_s": 40.5, "severity": 10}]})");
+    rig_.letLeave("render_client", 0);
+    const Finished finished =
+        rig_.call({"replay", result, "--clip", clip, "--seconds", "6", "--view", "10,-20,30,1,2.5,-3"});
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    EXPECT_TRUE(has(finished.out, "the clip is written: " + clip)) << finished.out;
+    const std::string events = rig_.events();
+    EXPECT_TRUE(std::regex_search(events, std::regex(" replay " + recordings +
+                                                     "/1_a.mcap --session [0-9]+ "
+                                                     "--at 37.5 --paused --speed 0.25\n")))
+        << events;
+    EXPECT_TRUE(has(events, " --offscreen --video " + clip +
+                                " --seconds 6 --wait-complete --start-replay"
+                                " --camera-azimuth-deg 10 --camera-elevation-deg -20 --camera-distance-mm 30"
+                                " --camera-target-mm 1 2.5 -3\n"))
+        << events;
+    EXPECT_TRUE(has(rig_.call({"replay", "--clip", "c.avi"}).err, "ends in .mp4"));
+    EXPECT_TRUE(has(rig_.call({"replay", "--clip", clip, "--view", "1,2"}).err, "give six numbers"));
+    rig_.letLeave("render_client", 1);
+    EXPECT_NE(rig_.call({"replay", result, "--clip", clip, "--at", "2"}).exit_code, 0);
+    EXPECT_EQ(rig_.pidsOf("render_client").size(), 2u) << "it is not begun anew";
+    EXPECT_TRUE(has(rig_.events(), " --at 0 --paused")) << rig_.events();
+}
+
 // Classes lie side by side; the newest attempt is the first one, whatever its class.
 TEST_F(BonemillClass, ListsTheLastAttemptsOfAllClasses) {
     EXPECT_TRUE(has(rig_.call({"sessions"}).out, "No attempt has left a result"));

@@ -132,6 +132,22 @@ TEST_F(Replay, AViewerOnlyLooksAndAVideoIsMadeOfIt) {
     EXPECT_GT(std::filesystem::file_size(folder_ / "v.mp4"), 1000u);
 }
 
+// A picture may take longer than a server may be silent.
+TEST_F(Replay, AVideoStartsTheReplayThatWaitsAndSurvivesALongPicture) {
+    Process server(this->server({"--paused", "--at", "1", "--speed", "0.25"}));
+    Watcher watcher;
+    ASSERT_TRUE(watcher.standsAt(1)) << server.errSoFar();
+    Process video(client({"--offscreen", "--video", folder_ / "v.mp4", "--fps", "20", "--seconds", "1",
+                          "--size", "1280x800", "--wait-complete", "--start-replay"}));
+    ASSERT_TRUE(watcher.sees([](const SceneSubscriber& s) { return s.status()->replay().is_playing(); }));
+    video.signal(SIGSTOP);
+    EXPECT_TRUE(watcher.sees([](const SceneSubscriber& s) { return s.toolState()->session_s() > 1.9; }));
+    video.signal(SIGCONT);
+    const test::Finished finished = video.wait();
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    EXPECT_NE(finished.out.find("\"frames\":20,"), std::string::npos) << finished.out;
+}
+
 TEST_F(Replay, WhatCannotBeReplayedIsRefusedInOneLine) {
     for (const auto& [file, word] :
          {std::pair<std::string, std::string>{folder_ / "missing.mcap", "missing.mcap"},

@@ -42,6 +42,16 @@ TEST_F(PanelPast, ReportAndReplayAreAClickAway) {
     EXPECT_FALSE(panel_.find("Replay##past 2")) << "it was not recorded";
 }
 
+TEST_F(PanelPast, AClipIsMadeOfTheReplayThatIsShown) {
+    status_.mutable_replay()->set_length_s(100);
+    show();
+    EXPECT_FALSE(panel_.find("Clip")) << "nobody knows the recording";
+    session_.has_clips = true;
+    show();
+    click("Clip");
+    EXPECT_TRUE(wishes_.make_clip);
+}
+
 TEST_F(PanelPast, IsThereWhereTheLauncherIs) {
     EXPECT_TRUE(panel_.find("Report##past 1"));
     session_.has_launcher = false;
