@@ -36,14 +36,12 @@ run_replay() {
     go_on
 }
 
-# A video off screen, of a replay that waits for it. Who looks at another session meanwhile has the processors first. It is
-# played slowly, since a processor alone draws few pictures per second; the video is as fast as the session was.
-readonly clip_speed=0.25
+# A video off screen, of a replay that waits for each picture. Who looks at another session meanwhile has the processors first.
 begin_clip() {
     clip=$(realpath -m -- "${option[clip]}")
     : "${option[seconds]:=10}"
     option[at]=$(before "${option[at]:-0}" "$(awk -v seconds="${option[seconds]}" 'BEGIN { print seconds / 2 }')")
-    extra+=(--paused --speed "$clip_speed")
+    extra+=(--paused)
     renice -n 10 $$ >/dev/null || true
 }
 
@@ -133,7 +131,7 @@ replay_words() {
 
 clip_words() {
     local view
-    words+=(--offscreen --video "$clip" --seconds "${option[seconds]}" --wait-complete --start-replay)
+    words+=(--offscreen --video "$clip" --seconds "${option[seconds]}" --wait-complete --lead-replay)
     IFS=, read -ra view <<<"${option[view]:-}"
     [[ ${#view[@]} -eq 0 ]] || words+=(--camera-azimuth-deg "${view[0]}" --camera-elevation-deg "${view[1]}"
         --camera-distance-mm "${view[2]}" --camera-target-mm "${view[@]:3}")

@@ -159,7 +159,8 @@ void addVideoOptions(CLI::App& app, VideoOptions& video, CLI::Option* offscreen)
         ->check(within(0, kMaxSeconds))
         ->capture_default_str()
         ->needs(file);
-    app.add_flag("--start-replay", video.starts_replay, "A replay that waits goes on when the video begins")
+    app.add_flag("--lead-replay", video.leads_replay,
+                 "Leads a replay that waits from picture to picture: none is missing, however slow the PC")
         ->needs(file);
 }
 

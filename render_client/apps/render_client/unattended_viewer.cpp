@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "common/base/user_error.h"
+#include "common/commands/command_text.h"
 #include "common/rt/clock.h"
 #include "render_client/apps/render_client/scene_feed.h"
-#include "render_client/hand/controls/session_view.h"
 #include "render_client/hand/window/glfw_window.h"
 #include "render_client/look/hud/hud_canvas.h"
 #include "render_client/look/offscreen/osmesa_context.h"
@@ -145,10 +145,19 @@ class VideoViewer {
 
     void run() {
         waitForServer(feed_, options_);
-        if (wish_.starts_replay)
-            feed_.subscriber().sendCommand(commandWith(&topics::Command::set_pause_milling, false));
-        VideoClock clock(wish_.fps, isReplay());
         const uint64_t most = wish_.seconds > 0 ? uint64_t(std::ceil(wish_.seconds * wish_.fps)) : UINT64_MAX;
+        if (wish_.leads_replay)
+            lead(most);
+        else
+            follow(most);
+    }
+
+  private:
+    static constexpr std::chrono::milliseconds kLook{3};
+    static constexpr double kEndS = 1e-2;
+
+    void follow(uint64_t most) {
+        VideoClock clock(wish_.fps, isReplay());
         uint64_t drawn = 0, frames = 0;
         while (frames < most) {
             feed_.update();
@@ -164,16 +173,42 @@ class VideoViewer {
             frames += shown;
             ++drawn;
         }
+        finish(frames, drawn);
+    }
+
+    // After each picture the replay is led on by its time, so that none is missing, however slow the PC.
+    void lead(uint64_t most) {
+        const double first_s = feed_.subscriber().status()->session_s();  // the tool may not have come yet
+        uint64_t frames = 0;
+        while (frames < most && leadTo(first_s + double(frames) / wish_.fps)) {
+            draw(scene_, options_);
+            file_.add(context_.read(), 1);
+            ++frames;
+        }
+        finish(frames, frames);
+    }
+
+    // False: there is no such moment any more. Throws std::runtime_error if the server does not do it.
+    bool leadTo(double session_s) {
+        topics::Command command;
+        command.mutable_replay()->set_seek_s(session_s);
+        feed_.subscriber().sendCommand(command);
+        while (true) {
+            feed_.updateUntil(Clock::now() + kLook, stopRequested);
+            if (isOver()) return false;
+            for (const CommandOutcome& outcome : feed_.subscriber().takeOutcomes())
+                if (!outcome.isDone()) throw std::runtime_error(outcomeText(outcome));
+            if (std::abs(now() - session_s) < 0.5 / wish_.fps && feed_.isComplete()) return true;
+        }
+    }
+
+    void finish(uint64_t frames, uint64_t drawn) {
         if (drawn == 0) return;  // stopped before there was anything to see: no video
         file_.finish();
         std::printf("{\"video\":\"%s\",\"frames\":%llu,\"drawn\":%llu,\"seconds\":%.3f}\n",
                     wish_.path.c_str(), (unsigned long long)frames, (unsigned long long)drawn,
                     double(frames) / wish_.fps);
     }
-
-  private:
-    static constexpr std::chrono::milliseconds kLook{3};
-    static constexpr double kEndS = 1e-2;
 
     bool isReplay() { return feed_.subscriber().status() && feed_.subscriber().status()->has_replay(); }
 

@@ -122,10 +122,10 @@ TEST_F(BonemillClass, AClipIsAVideoOfAReplayThatWaitsForIt) {
     const std::string events = rig_.events();
     EXPECT_TRUE(std::regex_search(events, std::regex(" replay " + recordings +
                                                      "/1_a.mcap --session [0-9]+ "
-                                                     "--at 37.5 --paused --speed 0.25\n")))
+                                                     "--at 37.5 --paused\n")))
         << events;
     EXPECT_TRUE(has(events, " --offscreen --video " + clip +
-                                " --seconds 6 --wait-complete --start-replay"
+                                " --seconds 6 --wait-complete --lead-replay"
                                 " --camera-azimuth-deg 10 --camera-elevation-deg -20 --camera-distance-mm 30"
                                 " --camera-target-mm 1 2.5 -3\n"))
         << events;

@@ -133,19 +133,32 @@ TEST_F(Replay, AViewerOnlyLooksAndAVideoIsMadeOfIt) {
 }
 
 // A picture may take longer than a server may be silent.
-TEST_F(Replay, AVideoStartsTheReplayThatWaitsAndSurvivesALongPicture) {
+TEST_F(Replay, AVideoSurvivesALongPicture) {
     Process server(this->server({"--paused", "--at", "1", "--speed", "0.25"}));
     Watcher watcher;
     ASSERT_TRUE(watcher.standsAt(1)) << server.errSoFar();
     Process video(client({"--offscreen", "--video", folder_ / "v.mp4", "--fps", "20", "--seconds", "1",
-                          "--size", "1280x800", "--wait-complete", "--start-replay"}));
-    ASSERT_TRUE(watcher.sees([](const SceneSubscriber& s) { return s.status()->replay().is_playing(); }));
+                          "--size", "1280x800"}));
+    ASSERT_TRUE(watcher.sees([](const SceneSubscriber& s) { return !s.viewers().empty(); }));
+    EXPECT_EQ(command("resume").substr(0, 1), "0");
     video.signal(SIGSTOP);
     EXPECT_TRUE(watcher.sees([](const SceneSubscriber& s) { return s.toolState()->session_s() > 1.9; }));
     video.signal(SIGCONT);
     const test::Finished finished = video.wait();
     EXPECT_EQ(finished.exit_code, 0) << finished.err;
     EXPECT_NE(finished.out.find("\"frames\":20,"), std::string::npos) << finished.out;
+}
+
+TEST_F(Replay, AVideoThatLeadsLacksNoPicture) {
+    Process server(this->server({"--paused", "--at", "1"}));
+    const auto film = [&](const std::string& seconds) {
+        return test::run(client({"--offscreen", "--video", folder_ / "v.mp4", "--fps", "20", "--seconds",
+                                 seconds, "--size", "160x120", "--wait-complete", "--lead-replay"}))
+            .out;
+    };
+    const std::string whole = film("1"), to_the_end = film("30");
+    EXPECT_NE(whole.find("\"frames\":20,\"drawn\":20,"), std::string::npos) << whole;
+    EXPECT_NE(to_the_end.find("\"frames\":21,\"drawn\":21,"), std::string::npos) << to_the_end;
 }
 
 TEST_F(Replay, WhatCannotBeReplayedIsRefusedInOneLine) {
