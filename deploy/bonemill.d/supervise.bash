@@ -131,7 +131,7 @@ replay_words() {
 
 clip_words() {
     local view
-    words+=(--offscreen --video "$clip" --seconds "${option[seconds]}" --wait-complete --lead-replay)
+    words+=(--offscreen --video "$clip" --seconds "${option[seconds]}" --wait-complete --lead-replay "${option[at]}")
     IFS=, read -ra view <<<"${option[view]:-}"
     [[ ${#view[@]} -eq 0 ]] || words+=(--camera-azimuth-deg "${view[0]}" --camera-elevation-deg "${view[1]}"
         --camera-distance-mm "${view[2]}" --camera-target-mm "${view[@]:3}")

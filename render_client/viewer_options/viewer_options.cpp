@@ -159,8 +159,11 @@ void addVideoOptions(CLI::App& app, VideoOptions& video, CLI::Option* offscreen)
         ->check(within(0, kMaxSeconds))
         ->capture_default_str()
         ->needs(file);
-    app.add_flag("--lead-replay", video.leads_replay,
-                 "Leads a replay that waits from picture to picture: none is missing, however slow the PC")
+    app.add_option("--lead-replay", video.led_from_s,
+                   "Leads a replay that waits from this moment (s) on, from picture to picture: none is "
+                   "missing, however slow the PC")
+        ->check(within(0, kMaxSeconds))
+        ->type_name("SECONDS")
         ->needs(file);
 }
 

@@ -29,8 +29,8 @@ inline constexpr char kWithoutDisplay[] =
 struct VideoOptions {
     std::filesystem::path path;  // .mp4
     double fps = 30;
-    double seconds = 0;         // 0: until the session ends
-    bool leads_replay = false;  // that waits, from picture to picture
+    double seconds = 0;                // 0: until the session ends
+    std::optional<double> led_from_s;  // leads a replay from this moment on, from picture to picture
 };
 
 struct OffscreenOptions {

@@ -146,8 +146,8 @@ class VideoViewer {
     void run() {
         waitForServer(feed_, options_);
         const uint64_t most = wish_.seconds > 0 ? uint64_t(std::ceil(wish_.seconds * wish_.fps)) : UINT64_MAX;
-        if (wish_.leads_replay)
-            lead(most);
+        if (wish_.led_from_s)
+            lead(*wish_.led_from_s, most);
         else
             follow(most);
     }
@@ -177,8 +177,7 @@ class VideoViewer {
     }
 
     // After each picture the replay is led on by its time, so that none is missing, however slow the PC.
-    void lead(uint64_t most) {
-        const double first_s = feed_.subscriber().status()->session_s();  // the tool may not have come yet
+    void lead(double first_s, uint64_t most) {
         uint64_t frames = 0;
         while (frames < most && leadTo(first_s + double(frames) / wish_.fps)) {
             draw(scene_, options_);

@@ -125,7 +125,7 @@ TEST_F(BonemillClass, AClipIsAVideoOfAReplayThatWaitsForIt) {
                                                      "--at 37.5 --paused\n")))
         << events;
     EXPECT_TRUE(has(events, " --offscreen --video " + clip +
-                                " --seconds 6 --wait-complete --lead-replay"
+                                " --seconds 6 --wait-complete --lead-replay 37.5"
                                 " --camera-azimuth-deg 10 --camera-elevation-deg -20 --camera-distance-mm 30"
                                 " --camera-target-mm 1 2.5 -3\n"))
         << events;
