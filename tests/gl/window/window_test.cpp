@@ -15,27 +15,23 @@
 #include "tests/gl/golden.h"
 #include "tests/gl/window/shown_session.h"
 #include "tests/gl/window/virtual_display.h"
+#include "tests/gl/window/windowed_viewer.h"
 #include "tests/support/class_lesson.h"
 #include "tests/support/controlled_panel.h"
-#include "tests/support/places.h"
 
 namespace bonemill {
 namespace {
 
 using namespace std::chrono_literals;
+using test::kHeight;
+using test::kWidth;
 using test::VirtualDisplay;
+using test::WindowedViewer;
 using Viewer = topics::Viewer;
 
-constexpr int kWidth = 480, kHeight = 360;
 constexpr double kClearChange = 0.01;  // of the picture: what a change of the view changes at least
 constexpr double kNoChange = 0.002;
 constexpr double kSmallChange = 0.1;  // shadows and smooth edges
-
-// The renderer is as deterministic as its driver with one thread, and leaves the other core to the test.
-void useSoftwareRenderer() {
-    setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-    setenv("LP_NUM_THREADS", "1", 1);
-}
 
 double differentShare(const Picture& a, const Picture& b) {
     return test::compare(a, b).bad_part;
@@ -49,35 +45,10 @@ std::string number(double value) {
     return std::to_string(int(value));
 }
 
-// The viewer is in a window that covers the display.
-class WindowedViewer {
-  public:
-    WindowedViewer(const std::string& name, const std::string& role, const std::string& more)
-        : process_({"/bin/sh", "-c",
-                    "cd " + folder_.path().string() + " && exec " + test::binDir() +
-                        "/render_client --quality full --size " + std::to_string(kWidth) + "x" +
-                        std::to_string(kHeight) + " --domain " + std::to_string(testDomain()) +
-                        " --session " + std::to_string(testSession()) + " --name " + name + " --role " +
-                        role + " " + more}) {}
-
-    // Returns the picture of the next F12.
-    std::filesystem::path nextPicture() {
-        char name[32];
-        std::snprintf(name, sizeof name, "bonemill_%04d.png", ++pictures_);
-        return folder_.path() / name;
-    }
-    test::Process& process() { return process_; }
-
-  private:
-    test::TemporaryFolder folder_;
-    test::Process process_;
-    int pictures_ = 0;
-};
-
 class Window : public testing::Test {
   protected:
     Window() : observer_({.domain = testDomain(), .session = testSession(), .name = "observer"}) {
-        useSoftwareRenderer();
+        test::useSoftwareRenderer();
     }
 
     // Waits for what has to come: never for a time.
