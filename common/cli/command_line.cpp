@@ -14,6 +14,11 @@ namespace {
 // What does not go together is said when someone tries: a list of it beside each option is read by nobody.
 class HelpFormatter : public CLI::Formatter {
   public:
+    // A flag that says no has that in its name.
+    std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
+        const std::string name = CLI::Formatter::make_option_name(option, is_positional);
+        return name.substr(0, name.find('{'));
+    }
     std::string make_option_opts(const CLI::Option* option) const override {
         std::string words;
         if (option->get_type_size() != 0) {
