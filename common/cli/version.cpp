@@ -6,7 +6,7 @@ namespace bonemill {
 
 std::string versionText() {
     const std::string commit = BONEMILL_COMMIT;
-    return BONEMILL_VERSION + (commit.empty() ? commit : " (" + commit + ")");
+    return std::string(BONEMILL_VERSION " (") + (commit.empty() ? commit : commit + "; ") + BONEMILL_BUILD ")";
 }
 
 }  // namespace bonemill

@@ -31,7 +31,7 @@ doctor() {
 
 look_at_programs() {
     local message
-    if message=$( (need_programs) 2>&1); then fine "built, in $bin"; return; fi
+    if message=$( (need_programs "${all_programs[@]}") 2>&1); then fine "built, in $bin"; return; fi
     printf '  MISSING  %s\n' "${message#bonemill: }"
     return 1
 }

@@ -13,7 +13,7 @@ Usage: bonemill COMMAND [options]
   invite NAME      let somebody join a session in a browser: prints a link and its QR code
   replay [FILE]    show a recorded session again, the last one or FILE
   doctor           what this PC lacks, and what to type
-`bonemill COMMAND --help` says more.
+`bonemill COMMAND --help` says more, `bonemill --version` which one this is.
 TEXT
 }
 

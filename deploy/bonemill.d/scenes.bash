@@ -2,7 +2,10 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2154
 
-scene_names() { (cd "$share/scenes" && for file in *.textproto; do echo "${file%.textproto}"; done); }
+# A PC that only watches has none.
+scene_names() {
+    [[ ! -d $share/scenes ]] || (cd "$share/scenes" && for file in *.textproto; do echo "${file%.textproto}"; done)
+}
 
 # Each with the first sentence of the comment that it begins with.
 list_scenes() {

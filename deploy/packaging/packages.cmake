@@ -1,0 +1,62 @@
+# The Debian packages that deploy/package has CPack make of the components of CMakeLists.txt.
+set(CPACK_GENERATOR DEB)
+set(CPACK_VERBATIM_VARIABLES ON)
+set(CPACK_PACKAGE_NAME bonemill)
+set(CPACK_PACKAGE_VENDOR "The bonemill authors")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_COMPONENTS_ALL session viewer doc)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+set(CPACK_DEBIAN_PACKAGE_MAINTAINER "The bonemill authors <bonemill@example.org>")
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+
+# Both packages come of one build: the session's launcher and scenes are those of its viewer.
+set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
+set(CPACK_COMPONENT_SESSION_DEPENDS viewer)
+
+set(CPACK_DEBIAN_SESSION_PACKAGE_NAME bonemill)
+set(CPACK_DEBIAN_SESSION_DESCRIPTION "haptic bone-milling simulator
+A trainee holds a six-degree-of-freedom handle and mills bone from a CT scan,
+feels it at 1000 Hz, and everyone else watches. This package has the server,
+the device daemon with the emulator of ARES, the bridges to haptic arms, the
+tools for cases, phantoms and studies, and the scenes.
+.
+Whoever is in the group haptics runs the loops in real time.")
+set(CPACK_DEBIAN_SESSION_PACKAGE_DEPENDS "passwd")
+set(CPACK_DEBIAN_SESSION_PACKAGE_RECOMMENDS "gnuplot-nox, python3")
+set(CPACK_DEBIAN_SESSION_PACKAGE_SUGGESTS "bonemill-doc, invesalius-examples, spacenavd")
+set(CPACK_DEBIAN_SESSION_PACKAGE_CONTROL_EXTRA
+  "${CMAKE_CURRENT_LIST_DIR}/debian/conffiles;${CMAKE_CURRENT_LIST_DIR}/debian/postinst;${CMAKE_CURRENT_LIST_DIR}/debian/postrm")
+
+# libgl1 is loaded by name; `bonemill watch` asks ip for its way, and invitations are made by openssl.
+set(CPACK_DEBIAN_VIEWER_PACKAGE_NAME bonemill-viewer)
+set(CPACK_DEBIAN_VIEWER_DESCRIPTION "viewer of haptic bone-milling sessions
+Watches a session of another PC, in a window or as pictures, over DDS or
+through a gateway; is that gateway, and its relay. It is what the PC of a
+pupil needs: bonemill watch HOST.")
+set(CPACK_DEBIAN_VIEWER_PACKAGE_DEPENDS "fonts-dejavu-core, iproute2, libgl1, openssl")
+set(CPACK_DEBIAN_VIEWER_PACKAGE_RECOMMENDS "xdg-utils")
+set(CPACK_DEBIAN_VIEWER_PACKAGE_SUGGESTS "ffmpeg, qrencode")
+
+set(CPACK_DEBIAN_DOC_PACKAGE_NAME bonemill-doc)
+set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_DOC_PACKAGE_SECTION doc)
+set(CPACK_DEBIAN_DOC_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_DOC_DESCRIPTION "documentation of the haptic bone-milling simulator
+Pages for who teaches with bonemill, runs its laboratory, does research on
+it, or changes it; with what was measured.")
+
+# Each package says under which licence it is, and what has changed. deploy/package writes what depends on the version.
+foreach(component session viewer doc)
+  string(TOUPPER ${component} upper)
+  set(folder share/doc/${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
+  install(FILES ${CMAKE_CURRENT_LIST_DIR}/debian/copyright DESTINATION ${folder} COMPONENT ${component})
+  install(FILES ${CMAKE_BINARY_DIR}/changelog.gz DESTINATION ${folder} COMPONENT ${component} OPTIONAL)
+endforeach()
+include(CPack)
