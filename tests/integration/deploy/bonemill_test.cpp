@@ -360,6 +360,28 @@ TEST_F(Bonemill, EveryCommandThatReachesASessionTakesItsDomain) {
     EXPECT_TRUE(has(doctor, "UDP 7900 to 8039")) << doctor;
 }
 
+TEST_F(Bonemill, APcThatOnlyWatchesNeedsTheViewerAlone) {
+    for (const char* program : {"bonemill_lab", "haptic_server", "device_daemon"})
+        std::filesystem::remove(rig_.programFile(program));
+    const std::filesystem::path share = rig_.folder() / "share/bonemill";
+    const std::filesystem::path deploy = std::filesystem::read_symlink(share);
+    std::filesystem::remove(share);
+    std::filesystem::create_directory(share);
+    std::filesystem::create_directory_symlink(deploy / "bonemill.d", share / "bonemill.d");
+    expectRefusal(rig_.call({"start"}), "install the package bonemill");
+    expectRefusal(rig_.call({"replay", rig_.scene()}), "install the package bonemill");
+    const Finished list = rig_.call({"list"});
+    EXPECT_EQ(list.exit_code, 0) << list.err;
+    EXPECT_EQ(list.err, "");
+    Process viewer(rig_.words({"watch", "192.0.2.7", "--interface", "eth7"}));
+    EXPECT_TRUE(rig_.awaitStarts("render_client", 1)) << viewer.errSoFar();
+}
+
+TEST_F(Bonemill, ItsVersionIsThatOfItsPrograms) {
+    rig_.putProgram("render_client", "#!/bin/sh\necho \"render_client 1.2.3 ($1)\"\n");
+    EXPECT_EQ(rig_.call({"--version"}).out, "bonemill 1.2.3 (--version)\n");
+}
+
 TEST_F(Bonemill, WatchLooksAtAnotherPC) {
     Process viewer(rig_.words({"watch", "192.0.2.7", "--interface", "eth7", "--session", "3"}));
     ASSERT_TRUE(rig_.awaitStarts("render_client", 1)) << viewer.errSoFar();

@@ -67,6 +67,7 @@ TEST_F(FirstStart, EveryProgramSaysItsVersion) {
         EXPECT_EQ(finished.exit_code, 0) << finished.err;
         EXPECT_EQ(finished.out.rfind(program + " 0.", 0), 0u) << finished.out;
         EXPECT_EQ(std::count(finished.out.begin(), finished.out.end(), '\n'), 1) << finished.out;
+        EXPECT_NE(finished.out.find(__VERSION__), std::string::npos) << "how it was built: " << finished.out;
     }
 }
 
