@@ -2,10 +2,7 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2154
 
-# A PC that only watches has none.
-scene_names() {
-    [[ ! -d $share/scenes ]] || (cd "$share/scenes" && for file in *.textproto; do echo "${file%.textproto}"; done)
-}
+scene_names() { (cd "$share/scenes" && for file in *.textproto; do echo "${file%.textproto}"; done); }
 
 # Each with the first sentence of the comment that it begins with.
 list_scenes() {
