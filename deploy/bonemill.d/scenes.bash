@@ -19,8 +19,8 @@ home_folder() {
 }
 
 # Sessions may start at the same moment, and one may read what is there already: only newer files are copied, by one at a
-# time. Descriptor 8 is the lock's.
-copy_scenes() { flock 8 && cp --update --preserve=timestamps -- "$share"/scenes/* "$scenes"; }
+# time; the one before stays beside it with ~, as somebody may have changed it. Descriptor 8 is the lock's.
+copy_scenes() { flock 8 && cp --update --backup=simple --suffix='~' --preserve=timestamps -- "$share"/scenes/* "$scenes"; }
 
 # Scenes read phantoms from ../../build/data. In an installed tree that is nobody's to write, so there a scene is used from
 # a copy in the user's own data folder.
