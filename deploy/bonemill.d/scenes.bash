@@ -20,7 +20,15 @@ home_folder() {
 
 # Sessions may start at the same moment, and one may read what is there already: only newer files are copied, by one at a
 # time; the one before stays beside it with ~, as somebody may have changed it. Descriptor 8 is the lock's.
-copy_scenes() { flock 8 && cp --update --backup=simple --suffix='~' --preserve=timestamps -- "$share"/scenes/* "$scenes"; }
+copy_scenes() {
+    local file mine
+    flock 8
+    for file in "$share"/scenes/*; do
+        mine=$scenes/${file##*/}
+        [[ ! -e $mine || ! $file -nt $mine ]] || cp --preserve=timestamps -- "$mine" "$mine~" || return 1
+    done
+    cp --update --preserve=timestamps -- "$share"/scenes/* "$scenes"
+}
 
 # Scenes read phantoms from ../../build/data. In an installed tree that is nobody's to write, so there a scene is used from
 # a copy in the user's own data folder.
