@@ -124,7 +124,7 @@ bool takeFiles(Incoming& from, UnpackedFiles& files) {
 
 bool isArchive(const fs::path& path) {
     std::error_code error;
-    if (fs::is_directory(path, error)) return false;
+    if (!fs::is_regular_file(path, error)) return false;  // nobody writes into a pipe
     std::string name = path.filename().string();
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
     return std::ranges::any_of(kEndings, [&](const char* ending) { return name.ends_with(ending); }) ||

@@ -109,7 +109,6 @@ Lines listPlain(const std::filesystem::path& path) {
 template <class Result>
 Result ofUnpacked(const std::filesystem::path& path, const auto& read, const auto& rename) {
     if (!isPacked(path)) return read(path);
-    requireThere(path);
     Result result;
     readUnpacked(path, startUnpacking(path), [&](const std::filesystem::path& scan, const auto& named) {
         result = read(scan);

@@ -40,7 +40,7 @@ const kSpoiled = [
   { what: 'no ambient occlusion', from: 'float occlusion = sum / weights;', to: 'float occlusion = 1.0;' },
   { what: 'no structure', from: 'if (is_behind) {', to: 'if (is_behind) { discard;' },
   { what: 'nothing shines through', from: 'textureLod(near_structures, at, 0.0)', to: 'vec4(0.0, 0.0, 0.0, 1.0)' },
-  { what: 'another material', from: '+ material_colour.rgb', to: '+ 0.9 * material_colour.rrr' },
+  { what: 'another material', from: '+ point.material.rgb', to: '+ 0.9 * point.material.rrr' },
 ];
 type Spoiled = (typeof kSpoiled)[number];
 
