@@ -2,6 +2,7 @@
 // logs and data in a folder of its own.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <signal.h>
 
 #include <algorithm>
@@ -106,6 +107,14 @@ inline bool isGone(int pid) {
 
 inline long linesOf(const std::string& text) {
     return std::count(text.begin(), text.end(), '\n');
+}
+
+// One line that holds `part` says what was wrong with the words.
+inline void expectRefusal(const Finished& finished, const std::string& part) {
+    EXPECT_EQ(finished.exit_code, 2) << finished.out;
+    EXPECT_EQ(finished.err.rfind("bonemill: ", 0), 0u) << finished.err;
+    EXPECT_NE(finished.err.find(part), std::string::npos) << finished.err;
+    EXPECT_EQ(linesOf(finished.err), 1) << finished.err;
 }
 
 }  // namespace bonemill::test

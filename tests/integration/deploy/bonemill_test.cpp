@@ -8,6 +8,7 @@ namespace bonemill {
 namespace {
 
 using test::BonemillRig;
+using test::expectRefusal;
 using test::Finished;
 using test::isGone;
 using test::Process;
@@ -47,12 +48,6 @@ class Bonemill : public testing::Test {
         const std::string events = rig_.events();
         const std::string order = "end device_daemon\nend haptic_server\nend render_client\n";
         EXPECT_NE(events.find(order), std::string::npos) << events;
-    }
-    static void expectRefusal(const Finished& finished, const std::string& part) {
-        EXPECT_EQ(finished.exit_code, 2) << finished.out;
-        EXPECT_EQ(finished.err.rfind("bonemill: ", 0), 0u) << finished.err;
-        EXPECT_NE(finished.err.find(part), std::string::npos) << finished.err;
-        EXPECT_EQ(test::linesOf(finished.err), 1) << finished.err;
     }
     static bool has(const std::string& text, const std::string& part) {
         return text.find(part) != std::string::npos;
@@ -349,37 +344,6 @@ TEST_F(Bonemill, WatchFindsTheSessionAndItsNetwork) {
     session.signal(SIGTERM);
     EXPECT_EQ(session.wait().exit_code, 0);
     EXPECT_TRUE(viewer.isRunning());
-}
-
-TEST_F(Bonemill, EveryCommandThatReachesASessionTakesItsDomain) {
-    for (const char* command : {"start", "host", "watch", "invite", "replay", "doctor"}) {
-        expectRefusal(rig_.call({command, "--domain", "231"}), "--domain 231: give a number from 0 to 230");
-        EXPECT_TRUE(has(rig_.call({command, "--help"}).out, "--domain D")) << command;
-    }
-    const std::string doctor = rig_.call({"doctor", "--interface", "lo", "--domain", "2"}).out;
-    EXPECT_TRUE(has(doctor, "UDP 7900 to 8039")) << doctor;
-}
-
-TEST_F(Bonemill, APcThatOnlyWatchesNeedsTheViewerAlone) {
-    for (const char* program : {"bonemill_lab", "haptic_server", "device_daemon"})
-        std::filesystem::remove(rig_.programFile(program));
-    const std::filesystem::path share = rig_.folder() / "share/bonemill";
-    const std::filesystem::path deploy = std::filesystem::read_symlink(share);
-    std::filesystem::remove(share);
-    std::filesystem::create_directory(share);
-    std::filesystem::create_directory_symlink(deploy / "bonemill.d", share / "bonemill.d");
-    expectRefusal(rig_.call({"start"}), "install the package bonemill");
-    expectRefusal(rig_.call({"replay", rig_.scene()}), "install the package bonemill");
-    const Finished list = rig_.call({"list"});
-    EXPECT_EQ(list.exit_code, 0) << list.err;
-    EXPECT_EQ(list.err, "");
-    Process viewer(rig_.words({"watch", "192.0.2.7", "--interface", "eth7"}));
-    EXPECT_TRUE(rig_.awaitStarts("render_client", 1)) << viewer.errSoFar();
-}
-
-TEST_F(Bonemill, ItsVersionIsThatOfItsPrograms) {
-    rig_.putProgram("render_client", "#!/bin/sh\necho \"render_client 1.2.3 ($1)\"\n");
-    EXPECT_EQ(rig_.call({"--version"}).out, "bonemill 1.2.3 (--version)\n");
 }
 
 TEST_F(Bonemill, WatchLooksAtAnotherPC) {

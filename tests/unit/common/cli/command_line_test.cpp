@@ -36,7 +36,7 @@ struct Mill {
 TEST(CommandLine, HelpSaysWhatAnOptionTakesOnce) {
     const std::string help = Mill().help({"go", "--help"});
     for (const char* line :
-         {"--way {left,right} ", "--port INT in [1 - 9] with --fast ", "--speed NUMBER=3 "})
+         {"--way {left,right} ", "--port INT in [1 - 9] with --fast\n", "--speed NUMBER=3 "})
         EXPECT_NE(help.find(line), std::string::npos) << line << "\n" << help;
     EXPECT_EQ(help.find("Excludes"), std::string::npos) << help;
 }

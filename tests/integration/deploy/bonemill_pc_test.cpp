@@ -1,0 +1,54 @@
+// What deploy/bonemill makes of the PC on which it is: its network, and what is installed there.
+#include <gtest/gtest.h>
+
+#include "tests/integration/deploy/bonemill_rig.h"
+
+namespace bonemill {
+namespace {
+
+using test::BonemillRig;
+using test::expectRefusal;
+using test::Finished;
+using test::Process;
+
+class BonemillPc : public testing::Test {
+  protected:
+    BonemillPc() { rig_.useStandIns(); }
+
+    BonemillRig rig_;
+};
+
+TEST_F(BonemillPc, EveryCommandThatReachesASessionTakesItsDomain) {
+    for (const char* command : {"start", "host", "watch", "invite", "replay", "doctor"}) {
+        expectRefusal(rig_.call({command, "--domain", "231"}), "--domain 231: give a number from 0 to 230");
+        const std::string help = rig_.call({command, "--help"}).out;
+        EXPECT_NE(help.find("--domain D"), std::string::npos) << command;
+    }
+    const std::string doctor = rig_.call({"doctor", "--interface", "lo", "--domain", "2"}).out;
+    EXPECT_NE(doctor.find("UDP 7900 to 8039"), std::string::npos) << doctor;
+}
+
+TEST_F(BonemillPc, APcThatOnlyWatchesNeedsTheViewerAlone) {
+    for (const char* program : {"bonemill_lab", "haptic_server", "device_daemon"})
+        std::filesystem::remove(rig_.programFile(program));
+    const std::filesystem::path share = rig_.folder() / "share/bonemill";
+    const std::filesystem::path deploy = std::filesystem::read_symlink(share);
+    std::filesystem::remove(share);
+    std::filesystem::create_directory(share);
+    std::filesystem::create_directory_symlink(deploy / "bonemill.d", share / "bonemill.d");
+    expectRefusal(rig_.call({"start"}), "install the package bonemill");
+    expectRefusal(rig_.call({"replay", rig_.scene()}), "install the package bonemill");
+    const Finished list = rig_.call({"list"});
+    EXPECT_EQ(list.exit_code, 0) << list.err;
+    EXPECT_EQ(list.err, "");
+    Process viewer(rig_.words({"watch", "192.0.2.7", "--interface", "eth7"}));
+    EXPECT_TRUE(rig_.awaitStarts("render_client", 1)) << viewer.errSoFar();
+}
+
+TEST_F(BonemillPc, ItsVersionIsThatOfItsPrograms) {
+    rig_.putProgram("render_client", "#!/bin/sh\necho \"render_client 1.2.3 ($1)\"\n");
+    EXPECT_EQ(rig_.call({"--version"}).out, "bonemill 1.2.3 (--version)\n");
+}
+
+}  // namespace
+}  // namespace bonemill
