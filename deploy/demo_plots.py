@@ -52,8 +52,27 @@ def data_block(name, rows):
     return f"${name} << END_OF_DATA\n" + "\n".join(lines) + "\nEND_OF_DATA\n"
 
 
-def plot_time_series(rows, title, path):
+TIME_AXIS = 'set xlabel "time, s"\n'
+TICK_PANEL = f"""{TIME_AXIS}set ylabel "tick, µs"
+set y2label "contacts"
+set y2tics
+set ytics nomirror
+set key top left
+plot $compute using 1:3 axes x1y2 with lines lc rgb "#c0a060" title "contacts", $compute using 1:2 with lines lc rgb "#2050a0" title "tick's own work"
+"""
+
+
+def rate_panel(rows):
     nominal = nominal_rate(rows)
+    return f"""
+set ylabel "rate, Hz"
+set yrange [0:{1.2 * nominal:g}]
+plot {nominal} with lines dt 2 lc rgb "#888888" title "nominal", $rate with steps lw 1.5 lc rgb "#2050a0" title "haptic rate, 100 ms windows"
+"""
+
+
+def plot_time_series(rows, title, path, live=True):
+    """Force and torque; what the machine did, rate and ticks, only of a live run."""
     force = [(r["t_s"], r["fx_n"], r["fy_n"], r["fz_n"], math.hypot(r["fx_n"], r["fy_n"], r["fz_n"])) for r in rows]
     torque = [
         (r["t_s"], *(1e3 * r[f"t{c}_nm"] for c in "xyz"), 1e3 * math.hypot(r["tx_nm"], r["ty_nm"], r["tz_nm"]))
@@ -71,29 +90,19 @@ def plot_time_series(rows, title, path):
         + data_block("torque", torque)
         + data_block("compute", compute)
         + f"""
-{terminal(path, 1200, 1300)}
-set multiplot layout 4,1 title "{title}" font ",14"
+{terminal(path, 1200, 1300 if live else 750)}
+set multiplot layout {4 if live else 2},1 title "{title}" font ",14"
 set lmargin 10
 set rmargin 10
 set grid lc rgb "#dddddd"
 set xrange [0:{max(r["t_s"] for r in rows):.3f}]
 set key top right horizontal
-set ylabel "rate, Hz"
-set yrange [0:{1.2 * nominal:g}]
-plot {nominal} with lines dt 2 lc rgb "#888888" title "nominal", $rate with steps lw 1.5 lc rgb "#2050a0" title "haptic rate, 100 ms windows"
-set yrange [*:*]
+{rate_panel(rows) if live else ""}set yrange [*:*]
 set ylabel "force on the hand, N"
 plot {(components + norm).replace("${block}", "$force")}
-set ylabel "torque on the hand, N·mm"
+{"" if live else TIME_AXIS}set ylabel "torque on the hand, N·mm"
 plot {(components + norm).replace("${block}", "$torque")}
-set ylabel "tick, µs"
-set y2label "contacts"
-set y2tics
-set ytics nomirror
-set xlabel "time, s"
-set key top left
-plot $compute using 1:3 axes x1y2 with lines lc rgb "#c0a060" title "contacts", $compute using 1:2 with lines lc rgb "#2050a0" title "tick's own work"
-"""
+{TICK_PANEL if live else ""}"""
     )
 
 

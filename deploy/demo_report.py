@@ -143,6 +143,7 @@ def collect_run(out, name):
         "real_time_remarks": real_time_remarks(out / "logs" / f"server_{name}.log"),
         "thesis_rate_hz": THESIS_RATE_HZ.get(name),
         "sound": sound.name if sound.exists() else None,
+        "leaning": read_json(out / "logs" / "leaning.json") if name == "corridor" else None,  # deploy/demo_leaning.py
     }
 
 
@@ -301,6 +302,19 @@ def run_section(run):
     return lines
 
 
+def leaning_section(told):
+    """Returns nothing where no hand leant."""
+    if told is None:
+        return []
+    return [
+        f"## {told['title']}", "", "![force and torque over time](plot_leaning.png)", "",
+        "![shaft orientation](orientation_leaning.png)", "",
+        f"The same way, without real time, with the shaft leaning by up to {told['most_degrees']}° and round once: it touches the "
+        f"bore's wall. Torque at most {1e3 * told['max_torque_nm']:.1f} N·mm, force {told['max_force_n']:.2f} N. "
+        "Every tick: [trace_leaning.csv](trace_leaning.csv).", "",
+    ]
+
+
 LIMITS = """- Hand and device are simulated: a hand impedance that follows waypoints and reacts to the force, on an emulated
   six-legged device whose dimensions are placeholders. No person felt this.
 - The thesis' runs were made by hand on other bone with a scaling factor of 3; the rates compare, the curves only in kind.
@@ -353,7 +367,7 @@ def write_markdown(out, report):
         "",
     ]
     for run in runs:
-        lines += run_section(run)
+        lines += run_section(run) + leaning_section(run["leaning"])
     lines += ["## What this does not show", "", LIMITS, ""]
     (out / "report.md").write_text("\n".join(lines))
 
