@@ -9,7 +9,6 @@ import argparse
 import json
 import math
 import pathlib
-import subprocess
 import sys
 
 import scene_way
@@ -46,17 +45,6 @@ def leaning(points):
     return leant
 
 
-def simulate(server, scene, trajectory, trace):
-    command = [server, "simulate", "--scene", scene, "--trajectory", trajectory, "--trace", trace]
-    try:
-        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
-    except OSError as error:
-        fail(f"{server}: {error.strerror}")
-    if done.returncode:
-        fail(done.stderr.strip())
-    return json.loads(done.stdout.splitlines()[-1])
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scene", type=pathlib.Path)
@@ -69,11 +57,13 @@ def main():
         text = options.scene.read_text()
         trajectory = out / "logs" / "leaning_way.csv"
         scene_way.write_trajectory(trajectory, leaning(scene_way.waypoints(text)), scene_way.rate_hz(text))
-        told = simulate(options.server, options.scene, trajectory, trace)
+        told = scene_way.simulate(options.server, options.scene, trajectory, trace)
         rows = read_trace(trace)
         plot_time_series(rows, TITLE, out / "plot_leaning.png", live=False)
         plot_orientation(rows, TITLE, out / "orientation_leaning.png")
         (out / "logs" / "leaning.json").write_text(json.dumps({**told, "title": TITLE, "most_degrees": MOST_DEGREES}) + "\n")
+    except scene_way.SimulateError as error:
+        fail(error)
     except OSError as error:
         fail(f"{error.filename}: {error.strerror}")
 

@@ -1,6 +1,8 @@
-"""The way of a scene's hand: its waypoints, and a trajectory for `haptic_server simulate` along them."""
+"""The way of a scene's hand: its waypoints, a trajectory for `haptic_server simulate` along them, and that run."""
+import json
 import math
 import re
+import subprocess
 
 FIELD = r"\b{}\s*:\s*(-?[\d.eE+-]+)"
 
@@ -57,3 +59,19 @@ def write_trajectory(path, points, rate_hz):
         place = [x + share * (y - x) for x, y in zip(p, p_next)]
         rows.append(",".join(f"{value:.17g}" for value in [t, *place, *slerp(q, q_next, share)]) + f",{buttons}")
     path.write_text("\n".join(rows) + "\n")
+
+
+class SimulateError(Exception):
+    """One line: why haptic_server did not run."""
+
+
+def simulate(server, scene, trajectory, trace, words=()):
+    """Runs `haptic_server simulate` with these words more; returns what it tells."""
+    command = [server, "simulate", "--scene", scene, "--trajectory", trajectory, "--trace", trace, *words]
+    try:
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
+    except OSError as error:
+        raise SimulateError(f"{server}: {error.strerror}; build haptic_server first") from error
+    if done.returncode:
+        raise SimulateError(done.stderr.strip().removeprefix("error: "))
+    return json.loads(done.stdout.splitlines()[-1])

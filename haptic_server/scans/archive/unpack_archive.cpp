@@ -4,8 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -16,6 +14,7 @@
 #include "common/base/user_error.h"
 #include "common/text/printed_text.h"
 #include "haptic_server/scans/archive/archive_words.h"
+#include "haptic_server/scans/archive/scan_endings.h"
 
 namespace bonemill {
 namespace {
@@ -23,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMaxNameBytes = 1024;
-constexpr std::array<const char*, 5> kEndings = {".zip", ".tar", ".tar.gz", ".tgz", ".tar.xz"};
 
 bool isZip(const fs::path& path) {
     char head[4] = {};
@@ -125,10 +123,7 @@ bool takeFiles(Incoming& from, UnpackedFiles& files) {
 bool isArchive(const fs::path& path) {
     std::error_code error;
     if (!fs::is_regular_file(path, error)) return false;  // nobody writes into a pipe
-    std::string name = path.filename().string();
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return std::ranges::any_of(kEndings, [&](const char* ending) { return name.ends_with(ending); }) ||
-           isZip(path);
+    return endsLike(path, kArchiveEndings) || isZip(path);
 }
 
 void unpackArchive(const fs::path& path, const fs::path& folder, const StartReader& start,

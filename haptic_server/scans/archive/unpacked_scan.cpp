@@ -5,13 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <chrono>
 #include <vector>
 
 #include "common/base/user_error.h"
 #include "common/text/printed_text.h"
+#include "haptic_server/scans/archive/scan_endings.h"
 #include "haptic_server/scans/archive/unpack_archive.h"
 
 namespace bonemill {
@@ -20,8 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kFolderName[] = "bonemill_scan_";
-constexpr std::array<const char*, 7> kVolumeEndings = {".nrrd", ".nhdr", ".nii", ".nii.gz",
-                                                       ".mha",  ".mhd",  ".inv3"};
 
 int lockOf(const fs::path& folder) {
     const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
@@ -61,16 +58,11 @@ fs::path newFolder() {
     return name;
 }
 
-bool isVolume(const fs::path& file) {
-    std::string name = file.filename().string();
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return std::ranges::any_of(kVolumeEndings, [&](const char* ending) { return name.ends_with(ending); });
-}
-
 std::vector<fs::path> volumesIn(const fs::path& folder) {
     std::vector<fs::path> volumes;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-        if (entry.is_regular_file() && isVolume(entry.path())) volumes.push_back(entry.path());
+        if (entry.is_regular_file() && endsLike(entry.path(), kVolumeEndings))
+            volumes.push_back(entry.path());
     std::ranges::sort(volumes);
     return volumes;
 }

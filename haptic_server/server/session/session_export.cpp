@@ -3,12 +3,12 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <chrono>
 #include <deque>
 #include <filesystem>
 #include <functional>
 #include <vector>
 
+#include "common/base/is_ready.h"
 #include "common/base/user_error.h"
 #include "common/files/whole_file.h"
 #include "common/text/foreign_text.h"
@@ -121,8 +121,7 @@ std::optional<Answer> SessionExport::begin(const std::string& name) {
 }
 
 std::optional<Answer> SessionExport::takeResult() {
-    using namespace std::chrono_literals;
-    if (!result_.valid() || result_.wait_for(0s) != std::future_status::ready) return std::nullopt;
+    if (!isReady(result_)) return std::nullopt;
     return result_.get();
 }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <thread>
 
+#include "common/base/is_ready.h"
 #include "common/base/units.h"
 #include "common/commands/command_text.h"
 #include "common/config/scene_geometry.h"
@@ -117,6 +118,11 @@ std::future<std::vector<NodeMesh>> meshingStructures(const Simulation& simulatio
     const bool are_there =
         std::ranges::any_of(effects.materials, [](const MaterialProperties& m) { return m.is_protected; });
     if (!effects.properties || !are_there) return {};
+    if (simulation.labelled)
+        return std::async(
+            std::launch::async, [labelled = simulation.labelled, materials = effects.materials] {
+                return meshStructures(labelled->properties, materials, labelled->spacing, 0, labelled->X_VL);
+            });
     return std::async(std::launch::async,
                       [properties = effects.properties, materials = effects.materials,
                        spacing = simulation.bone->volume.spacing(), grain = simulation.label_edge] {
@@ -290,8 +296,7 @@ std::vector<NodeMesh> ShowSession::takeStructures() {
 }
 
 void ShowSession::publishStructures() {
-    if (!structures_.valid() || structures_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-        return;
+    if (!isReady(structures_)) return;
     size_t triangles = 0;
     const std::vector<NodeMesh> meshes = takeStructures();
     for (const NodeMesh& mesh : meshes) {

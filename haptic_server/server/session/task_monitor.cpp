@@ -3,9 +3,9 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
+#include "common/base/is_ready.h"
 #include "common/base/units.h"
 #include "common/rt/clock.h"
 #include "haptic_server/assessment/product/judge.h"
@@ -48,8 +48,7 @@ TaskMonitor::~TaskMonitor() {
 }
 
 void TaskMonitor::round() {
-    using namespace std::chrono_literals;
-    if (judging_.valid() && judging_.wait_for(0s) == std::future_status::ready) finish();
+    if (isReady(judging_)) finish();
     const int64_t now_ns = monotonicNowNs();
     if (!tally_ || task_->feedback != TaskFeedback::kLive || now_ns < next_update_ns_) return;
     tally_->update();

@@ -1,7 +1,8 @@
 #include "render_client/apps/render_client/inviter.h"
 
-#include <chrono>
 #include <exception>
+
+#include "common/base/is_ready.h"
 
 namespace bonemill {
 
@@ -16,7 +17,7 @@ void Inviter::invite(const std::string& launcher, uint32_t session, const std::s
 }
 
 const Invitation& Inviter::invitation() {
-    if (made_.valid() && made_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) take();
+    if (isReady(made_)) take();
     return invitation_;
 }
 

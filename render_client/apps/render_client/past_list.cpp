@@ -2,22 +2,14 @@
 
 #include <spdlog/spdlog.h>
 
-#include <chrono>
 #include <exception>
 #include <utility>
 
+#include "common/base/is_ready.h"
 #include "common/files/whole_file.h"
 #include "common/process/run_captured.h"
 
 namespace bonemill {
-namespace {
-
-template <class Value>
-bool isReady(const std::future<Value>& future) {
-    return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-}
-
-}  // namespace
 
 void PastList::follow(const std::string& launcher, bool is_open, const SessionView& session) {
     if (launcher.empty()) return;

@@ -6,7 +6,6 @@
 // it. It belongs to the thread of the window.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <future>
@@ -16,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/is_ready.h"
 #include "common/geometry/node_mesh.h"
 #include "haptic_server/cases/casework/case_plan.h"
 #include "haptic_server/scans/dicom/series_table.h"
@@ -37,7 +37,7 @@ class Worker {
     bool isBusy() const { return future_.valid(); }
     // If the work is over, calls what it returned, or throws what it threw.
     void poll() {
-        if (!isBusy() || future_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+        if (!isReady(future_)) return;
         const Done done = std::exchange(future_, {}).get();
         if (done) done();
     }

@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+
+#include "haptic_server/scans/archive/scan_endings.h"
 
 namespace bonemill {
 namespace {
 
-constexpr std::array<const char*, 17> kEndings = {
-    ".nrrd", ".nhdr", ".nii",     ".nii.gz", ".mha", ".mhd",    ".inv3", ".dcm",   ".stl",
-    ".ply",  ".ima",  "dicomdir", ".zip",    ".tar", ".tar.gz", ".tgz",  ".tar.xz"};
+constexpr std::array<const char*, 5> kOtherEndings = {".dcm", ".stl", ".ply", ".ima", "dicomdir"};
 
-bool looksLikeScan(std::string name) {
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return std::ranges::any_of(kEndings, [&](const char* ending) { return name.ends_with(ending); });
+bool looksLikeScan(const std::string& name) {
+    return endsLike(name, kVolumeEndings) || endsLike(name, kArchiveEndings) || endsLike(name, kOtherEndings);
 }
 
 }  // namespace

@@ -239,15 +239,13 @@ size_t NodeStore::draw(const Program& program, const Eigen::Matrix4f& clip_from_
 }
 
 std::vector<const NodeStore::Node*> NodeStore::fromTheEye(const Eigen::Matrix4f& clip_from_V) const {
-    std::vector<std::pair<float, const Node*>> nodes;
+    std::vector<const Node*> nodes;
     nodes.reserve(nodes_.size());
-    for (const auto& [leaf, node] : nodes_)
-        nodes.emplace_back(clip_from_V.row(3).dot(node.box.center().homogeneous()), &node);
-    std::ranges::stable_sort(nodes, {}, [](const auto& node) { return node.first; });
-    std::vector<const Node*> sorted;
-    sorted.reserve(nodes.size());
-    for (const auto& [depth, node] : nodes) sorted.push_back(node);
-    return sorted;
+    for (const auto& [leaf, node] : nodes_) nodes.push_back(&node);
+    std::ranges::stable_sort(nodes, {}, [&](const Node* node) {
+        return clip_from_V.row(3).dot(node->box.center().homogeneous());
+    });
+    return nodes;
 }
 
 // Parts that lie side by side in the buffer are drawn at once.

@@ -203,9 +203,7 @@ void BonePainter::shade(const Place& place, const Look& look) {
     gl_.Disable(GL_DEPTH_TEST);
     gl_.Enable(GL_BLEND);
     gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    gl_.BindVertexArray(no_attributes_.name());
-    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
-    gl_.BindVertexArray(0);
+    drawFullScreen();
     gl_.Disable(GL_BLEND);
     gl_.Enable(GL_DEPTH_TEST);
 }
@@ -309,10 +307,14 @@ void BonePainter::drawCap(const Place& place, float opacity) const {
     cap.set("grain_size", float(kGrain) * frame.bone_radius);
     cap.set("opacity", opacity);
     if (faces_) faces_->setUniforms();
+    drawFullScreen();
+    gl_.Disable(GL_STENCIL_TEST);
+}
+
+void BonePainter::drawFullScreen() const {
     gl_.BindVertexArray(no_attributes_.name());
     gl_.DrawArrays(GL_TRIANGLES, 0, 3);
     gl_.BindVertexArray(0);
-    gl_.Disable(GL_STENCIL_TEST);
 }
 
 }  // namespace bonemill

@@ -126,6 +126,7 @@ class BonePainter {
     void markOpened(const Place& place) const;
     void beginMarking() const;
     void drawCap(const Place& place, float opacity) const;
+    void drawFullScreen() const;
 
     const GlApi& gl_;
     Program depth_, surface_, cap_;

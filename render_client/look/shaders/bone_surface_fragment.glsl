@@ -1,4 +1,4 @@
-// What the bone's surface has in a pixel (bone_surface.glsl). It is shaded afterwards: small triangles are many, and a
+// What the bone's surface has in a pixel ; bone_shade_fragment.glsl shades it afterwards. Small triangles are many, and a
 // processor that draws shades a block of pixels for each.
 #include "octahedral.glsl"
 in vec3 p_C;
