@@ -22,10 +22,13 @@ void writeScan(const std::string& file, const std::string& labels_file, const Ra
     if (!labels_file.empty()) write<uint8_t>(labels_file, ct.geometry, labels);
 }
 
-void makeVertebra(const VertebraArguments& arguments) {
-    requireApart({{"--out", arguments.file}, {"--labels", arguments.labels}}, {});
-    const VertebraScan scan = scanVertebra(vertebraGrid(arguments.voxel_mm * kMillimetre));
-    writeScan(arguments.file, arguments.labels, scan.ct, scan.labels);
+VertebraKind kindOf(const VertebraArguments& arguments) {
+    using enum VertebraKind::Pedicles;
+    VertebraKind kind;
+    kind.seed = arguments.seed;
+    kind.is_porous = arguments.bone == "porous";
+    if (arguments.pedicles != "wide") kind.pedicles = arguments.pedicles == "middle" ? kMiddle : kNarrow;
+    return kind;
 }
 
 TemporalBoneKind kindOf(const TemporalArguments& arguments) {
@@ -51,9 +54,8 @@ ThirdMolarKind kindOf(const MolarArguments& arguments) {
     return kind;
 }
 
-// A phantom of a left or a right side.
 template <class Phantom, class Arguments>
-void makeSided(const Arguments& arguments) {
+void makeScan(const Arguments& arguments) {
     requireApart({{"--out", arguments.file}, {"--labels", arguments.labels}}, {});
     const Phantom phantom(kindOf(arguments));
     const auto scan = phantom.scan(phantom.grid(arguments.voxel_mm * kMillimetre));
@@ -71,15 +73,19 @@ void makeSkullLabels(const SkullArguments& arguments) {
     write<uint8_t>(arguments.file, geometry, skullLabels(geometry));
 }
 
+void addChoice(CLI::App& command, const char* name, std::string& value,
+               const std::vector<std::string>& choices, const char* help) {
+    command.add_option(name, value, help)->check(CLI::IsMember(choices))->capture_default_str();
+}
+
 void addVertebra(CLI::App& vertebra, VertebraArguments& arguments) {
     vertebra.add_option("--out", arguments.file, "NRRD file to write")->required();
     vertebra.add_option("--labels", arguments.labels, "NRRD file to write the tissues to, on the same grid");
     addNumber(vertebra, "--voxel-mm", arguments.voxel_mm, 0.2, 2, "edge of a voxel");
-}
-
-void addChoice(CLI::App& command, const char* name, std::string& value,
-               const std::vector<std::string>& choices, const char* help) {
-    command.add_option(name, value, help)->check(CLI::IsMember(choices))->capture_default_str();
+    addSeed(vertebra, arguments.seed, "another seed is another vertebra; 0 has the sizes of the tables");
+    addChoice(vertebra, "--pedicles", arguments.pedicles, {"wide", "middle", "narrow"}, "10, 7.5 or 6 mm");
+    addChoice(vertebra, "--bone", arguments.bone, {"firm", "porous"},
+              "thickness of the shell, density of the core");
 }
 
 void addTemporalBone(CLI::App& bone, TemporalArguments& arguments) {
@@ -118,14 +124,14 @@ void addSkullLabels(CLI::App& skull, SkullArguments& arguments) {
 
 void addAnatomicPhantoms(CLI::App& app, AnatomicArguments& arguments) {
     addVertebra(addPhantom(app, "vertebra", "lumbar vertebra with nerves and vessels as NRRD, HU",
-                           makeVertebra, arguments.vertebra),
+                           makeScan<Vertebra, VertebraArguments>, arguments.vertebra),
                 arguments.vertebra);
     addTemporalBone(addPhantom(app, "temporal_bone", "mastoid with air cells and what lies in it as NRRD, HU",
-                               makeSided<TemporalBone, TemporalArguments>, arguments.temporal_bone),
+                               makeScan<TemporalBone, TemporalArguments>, arguments.temporal_bone),
                     arguments.temporal_bone);
     addThirdMolar(
         addPhantom(app, "third_molar", "piece of lower jaw with an impacted third molar as NRRD, HU",
-                   makeSided<ThirdMolar, MolarArguments>, arguments.third_molar),
+                   makeScan<ThirdMolar, MolarArguments>, arguments.third_molar),
         arguments.third_molar);
     addSkullLabels(addPhantom(app, "skull_labels", "structures to spare in the left mastoid of Cranium.inv3",
                               makeSkullLabels, arguments.skull),

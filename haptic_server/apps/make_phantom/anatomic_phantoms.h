@@ -11,6 +11,8 @@ namespace bonemill {
 struct VertebraArguments {
     std::string file, labels;
     double voxel_mm = 0.4;
+    uint64_t seed = 0;
+    std::string pedicles = "wide", bone = "firm";
 };
 
 struct TemporalArguments {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <span>
 
 #include "common/base/units.h"
@@ -30,28 +31,13 @@ double superellipse(const Vector2d& p, const Vector2d& half_axes) {
     return (size - 1) / gradient.matrix().norm();
 }
 
-// A limb has an elliptic cross-section from a to b: half axes (level, upright) at both ends, ends rounded.
-struct Limb {
-    Vector3d a, b;
-    Vector2d half_axes_a, half_axes_b;
-
-    double distance(const Vector3d& p) const {
-        const Vector3d along = (b - a).normalized(), level = along.cross(Vector3d::UnitZ()).normalized(),
-                       upright = level.cross(along);
-        const double length = (b - a).norm(), s = (p - a).dot(along), inside = std::clamp(s, 0.0, length);
-        const Vector2d half = half_axes_a + (half_axes_b - half_axes_a) * (inside / length);
-        const Vector3d local((p - a).dot(level), (p - a).dot(upright), s - inside);
-        return ellipsoidal<Vector3d>(local, {half.x(), half.y(), half.minCoeff()});
-    }
-};
-
 constexpr double kBodyHalfHeight = 14.5;
 
-double body(const Vector3d& p) {
+double body(const Vector3d& p, double half_width) {
     const double up = std::min(std::abs(p.z()) / kBodyHalfHeight, 1.0);
-    const Vector2d half_axes = Vector2d(22.5, 17) * (0.91 + 0.09 * up * up);  // a waist
+    const Vector2d half_axes = Vector2d(half_width, 17) * (0.91 + 0.09 * up * up);  // a waist
     const double side = superellipse(p.head<2>(), half_axes);
-    const double off_axis = std::min(p.head<2>().cwiseQuotient(Vector2d(22.5, 17)).squaredNorm(), 1.0);
+    const double off_axis = std::min(p.head<2>().cwiseQuotient(Vector2d(half_width, 17)).squaredNorm(), 1.0);
     const double end_plate = std::abs(p.z()) - (kBodyHalfHeight - 1.5 * (1 - off_axis));  // hollow
     return -blend(-side, -end_plate, 2);
 }
@@ -62,43 +48,103 @@ double canal(const Vector3d& p) {
     return ellipsoidal<Vector2d>(p.head<2>() - kCanalMiddle, kCanalHalfAxes);
 }
 
-// It makes both sides at once: the vertebra is symmetric about x = 0.
-double arch(const Vector3d& p) {
-    static const Limb kPedicle{{14.4, 9, 4.5}, {18.4, 31, 4.5}, {5, 7.25}, {5, 7.25}};
-    static const Limb kLamina{{18, 30, 2.5}, {1, 36.2, -5}, {3.2, 6.5}, {3.2, 10}};
-    static const Limb kSuperiorProcess{{18, 30.5, 4}, {20.5, 29.5, 18}, {4.5, 4.5}, {4.5, 5.5}};
-    static const Limb kInferiorProcess{{13.5, 34.5, -4}, {12.5, 36.5, -21}, {4.5, 4.5}, {4.5, 5}};
-    static const Limb kTransverseProcess{{20, 28, 4}, {45.2, 32, 6}, {3, 6}, {2.3, 4}};
-    static const Limb kSpinousProcess{{0, 37, -4}, {0, 66, -8}, {3.2, 9}, {3.5, 8}};
-    constexpr double kFillet = 3;
-    const Vector3d q(std::abs(p.x()), p.y(), p.z());
-    double shape = blend(kPedicle.distance(q), kLamina.distance(q), kFillet);
-    shape = blend(shape, kSuperiorProcess.distance(q), kFillet);
-    shape = blend(shape, kInferiorProcess.distance(q), kFillet);
-    shape = blend(shape, kTransverseProcess.distance(q), kFillet);
-    return blend(shape, kSpinousProcess.distance(q), kFillet);
-}
-
-double bone(const Vector3d& p) {
-    return roundedCut(blend(body(p), arch(p), 3), canal(p), 1);
-}
-
 // The shell is thin on the body and thick on the arch.
 double onArch(const Vector3d& p) {
     return smoothStep(12, 22, p.y());
 }
-double shell(const Vector3d& p) {
-    return 0.8 + 0.7 * onArch(p);
-}
-double corticalHu(const Vector3d& p) {
-    return 1350 + 400 * onArch(p);
-}
 
-// The marrow spaces are a little over a millimetre wide.
-double trabecularHu(const Vector3d& p) {
-    constexpr double kLattice = 1.2;
-    return kTrabecularLowHu + (kTrabecularHighHu - kTrabecularLowHu) * smoothNoise(p, kLattice);
-}
+}  // namespace
+
+// Makes the bone, both sides at once: but for its texture it is symmetric about x = 0.
+class VertebraShapes {
+  public:
+    explicit VertebraShapes(const VertebraKind& kind) : VertebraShapes(Measures(kind)) {}
+
+    double bone(const Vector3d& p) const {
+        return roundedCut(blend(body(p, is_.body_half_width), arch(p), 3), canal(p), 1);
+    }
+    double shell(const Vector3d& p) const { return is_.shell * (0.8 + 0.7 * onArch(p)); }
+    double corticalHu(const Vector3d& p) const { return 1350 + 400 * onArch(p); }
+    // The marrow spaces are a little over a millimetre wide.
+    double trabecularHu(const Vector3d& p) const {
+        constexpr double kLattice = 1.2;
+        return is_.core * (kTrabecularLowHu +
+                           (kTrabecularHighHu - kTrabecularLowHu) * smoothNoise(p + is_.texture, kLattice));
+    }
+
+  private:
+    // A limb has an elliptic cross-section from a to b: half axes (level, upright) at both ends, ends
+    // rounded.
+    struct Limb {
+        Vector3d a, b;
+        Vector2d half_axes_a, half_axes_b;
+
+        double distance(const Vector3d& p) const {
+            const Vector3d along = (b - a).normalized(), level = along.cross(Vector3d::UnitZ()).normalized(),
+                           upright = level.cross(along);
+            const double length = (b - a).norm(), s = (p - a).dot(along), inside = std::clamp(s, 0.0, length);
+            const Vector2d half = half_axes_a + (half_axes_b - half_axes_a) * (inside / length);
+            const Vector3d local((p - a).dot(level), (p - a).dot(upright), s - inside);
+            return ellipsoidal<Vector3d>(local, {half.x(), half.y(), half.minCoeff()});
+        }
+    };
+
+    // What differs from one vertebra to the next.
+    struct Measures {
+        explicit Measures(const VertebraKind& kind) : seed_(kind.seed) {
+            using enum VertebraKind::Pedicles;
+            pedicle_half_width = 5;
+            if (kind.pedicles != kWide) pedicle_half_width = kind.pedicles == kMiddle ? 3.75 : 3;
+            pedicle_half_width *= 1 + varied(0.04);
+            pedicle_half_height = 7.25 * (1 + varied(0.06));
+            body_half_width = 22.5 * (1 + varied(0.05));
+            lamina = 1 + varied(0.08);
+            for (Vector3d* moved : {&transverse_end, &spinous_end, &superior_end, &inferior_end})
+                *moved = {varied(1.5), varied(1.5), varied(2)};
+            spinous_end.x() = 0;  // There is only one.
+            texture = {varied(1e3), varied(1e3), varied(1e3)};
+            if (kind.is_porous) shell = core = 0.65;
+        }
+
+        double pedicle_half_width, pedicle_half_height, body_half_width, lamina;
+        Vector3d transverse_end, spinous_end, superior_end, inferior_end, texture;
+        double shell = 1, core = 1;
+
+      private:
+        // Even between -spread and spread.
+        double varied(double spread) {
+            return seed_ == 0 ? 0 : spread * (2 * unitOf(splitMix64(seed_ * 64 + next_++)) - 1);
+        }
+        uint64_t seed_, next_ = 0;
+    };
+
+    explicit VertebraShapes(const Measures& is) : is_(is) {}
+
+    double arch(const Vector3d& p) const {
+        constexpr double kFillet = 3;
+        const Vector3d q(std::abs(p.x()), p.y(), p.z());
+        double shape = blend(pedicle_.distance(q), lamina_.distance(q), kFillet);
+        shape = blend(shape, superior_process_.distance(q), kFillet);
+        shape = blend(shape, inferior_process_.distance(q), kFillet);
+        shape = blend(shape, transverse_process_.distance(q), kFillet);
+        return blend(shape, spinous_process_.distance(q), kFillet);
+    }
+
+    Measures is_;
+    Limb pedicle_{{14.4, 9, 4.5},
+                  {18.4, 31, 4.5},
+                  {is_.pedicle_half_width, is_.pedicle_half_height},
+                  {is_.pedicle_half_width, is_.pedicle_half_height}};
+    Limb lamina_{{18, 30, 2.5}, {1, 36.2, -5}, {3.2 * is_.lamina, 6.5}, {3.2 * is_.lamina, 10}};
+    Limb superior_process_{
+        {18, 30.5, 4}, Vector3d(20.5, 29.5, 18) + is_.superior_end, {4.5, 4.5}, {4.5, 5.5}};
+    Limb inferior_process_{
+        {13.5, 34.5, -4}, Vector3d(12.5, 36.5, -21) + is_.inferior_end, {4.5, 4.5}, {4.5, 5}};
+    Limb transverse_process_{{20, 28, 4}, Vector3d(45.2, 32, 6) + is_.transverse_end, {3, 6}, {2.3, 4}};
+    Limb spinous_process_{{0, 37, -4}, Vector3d(0, 66, -8) + is_.spinous_end, {3.2, 9}, {3.5, 8}};
+};
+
+namespace {
 
 // Makes what lies around the bone.
 class SoftParts {
@@ -134,27 +180,29 @@ struct Voxel {
     VertebraTissue tissue;
 };
 
-Voxel voxelAt(const Vector3d& p, double depth, double blur, const SoftParts& soft) {
+Voxel voxelAt(const VertebraShapes& shapes, const Vector3d& p, double depth, double blur,
+              const SoftParts& soft) {
     const double share = softStep(depth, blur);
     const VertebraTissue around = share < 1 ? soft.at(p) : VertebraTissue::kFat;
     const double around_hu = around == VertebraTissue::kFat ? kFatHu : kSoftHu;
     if (share <= 0) return {float(around_hu), around};
-    const double core = softStep(depth - shell(p), blur);
-    const double bone_hu = (1 - core) * corticalHu(p) + (core > 0 ? core * trabecularHu(p) : 0);
+    const double core = softStep(depth - shapes.shell(p), blur);
+    const double bone_hu = (1 - core) * shapes.corticalHu(p) + (core > 0 ? core * shapes.trabecularHu(p) : 0);
     const double hu = std::round(around_hu + share * (bone_hu - around_hu));
     if (hu < kBoneHu) return {float(hu), around};
-    return {float(hu), depth < shell(p) ? VertebraTissue::kCortical : VertebraTissue::kTrabecular};
+    return {float(hu), depth < shapes.shell(p) ? VertebraTissue::kCortical : VertebraTissue::kTrabecular};
 }
 
 // Cubes of voxels that the bone's surface surely does not come near need no distance per voxel.
 class DepthMap {
   public:
-    DepthMap(const VolumeGeometry& geometry) : geometry_(geometry) {
+    DepthMap(const VertebraShapes& shapes, const VolumeGeometry& geometry)
+        : shapes_(shapes), geometry_(geometry) {
         const Eigen::Array3i cubes = (geometry.dims.array() + kEdge - 1) / kEdge;
         const double reach = kMargin * (geometry.spacing * kEdge / 2).norm() * kPerMillimetre;
         forEachIndex({Eigen::Vector3i::Zero(), cubes - 1}, [&](const Eigen::Vector3i& cube) {
             const Vector3d middle = cube.cast<double>().array() * kEdge + (kEdge - 1) / 2.0;
-            is_far_.push_back(-bone(pointOf(middle)) < -reach - kFar);
+            is_far_.push_back(-shapes.bone(pointOf(middle)) < -reach - kFar);
         });
         cubes_ = cubes;
     }
@@ -163,7 +211,7 @@ class DepthMap {
     }
     double depth(int i, int j, int k, const Vector3d& p) const {
         const int cube = i / kEdge + cubes_.x() * (j / kEdge + cubes_.y() * (k / kEdge));
-        return is_far_[size_t(cube)] ? -kFar : -bone(p);
+        return is_far_[size_t(cube)] ? -kFar : -shapes_.bone(p);
     }
 
   private:
@@ -171,6 +219,7 @@ class DepthMap {
     static constexpr double kMargin = 1.5;  // how much faster than distance bone() may change
     static constexpr double kFar = 3;
 
+    const VertebraShapes& shapes_;
     VolumeGeometry geometry_;
     Eigen::Array3i cubes_;
     std::vector<bool> is_far_;
@@ -178,15 +227,18 @@ class DepthMap {
 
 }  // namespace
 
-double vertebraDistance(const Vector3d& p_W) noexcept {
-    return bone(p_W * kPerMillimetre) / kPerMillimetre;
+Vertebra::Vertebra(const VertebraKind& kind) : shapes_(std::make_unique<VertebraShapes>(kind)) {}
+Vertebra::~Vertebra() = default;
+
+double Vertebra::distance(const Vector3d& p_W) const noexcept {
+    return shapes_->bone(p_W * kPerMillimetre) / kPerMillimetre;
 }
 
-double corticalThickness(const Vector3d& p_W) noexcept {
-    return shell(p_W * kPerMillimetre) / kPerMillimetre;
+double Vertebra::corticalThickness(const Vector3d& p_W) const noexcept {
+    return shapes_->shell(p_W * kPerMillimetre) / kPerMillimetre;
 }
 
-VolumeGeometry vertebraGrid(double voxel_size) {
+VolumeGeometry Vertebra::grid(double voxel_size) const {
     const Vector3d low = Vector3d(-50, -38, -28) * kMillimetre, high = Vector3d(50, 72, 27) * kMillimetre;
     VolumeGeometry geometry;
     geometry.dims = ((high - low) / voxel_size).array().ceil().cast<int>() + 1;
@@ -195,14 +247,14 @@ VolumeGeometry vertebraGrid(double voxel_size) {
     return geometry;
 }
 
-VertebraScan scanVertebra(const VolumeGeometry& geometry) {
+VertebraScan Vertebra::scan(const VolumeGeometry& geometry) const {
     VertebraScan scan;
     scan.ct.geometry = geometry;
     scan.ct.is_hounsfield = true;
     scan.ct.description = "vertebra phantom";
     scan.ct.values.reserve(geometry.voxelCount());
     scan.labels.reserve(geometry.voxelCount());
-    const DepthMap map(geometry);
+    const DepthMap map(*shapes_, geometry);
     const SoftParts soft;
     const double blur = kVertebraBlurVoxels * geometry.spacing.maxCoeff() * kPerMillimetre;
     std::vector<float> row;
@@ -211,7 +263,7 @@ VertebraScan scanVertebra(const VolumeGeometry& geometry) {
             row.clear();
             for (int i = 0; i < geometry.dims.x(); ++i) {
                 const Vector3d p = map.pointOf(Vector3d(i, j, k));
-                const Voxel voxel = voxelAt(p, map.depth(i, j, k, p), blur, soft);
+                const Voxel voxel = voxelAt(*shapes_, p, map.depth(i, j, k, p), blur, soft);
                 row.push_back(voxel.hu);
                 scan.labels.push_back(uint8_t(voxel.tissue));
             }

@@ -1,6 +1,7 @@
 // deploy/make-training-bone: bones of either side and any difficulty, and hands that spare what is in them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <set>
 
@@ -122,6 +123,34 @@ TEST_F(MakeTrainingBone, PlansAHandForEachThirdMolar) {
         EXPECT_GT(nearest_mm(hand, 1.5, structuresOf(labels, {1})), 1) << "nerve";
         EXPECT_GT(nearest_mm(hand, 1.5, structuresOf(labels, {5, 6})), 0.1) << "second molar, lingual plate";
         EXPECT_GT(nearest_mm(hand, 1.5, structuresOf(labels, {2, 3, 4})), -0.5) << "crown";
+    }
+}
+
+// The labels of the vertebra: 1 shell, 2 core, 3 dural sac, 4 left root, 5 right root, 6 vessel.
+TEST_F(MakeTrainingBone, APedicleIsNarrowerAndUnguardedWhereItIsHarder) {
+    double bone_beside = std::numeric_limits<double>::infinity();
+    for (const Case& each :
+         {Case{"2", "left", "easy", "pedicle", "pedicle"}, Case{"3", "left", "middle", "pedicle", "pedicle"},
+          Case{"4", "right", "hard", "pedicle", "pedicle"}}) {
+        SCOPED_TRACE(nameOf(each));
+        const test::Finished made = make(each);
+        ASSERT_EQ(made.exit_code, 0) << made.err;
+        const scene::Scene scene = loadScene(folder_ / (nameOf(each) + ".textproto")).scene;
+        EXPECT_EQ(scene.effects().has_virtual_fixture(), each.difficulty == "easy");
+        const std::string root = each.side + " nerve root";
+        EXPECT_TRUE(std::ranges::any_of(scene.assessment().gate(), [&](const auto& gate) {
+            return gate.figure() == "structure.lost_volume:" + root;
+        }));
+        const std::string labels = folder_ / (nameOf(each) + "_labels.nrrd");
+        const scene::SimulatedOperator& hand = scene.simulated_operator();
+        EXPECT_GT(nearest_mm(hand, 2, structuresOf(labels, {3, 4, 5, 6})), 1);
+        // How much bone is beside the corridor, where the pedicle is narrowest.
+        const double side = each.side == "left" ? 1 : -1;
+        double bone = 0;
+        for (const Vector3d& p : structuresOf(labels, {1, 2}))
+            bone += std::abs(p.y() - 20) < 0.3 && std::abs(p.z() - 4.5) < 0.3 && side * p.x() > 8;
+        EXPECT_LT(bone, 0.85 * bone_beside);
+        bone_beside = bone;
     }
 }
 

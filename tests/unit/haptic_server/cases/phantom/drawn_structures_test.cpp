@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 using enum TemporalTissue;
 
 constexpr double kDrawnVoxel = 0.2e-3;  // m, as the shipped scene's
-constexpr double kMostError = 0.06;     // docs/measurements.md: 5 % are lost today, where 3 % are allowed
+constexpr double kMostError = 0.03;
 
 VolumeGeometry gridOfBox(const Eigen::AlignedBox3d& box, double voxel) {
     VolumeGeometry geometry;

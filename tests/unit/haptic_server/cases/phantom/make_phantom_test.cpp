@@ -132,7 +132,8 @@ TEST(MakePhantom, vertebraAndLabelsLieOnOneGrid) {
     const Outcome outcome = runMakePhantom("vertebra --voxel-mm 2 --out " + (folder / "v.nrrd") +
                                            " --labels " + (folder / "l.nrrd"));
     ASSERT_EQ(outcome.code, 0) << outcome.output;
-    const VertebraScan scan = scanVertebra(vertebraGrid(2e-3));
+    const Vertebra vertebra;
+    const VertebraScan scan = vertebra.scan(vertebra.grid(2e-3));
     const RawVolume ct = importVolume(folder / "v.nrrd"), labels = importVolume(folder / "l.nrrd");
     EXPECT_EQ(ct.values, scan.ct.values);
     EXPECT_EQ(ct.geometry.dims, labels.geometry.dims);

@@ -14,21 +14,28 @@ namespace {
 
 using Eigen::Vector3d;
 
-double distance_mm(double x_mm, double y_mm, double z_mm) {
-    return vertebraDistance(Vector3d(x_mm, y_mm, z_mm) / 1000) * 1000;
+const Vertebra& ofTheTables() {
+    static const Vertebra vertebra;
+    return vertebra;
+}
+
+double distance_mm(double x_mm, double y_mm, double z_mm, const Vertebra& vertebra = ofTheTables()) {
+    return vertebra.distance(Vector3d(x_mm, y_mm, z_mm) / 1000) * 1000;
 }
 
 // Returns how far one may go from a point in the bone, or in the open, before the surface.
-double reach_mm(const Vector3d& from_mm, const Vector3d& direction) {
-    const bool starts_inside = distance_mm(from_mm.x(), from_mm.y(), from_mm.z()) < 0;
+double reach_mm(const Vector3d& from_mm, const Vector3d& direction,
+                const Vertebra& vertebra = ofTheTables()) {
+    const bool starts_inside = distance_mm(from_mm.x(), from_mm.y(), from_mm.z(), vertebra) < 0;
     for (double s = 0; s < 100; s += 0.01) {
         const Vector3d p = from_mm + s * direction;
-        if ((distance_mm(p.x(), p.y(), p.z()) < 0) != starts_inside) return s;
+        if ((distance_mm(p.x(), p.y(), p.z(), vertebra) < 0) != starts_inside) return s;
     }
     return INFINITY;
 }
-double width_mm(const Vector3d& middle_mm, const Vector3d& direction) {
-    return reach_mm(middle_mm, direction) + reach_mm(middle_mm, -direction);
+double width_mm(const Vector3d& middle_mm, const Vector3d& direction,
+                const Vertebra& vertebra = ofTheTables()) {
+    return reach_mm(middle_mm, direction, vertebra) + reach_mm(middle_mm, -direction, vertebra);
 }
 
 const Vector3d kLeft = Vector3d::UnitX(), kBack = Vector3d::UnitY(), kUp = Vector3d::UnitZ();
@@ -58,6 +65,33 @@ TEST(VertebraPhantom, ThePedicleIsAsWideAsTheTablesSay) {
     EXPECT_NEAR(width_mm(kPedicle_mm, kUp), 14.5, 0.5);
 }
 
+TEST(VertebraPhantom, NarrowPediclesAreNarrowAndNoTwoSeedsAlike) {
+    using enum VertebraKind::Pedicles;
+    const Vector3d across = Vector3d(22, -4, 0).normalized();
+    for (const auto& [pedicles, width] : {std::pair(kWide, 10.0), {kMiddle, 7.5}, {kNarrow, 6.0}})
+        for (const uint64_t seed : {3, 4}) {
+            const Vertebra vertebra({pedicles, false, seed});
+            const double its = width_mm(kPedicle_mm, across, vertebra);
+            EXPECT_NEAR(its, width, 0.07 * width) << "seed " << seed;
+            EXPECT_NEAR(width_mm(kPedicle_mm.cwiseProduct(Vector3d(-1, 1, 1)),
+                                 across.cwiseProduct(Vector3d(-1, 1, 1)), vertebra),
+                        its, 1e-9);
+        }
+    const Vertebra one({kWide, false, 3}), other({kWide, false, 4});
+    EXPECT_GT(std::abs(width_mm({0, 0, 12}, kLeft, one) - width_mm({0, 0, 12}, kLeft, other)), 0.05);
+}
+
+TEST(VertebraPhantom, APorousOneIsThinAndSoft) {
+    const Vertebra firm, porous({VertebraKind::Pedicles::kWide, true, 0});
+    const Vector3d middle(0, 0, 0);
+    EXPECT_NEAR(porous.corticalThickness(middle), 0.65 * firm.corticalThickness(middle), 1e-12);
+    VolumeGeometry part = firm.grid(1e-3);
+    part.dims = {8, 8, 8};
+    part.X_WV.position = Vector3d(-4, -4, -4) * 1e-3;  // in the core
+    const VertebraScan a = firm.scan(part), b = porous.scan(part);
+    for (size_t n = 0; n < a.labels.size(); ++n) EXPECT_NEAR(b.ct.values[n], 0.65 * a.ct.values[n], 1) << n;
+}
+
 // The shell's thickness rests on it.
 TEST(VertebraPhantom, NearTheSurfaceTheDistanceIsOne) {
     std::mt19937 random(3);
@@ -85,7 +119,7 @@ TEST(VertebraPhantom, NearTheSurfaceTheDistanceIsOne) {
 
 class ScannedVertebra : public testing::Test {
   protected:
-    static void SetUpTestSuite() { scan_ = new VertebraScan(scanVertebra(vertebraGrid(0.7e-3))); }
+    static void SetUpTestSuite() { scan_ = new VertebraScan(ofTheTables().scan(ofTheTables().grid(0.7e-3))); }
     static void TearDownTestSuite() { delete scan_; }
 
     static VertebraTissue tissue(size_t n) { return VertebraTissue(scan_->labels[n]); }
@@ -144,7 +178,7 @@ TEST_F(ScannedVertebra, ShellIsDenseAndCoreIsNot) {
     double shell_peak = 0, core_low = 1e9, core_high = 0;
     forEach(VertebraTissue::kTrabecular, [&](size_t n) {
         const Vector3d p = point_mm(n) / 1000;
-        if (-vertebraDistance(p) < corticalThickness(p) + 1.2e-3) return;
+        if (-ofTheTables().distance(p) < ofTheTables().corticalThickness(p) + 1.2e-3) return;
         core_low = std::min(core_low, double(scan_->ct.values[n]));
         core_high = std::max(core_high, double(scan_->ct.values[n]));
     });
@@ -185,10 +219,10 @@ TEST_F(ScannedVertebra, SacIsInTheCanalAndVesselsInFront) {
 }
 
 TEST(VertebraPhantomScan, IsRepeatable) {
-    VolumeGeometry part = vertebraGrid(1e-3);
+    VolumeGeometry part = ofTheTables().grid(1e-3);
     part.dims = {20, 20, 20};
     part.X_WV.position = Vector3d(8, 12, -6) * 1e-3;
-    const VertebraScan a = scanVertebra(part), b = scanVertebra(part);
+    const VertebraScan a = ofTheTables().scan(part), b = Vertebra().scan(part);
     EXPECT_EQ(a.ct.values, b.ct.values);
     EXPECT_EQ(a.labels, b.labels);
 }
