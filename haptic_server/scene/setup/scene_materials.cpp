@@ -114,6 +114,28 @@ std::string textOf(const ResampledLabels& labels, const VolumeGeometry& file, co
     return text.str();
 }
 
+// Labels of a region's scan go on beyond it.
+std::shared_ptr<const LabelledStructures> labelledStructures(const LoadedScene& loaded,
+                                                             const RawVolume& labels,
+                                                             const std::vector<MaterialRule>& rules,
+                                                             const Pose& X_VW) {
+    const auto is_protected = [&](MaterialId id) {
+        return id != kNoMaterial && loaded.scene.material(id - 1).is_protected();
+    };
+    if (!loaded.scene.volume().has_region() ||
+        std::ranges::none_of(loaded.scene.material(), [](const auto& m) { return m.is_protected(); }))
+        return nullptr;
+    const std::vector<MaterialId> ids =
+        resampleLabels(labels, rules, labels.geometry, loaded.scene.volume().label_path()).ids;
+    const VoxelVolume empty(labels.geometry, kMaxDensity);
+    BoneProperties properties(empty, [&](const Eigen::Vector3i& v) {
+        const MaterialId id = ids[placeIn(labels.geometry.dims, v)];
+        return is_protected(id) ? id : kNoMaterial;
+    });
+    return std::make_shared<const LabelledStructures>(
+        LabelledStructures{std::move(properties), labels.geometry.spacing, X_VW * labels.geometry.X_WV});
+}
+
 }  // namespace
 
 Burr burrOf(const scene::Tool& tool) {
@@ -209,6 +231,7 @@ ScannedMaterials scannedMaterialsOf(const LoadedScene& loaded, const RawVolume& 
         ResampledLabels labels = resampleLabels(file, rules, raw.geometry, label_path);
         if (!labels.is_exact) remarks.push_back(textOf(labels, file.geometry, label_path));
         materials.label_edge = file.geometry.spacing.minCoeff();
+        materials.labelled = labelledStructures(loaded, file, rules, raw.geometry.X_WV.inverse());
         materials.ids = materialIds(raw, rules, std::move(labels.ids));
         return materials;
     } catch (const UserError& error) {

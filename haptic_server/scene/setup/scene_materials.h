@@ -42,10 +42,18 @@ bool wantsProperties(const scene::Scene& scene);
 // One of each material; nothing where the label map has no colour for it.
 using SegmentColors = std::vector<std::optional<Eigen::Vector3d>>;  // red, green, blue, 0 .. 1
 
+// The protected structures as they were labelled, also beyond a region: what is drawn of them.
+struct LabelledStructures {
+    BoneProperties properties;  // without densities, on the labels' own voxels
+    Eigen::Vector3d spacing;    // m, of those
+    Pose X_VL;                  // the labels' frame in that of the bone that is milled
+};
+
 struct ScannedMaterials {
     std::vector<MaterialId> ids;  // of each raw voxel, x fastest; empty: the scene has no materials
     SegmentColors segment_colors;
     double label_edge = 0;  // m: the shortest of the label map's voxels; 0: there is none
+    std::shared_ptr<const LabelledStructures> labelled;  // null: nothing is labelled beyond the bone
 };
 
 // Imports volume.label_path, and says it if its grid is another one. Throws UserError.

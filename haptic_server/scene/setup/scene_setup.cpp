@@ -307,6 +307,7 @@ Simulation makeSimulation(const LoadedScene& loaded) {
     simulation.mapping = scanned.mapping;
     simulation.segment_colors = std::move(scanned.materials.segment_colors);
     simulation.label_edge = scanned.materials.label_edge;
+    simulation.labelled = std::move(scanned.materials.labelled);
     simulation.surroundings = std::move(scanned.surroundings);
     const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), scanned.volume.geometry());
     simulation.tick = tickConfigOf(scene);

@@ -34,14 +34,15 @@ struct Simulation {
     std::unique_ptr<BoneModel> bone;
     std::shared_ptr<const Surroundings> surroundings = nullptr;  // null: the bone is all there is
     DensityMapping mapping;
-    SegmentColors segment_colors;                      // for shownSceneOf()
-    double label_edge = 0;                             // of ScannedMaterials
-    std::vector<SceneTool> tools;                      // at least one
-    std::shared_ptr<const JudgedTask> task = nullptr;  // null: the scene has none
-    bool lacks_patient_axes = false;                   // RawVolume
-    Pose X_WD;                                         // device base in the world
-    std::vector<std::string> remarks;                  // for people: what was read or proposed
-    std::vector<std::string> warnings;                 // what the user would better change in the scene
+    SegmentColors segment_colors;                                  // for shownSceneOf()
+    double label_edge = 0;                                         // of ScannedMaterials
+    std::shared_ptr<const LabelledStructures> labelled = nullptr;  // of ScannedMaterials
+    std::vector<SceneTool> tools;                                  // at least one
+    std::shared_ptr<const JudgedTask> task = nullptr;              // null: the scene has none
+    bool lacks_patient_axes = false;                               // RawVolume
+    Pose X_WD;                                                     // device base in the world
+    std::vector<std::string> remarks;                              // for people: what was read or proposed
+    std::vector<std::string> warnings;  // what the user would better change in the scene
 
     // They are meant for ToolSwitch and point into `tools`.
     std::vector<SpoTool> spoTools() const;

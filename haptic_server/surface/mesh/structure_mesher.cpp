@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <unordered_map>
 
 #include "haptic_server/core/volume/marching_cubes_table.h"
@@ -21,6 +22,8 @@ constexpr int kMaxStride = 16;          // voxels
 constexpr float kMaxFiner = 3;          // labels in steps: what spreads farther takes too long
 constexpr double kSamplesPerLabel = 2;  // per axis, of labels on coarser voxels: structures of one voxel stay
 constexpr float kSimplified = 0.06f;    // voxels that the surface may move by fewer triangles
+constexpr double kMaxThicker = 0.25;    // voxels of the labels, that give back what smoothing took
+constexpr int kThickenings = 3;         // each leaves a small part of the error of the one before
 // A pass shrinks by the first factor and grows by the second: what bends slower than 1/kShrink + 1/kGrow
 // tells stays as it is.
 constexpr int kPasses = 60;
@@ -70,6 +73,9 @@ class MaterialSurface {
 
     const Eigen::Vector3f& step() const { return step_; }
     const Eigen::Vector3f& grain() const { return grain_; }  // the labels' voxels
+    double volume() const {                                  // m3, of the labels
+        return std::accumulate(share_.begin(), share_.end(), 0.0) * step_.cast<double>().prod();
+    }
 
     Surface make() {
         forEachIndex({Eigen::Vector3i::Zero(), size_.array() - 2}, [&](const Eigen::Vector3i& cell) {
@@ -204,6 +210,37 @@ void simplify(Surface& surface, float most_moved) {
     if (surface.indices.size() > 3 * kMaxStructureTriangles) reduce(kMaxStructureTriangles, 1);
 }
 
+struct Extent {
+    double volume = 0, area = 0;
+};
+
+Extent extentOf(const Surface& surface) {
+    Extent extent;
+    const Eigen::Vector3d origin = surface.positions[surface.indices[0]].cast<double>();
+    for (size_t t = 0; t < surface.indices.size(); t += 3) {
+        std::array<Eigen::Vector3d, 3> corner;
+        for (size_t i = 0; i < 3; ++i)
+            corner[i] = surface.positions[surface.indices[t + i]].cast<double>() - origin;
+        extent.volume += corner[0].dot(corner[1].cross(corner[2])) / 6;
+        extent.area += (corner[1] - corner[0]).cross(corner[2] - corner[0]).norm() / 2;
+    }
+    return extent;
+}
+
+// Where the surface bends, smoothing and flat triangles take from the inside, in total several percent of a
+// nerve: the surface moves outwards until it holds the labels' volume (m3) again.
+void thicken(Surface& surface, const std::vector<Eigen::Vector3f>& normals, double volume, double grain) {
+    double moved = 0;
+    for (int pass = 0; pass < kThickenings; ++pass) {
+        const Extent extent = extentOf(surface);
+        if (!(extent.area > 0)) return;
+        const double next = std::clamp(moved + (volume - extent.volume) / extent.area, -kMaxThicker * grain,
+                                       kMaxThicker * grain);
+        for (size_t v = 0; v < normals.size(); ++v) surface.positions[v] += float(next - moved) * normals[v];
+        moved = next;
+    }
+}
+
 NodeMesh packed(MaterialId material, const Surface& surface, const std::vector<Eigen::Vector3f>& normals) {
     constexpr float kSteps = 65535;
     Eigen::AlignedBox3f box;
@@ -227,7 +264,7 @@ NodeMesh packed(MaterialId material, const Surface& surface, const std::vector<E
 }  // namespace
 
 std::vector<NodeMesh> meshStructures(const BoneProperties& properties, const MaterialTable& materials,
-                                     const Eigen::Vector3d& spacing, double label_edge) {
+                                     const Eigen::Vector3d& spacing, double label_edge, const Pose& X_VP) {
     // Labels that are much coarser are looked at as if they were not.
     label_edge = std::min(label_edge, kSamplesPerLabel * kMaxStride * spacing.maxCoeff());
     const int stride = std::max(1, int(std::lround(label_edge / (kSamplesPerLabel * spacing.maxCoeff()))));
@@ -239,8 +276,10 @@ std::vector<NodeMesh> meshStructures(const BoneProperties& properties, const Mat
         Surface surface = samples.make();
         if (surface.indices.empty()) continue;
         smooth(surface, samples.step(), samples.grain());
+        for (Eigen::Vector3f& p : surface.positions) p = (X_VP * p.cast<double>().eval()).cast<float>();
         const std::vector<Eigen::Vector3f> normals = normalsOf(surface);
         simplify(surface, kSimplified * samples.step().minCoeff());
+        thicken(surface, normals, samples.volume(), samples.grain().minCoeff());
         meshes.push_back(packed(MaterialId(id), surface, normals));
     }
     return meshes;

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "haptic_server/scene/setup/scene_setup.h"
+#include "haptic_server/surface/mesh/structure_mesher.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/write_nrrd.h"
 #include "tests/unit/haptic_server/scans/import/expect_user_error.h"
@@ -242,6 +243,31 @@ TEST_F(SoftStructure, IsKeptHoweverFarFromBone) {
     EXPECT_GT(densityAt(nerve_, region_, nerve_label_), 0);
     EXPECT_EQ(densityAt(aside_, region_, nerve_label_), 0);
     EXPECT_EQ(densityAt(nerve_, region_, plain_label_), 0) << "nobody asks about it";
+}
+
+// The region ends in the nerve's middle. Labels are drawn half-way to the next voxel.
+TEST_F(SoftStructure, IsDrawnWholeWhereTheRegionCutsIt) {
+    const std::string half =
+        "region { min_mm { x: 2 y: 2 z: 2 } max_mm { x: 18 y: 26 z: 27 } resample_mm: 0.25 } ";
+    const ScannedBone bone = boneOf(half + "label_path: 'labels.nrrd' ", nerve_label_);
+    const auto& labelled = bone.materials.labelled;
+    ASSERT_NE(labelled, nullptr);
+    MaterialTable table(2);
+    table[1].is_protected = true;
+    const auto meshes = meshStructures(labelled->properties, table, labelled->spacing, 0, labelled->X_VL);
+    ASSERT_EQ(meshes.size(), 1u);
+    Eigen::AlignedBox3d box_W;
+    for (const uint32_t index : meshes[0].indices) {
+        const PackedVertex& v = meshes[0].vertices[index];
+        const Eigen::Vector3f p_V =
+            meshes[0].origin + meshes[0].step.cwiseProduct(Eigen::Vector3f(v.x, v.y, v.z));
+        box_W.extend(bone.volume.geometry().X_WV * p_V.cast<double>());
+    }
+    EXPECT_LT(box_W.min().x(), nerve_.x() - 1.3 * kMm);
+    EXPECT_GT(box_W.max().x(), nerve_.x() + 1.3 * kMm);
+    EXPECT_LT((box_W.sizes() - Eigen::Vector3d::Constant(4 * kMm)).cwiseAbs().maxCoeff(), 1 * kMm);
+    EXPECT_EQ(boneOf("label_path: 'labels.nrrd' ", nerve_label_).materials.labelled, nullptr) << "it has all";
+    EXPECT_EQ(boneOf(half + "label_path: 'labels.nrrd' ", plain_label_).materials.labelled, nullptr);
 }
 
 TEST_F(SoftStructure, IsKeptWhereItIsAZone) {

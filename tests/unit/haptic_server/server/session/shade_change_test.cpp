@@ -142,7 +142,7 @@ TEST(ShadeChange, TheMastoidOfARealHeadHasNoStripes) {
     const Simulation simulation = makeSimulation(loaded);
     const double share = shareOfChange(shadedVertices(loaded, simulation), 1e-3);
     RecordProperty("share_percent", std::to_string(100 * share));
-    EXPECT_LE(share, 0.025);  // docs/measurements.md: 2.3 % today, where 2 % are wanted
+    EXPECT_LE(share, 0.02);
 }
 
 }  // namespace
