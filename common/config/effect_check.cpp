@@ -101,13 +101,28 @@ void checkSound(const scene::Scene& scene, const RefuseField& refuse) {
            "would never hear the burr in bone: list spindle, cutting_force or energy_removal as well");
 }
 
-void checkBleedingMaterials(const scene::Scene& scene, const RefuseField& refuse) {
-    const scene::Bleeding& bleeding = scene.effects().bleeding();
-    for (int n = 0; n < bleeding.material_size(); ++n)
+template <class Effect>
+void checkMaterials(const std::string& name, const Effect& effect, const scene::Scene& scene,
+                    const RefuseField& refuse) {
+    for (int n = 0; n < effect.material_size(); ++n)
         if (std::ranges::none_of(scene.material(),
-                                 [&](const auto& m) { return m.name() == bleeding.material(n); }))
-            refuse(pathOf("bleeding") + ".material[" + std::to_string(n) + "]",
-                   "= \"" + bleeding.material(n) + "\" is no material of this scene");
+                                 [&](const auto& m) { return m.name() == effect.material(n); }))
+            refuse(pathOf(name) + ".material[" + std::to_string(n) + "]",
+                   "= \"" + effect.material(n) + "\" is no material of this scene");
+}
+
+void checkPulse(const scene::Scene& scene, const RefuseField& refuse) {
+    if (!scene.effects().has_pulse()) return;
+    const scene::Pulse& pulse = scene.effects().pulse();
+    if (pulse.material_size() == 0)
+        refuse(pathOf("pulse") + ".material", "is missing: name the protected materials that pulsate");
+    checkMaterials("pulse", pulse, scene, refuse);
+    for (int n = 0; n < pulse.material_size(); ++n)
+        if (std::ranges::any_of(scene.material(), [&](const auto& m) {
+                return m.name() == pulse.material(n) && !m.is_protected();
+            }))
+            refuse(pathOf("pulse") + ".material[" + std::to_string(n) + "]",
+                   "= \"" + pulse.material(n) + "\" is not protected: only structures pulsate");
 }
 
 void checkTraces(const scene::Scene& scene, const RefuseField& refuse) {
@@ -135,7 +150,8 @@ void checkEffects(const scene::Scene& scene, const RefuseField& refuse) {
     checkLaw(scene, refuse);
     checkSpeed(scene, refuse);
     checkBallOnly(scene, refuse);
-    checkBleedingMaterials(scene, refuse);
+    checkMaterials("bleeding", scene.effects().bleeding(), scene, refuse);
+    checkPulse(scene, refuse);
     checkThermal(scene, refuse);
     checkSound(scene, refuse);
     checkTraces(scene, refuse);

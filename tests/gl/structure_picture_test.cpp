@@ -2,6 +2,8 @@
 // and checks what names and quick drawing must do.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <memory>
 
 #include "render_client/look/offscreen/osmesa_context.h"
@@ -19,6 +21,13 @@ constexpr double kStructureWarning = 2.5e-3;
 // The nerve lies in the floor of the cavity, the sinus behind whole bone.
 const Eigen::Vector3d kNerveCenter = test::kCavityCenter + Eigen::Vector3d(-0.0008, 0.0016, -0.0006);
 const Eigen::Vector3d kSinusCenter = test::kBlockCenter + Eigen::Vector3d(-0.0022, -0.0022, -0.0022);
+
+int mostDifference(const Picture& a, const Picture& b) {
+    int most = 0;
+    for (int y = 0; y < a.height(); ++y)
+        for (int n = 0; n < 3 * a.width(); ++n) most = std::max(most, std::abs(a.row(y)[n] - b.row(y)[n]));
+    return most;
+}
 
 class StructurePictures : public testing::Test {
   protected:
@@ -122,6 +131,34 @@ TEST_F(StructurePictures, WhatLiesUnderThinBoneShinesThrough) {
     EXPECT_GT(thicker, 0.02);
     EXPECT_LT(thicker, 0.5 * thin);
     EXPECT_EQ(blueOver(2.3e-3), 0);
+}
+
+// The nerve lies open and its picture moves; the sinus is behind bone, and nothing is drawn for it.
+TEST_F(StructurePictures, WhatLiesOpenMovesWithThePulse) {
+    topics::SceneInfo info = test::milledInfo();
+    for (const char* name : {"facial nerve", "sigmoid sinus"}) info.add_materials()->set_name(name);
+    info.set_epoch(8);
+    const auto mostChange = [&](const std::string& pulsating, Quality quality) {
+        auto& pulse = *info.mutable_viewer_effects()->mutable_pulse();
+        pulse.Clear();
+        pulse.add_material(pulsating);
+        info.set_revision(info.revision() + 1);
+        scene_->setSceneInfo(info);
+        scene_->settings().quality = quality;
+        scene_->settings().structures.fill(StructureMode::kExposedOnly);
+        showBoth();
+        const Picture first = draw();
+        int most = 0;
+        for (int picture = 0; picture < 12; ++picture) {
+            scene_->advance(0.1);
+            most = std::max(most, mostDifference(draw(), first));
+        }
+        return most;
+    };
+    for (const Quality quality : {Quality::kFull, Quality::kQuick}) {
+        EXPECT_GT(mostChange("facial nerve", quality), 12) << int(quality);
+        EXPECT_EQ(mostChange("sigmoid sinus", quality), 0) << int(quality);
+    }
 }
 
 // The burr pressed the nerve here, and elsewhere cut it.

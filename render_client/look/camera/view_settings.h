@@ -30,9 +30,10 @@ enum class ViewerEffect : uint8_t {
     kBurrSpin,
     kMillingSound,
     kBrowning,
-    kBruising
+    kBruising,
+    kPulse
 };
-constexpr size_t kViewerEffects = size_t(ViewerEffect::kBruising) + 1;
+constexpr size_t kViewerEffects = size_t(ViewerEffect::kPulse) + 1;
 
 // Grey goes from black at level - width / 2 to white at level + width / 2, in the scan's values (HU of a CT).
 struct GreyWindow {

@@ -15,6 +15,7 @@
 #define BONEMILL_GL_FUNCTIONS(X)                                               \
     X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                                   \
     X(PFNGLATTACHSHADERPROC, AttachShader)                                     \
+    X(PFNGLBEGINQUERYPROC, BeginQuery)                                         \
     X(PFNGLBINDBUFFERPROC, BindBuffer)                                         \
     X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                               \
     X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer)                             \
@@ -36,6 +37,7 @@
     X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                                   \
     X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)                         \
     X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                                   \
+    X(PFNGLDELETEQUERIESPROC, DeleteQueries)                                   \
     X(PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers)                       \
     X(PFNGLDELETESHADERPROC, DeleteShader)                                     \
     X(PFNGLDELETETEXTURESPROC, DeleteTextures)                                 \
@@ -50,11 +52,13 @@
     X(PFNGLDRAWELEMENTSPROC, DrawElements)                                     \
     X(PFNGLENABLEPROC, Enable)                                                 \
     X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray)               \
+    X(PFNGLENDQUERYPROC, EndQuery)                                             \
     X(PFNGLFINISHPROC, Finish)                                                 \
     X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer)               \
     X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)                     \
     X(PFNGLGENBUFFERSPROC, GenBuffers)                                         \
     X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                               \
+    X(PFNGLGENQUERIESPROC, GenQueries)                                         \
     X(PFNGLGENRENDERBUFFERSPROC, GenRenderbuffers)                             \
     X(PFNGLGENTEXTURESPROC, GenTextures)                                       \
     X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                               \
@@ -62,6 +66,7 @@
     X(PFNGLGETINTEGERVPROC, GetIntegerv)                                       \
     X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                           \
     X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                     \
+    X(PFNGLGETQUERYOBJECTUIVPROC, GetQueryObjectuiv)                           \
     X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                             \
     X(PFNGLGETSHADERIVPROC, GetShaderiv)                                       \
     X(PFNGLGETSTRINGPROC, GetString)                                           \
@@ -160,6 +165,7 @@ using GlBuffer = GlObject<&GlApi::GenBuffers, &GlApi::DeleteBuffers>;
 using GlVertexArray = GlObject<&GlApi::GenVertexArrays, &GlApi::DeleteVertexArrays>;
 using GlTexture = GlObject<&GlApi::GenTextures, &GlApi::DeleteTextures>;
 using GlFramebuffer = GlObject<&GlApi::GenFramebuffers, &GlApi::DeleteFramebuffers>;
+using GlQuery = GlObject<&GlApi::GenQueries, &GlApi::DeleteQueries>;
 using GlRenderbuffer = GlObject<&GlApi::GenRenderbuffers, &GlApi::DeleteRenderbuffers>;
 
 // It is a vertex and a fragment shader, linked. The rules of GlObject for thread and lifetime hold here too.

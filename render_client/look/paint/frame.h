@@ -52,6 +52,7 @@ struct StructureLook {
     Eigen::Vector3f colour = Eigen::Vector3f::Zero();  // linear
     StructureMode mode = StructureMode::kThroughBone;
     float glow = 0;  // 0 to 1: the burr is near
+    float rise = 0;  // m that its open surface has risen by, at most
     bool operator==(const StructureLook&) const = default;
 };
 

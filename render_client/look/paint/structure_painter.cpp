@@ -81,14 +81,14 @@ Eigen::AlignedBox3f StrokePainter::box(const Stroke& stroke, const Frame& frame,
 
 void StructurePainter::set(const NodeMesh& mesh) {
     if (!program_) {
-        program_ =
-            std::make_unique<Program>(gl_, "structure", shaders::kMeshVertex, shaders::kStructureFragment);
-        bruised_ = std::make_unique<Program>(gl_, "bruised structure", shaders::kMeshVertex,
+        const std::string vertex = std::string("#define PULSE\n") + shaders::kMeshVertex;
+        program_ = std::make_unique<Program>(gl_, "structure", vertex, shaders::kStructureFragment);
+        bruised_ = std::make_unique<Program>(gl_, "bruised structure", vertex,
                                              std::string("#define FILM\n") + shaders::kStructureFragment);
         section_ = std::make_unique<Program>(gl_, "section of a structure", shaders::kFullScreenVertex,
                                              shaders::kSectionFragment);
     }
-    Shape shape{NodeStore(gl_), boxOf(mesh), {}};
+    Shape shape{NodeStore(gl_), boxOf(mesh), {}, GlQuery(gl_)};
     shape.surface.set(mesh);
     changed_.extend(shape.box);
     shapes_.erase(mesh.leaf);
@@ -103,11 +103,23 @@ void StructurePainter::clear() {
 Eigen::AlignedBox3f StructurePainter::takeChanged(const std::vector<StructureLook>& looks) {
     for (const StructureLook& look : looks) {
         const auto shape = shapes_.find(look.structure);
-        if (shape == shapes_.end() || shape->second.look == look) continue;
-        shape->second.look = look;
-        changed_.extend(shape->second.box);
+        if (shape == shapes_.end()) continue;
+        Shape& drawn = shape->second;
+        StructureLook without_rise = look;
+        if (!isSeen(drawn)) without_rise.rise = drawn.look.rise;
+        drawn.is_whole = std::exchange(drawn.look, without_rise) != without_rise;
+        if (drawn.is_whole) changed_.extend(drawn.box);
     }
     return std::exchange(changed_, {});
+}
+
+// A part of the picture tells what is seen, and only the whole of it what is not.
+bool StructurePainter::isSeen(Shape& shape) const {
+    if (!std::exchange(shape.is_asked, false)) return shape.is_seen;
+    GLuint any = 0;
+    gl_.GetQueryObjectuiv(shape.sight.name(), GL_QUERY_RESULT, &any);
+    shape.is_seen = any != 0 || (shape.is_seen && !shape.is_whole);
+    return shape.is_seen;
 }
 
 void StructurePainter::draw(const Frame& frame, const std::vector<StructureLook>& looks,
@@ -149,7 +161,12 @@ void StructurePainter::drawPart(const Frame& frame, const std::vector<StructureL
         if (shape == shapes_.end() || !is_shown) continue;
         surface.set("structure_colour", look.colour);
         surface.set("glow", look.glow);
+        surface.set("rise", is_behind ? 0.0f : look.rise);
+        const bool asks = !is_behind;
+        if (asks) gl_.BeginQuery(GL_ANY_SAMPLES_PASSED, shape->second.sight.name());
         shape->second.surface.draw(surface, frame.cull_from_V);
+        if (asks) gl_.EndQuery(GL_ANY_SAMPLES_PASSED);
+        shape->second.is_asked |= asks;
     }
     gl_.DepthFunc(GL_LESS);
     gl_.DepthMask(GL_TRUE);
@@ -197,6 +214,7 @@ void StructurePainter::countFaces(const Frame& frame, const Shape& shape) const 
     gl_.DepthFunc(GL_ALWAYS);
     const ClipPlanes clip(gl_, frame.cuts_V);
     program_->use();
+    program_->set("rise", shape.look.rise);
     shape.surface.draw(*program_, frame.cull_from_V);
     gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     gl_.DepthMask(GL_TRUE);

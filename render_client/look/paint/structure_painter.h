@@ -27,7 +27,8 @@ class StructurePainter {
     // From now on they are red where this film has bruises, or nowhere when null. It must outlive its use.
     void setFilm(const FilmPainter* film) { film_ = film; }
 
-    // Returns the box (V, m) of structures that look otherwise than in the last call, or came or went.
+    // Returns the box (V, m) of structures that look otherwise than in the last call, or came or went. How
+    // far one has risen makes no difference while none of it was seen.
     Eigen::AlignedBox3f takeChanged(const std::vector<StructureLook>& looks);
 
     // Draws into the bound framebuffer, which has the bone, uses the stencil's lower bits, and leaves depth
@@ -41,11 +42,15 @@ class StructurePainter {
         NodeStore surface;
         Eigen::AlignedBox3f box;  // V, m
         StructureLook look;       // in the last picture
+        GlQuery sight;            // asks whether some of its open surface was drawn
+        mutable bool is_asked = false;
+        bool is_whole = true, is_seen = false;  // is_whole: its box was drawn anew
     };
     enum class Part { kBehind, kExposed };
     void drawPart(const Frame& frame, const std::vector<StructureLook>& looks, GLuint shadow_texture,
                   Part part) const;
 
+    bool isSeen(Shape& shape) const;
     void countFaces(const Frame& frame, const Shape& shape) const;
     void drawSections(const Frame& frame, const std::vector<StructureLook>& looks) const;
 

@@ -272,6 +272,8 @@ void RenderScene::draw(int full_width, int height, float ui_scale, GLuint target
     updateCt(full_width, height);
     FrameView view = makeView();
     view.effects = effectPicture();
+    if (effects_ && effects_->pulse() && settings_.shows(ViewerEffect::kPulse))
+        for (StructureLook& look : view.structures) look.rise = effects_->pulse()->riseOf(look.structure);
     prepareNearStructures(view);
     const PictureArea whole{0, width, height};
     switch (settings_.stereo) {

@@ -26,6 +26,18 @@ uniform vec3 step;
 uniform mat4 camera_from_model;
 uniform mat4 clip_from_camera;
 uniform vec4 cut_planes[3];  // model frame: shown where dot(plane, (p, 1)) >= 0
+#ifdef PULSE
+// It rises in patches, as what is held at places does: the surface tilts, and its glints move.
+const float kPatch = 2.0 * 3.14159265 / 9e-3;  // rad/m
+uniform float rise;                            // m
+void riseAt(inout vec3 p, inout vec3 n) {
+    vec3 at = kPatch * p;
+    float share = 0.5 + dot(sin(at), vec3(1.0 / 6.0));
+    vec3 slope = kPatch / 6.0 * cos(at);
+    p += rise * share * n;
+    n = normalize(n - rise * (slope - dot(slope, n) * n));
+}
+#endif
 out vec3 p_C;
 out vec3 n_C;
 #ifndef GL_ES
@@ -37,8 +49,12 @@ invariant gl_Position;  // a layer is found by its depth first and then drawn wh
 
 void main() {
     vec4 p = vec4(origin + step * steps, 1.0);
+    vec3 n = unitVector(octahedral / 127.0);
+#ifdef PULSE
+    riseAt(p.xyz, n);
+#endif
     p_C = (camera_from_model * p).xyz;
-    n_C = mat3(camera_from_model) * unitVector(octahedral / 127.0);
+    n_C = mat3(camera_from_model) * n;
     gl_Position = clip_from_camera * vec4(p_C, 1.0);
 #ifdef MATERIALS
     material_colour = texelFetch(palette, ivec2(int(material), 0), 0);

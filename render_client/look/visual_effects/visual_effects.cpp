@@ -31,7 +31,7 @@ MaterialSet bleedingOf(const scene::Bleeding& wish, const VisualEffects::Materia
 }  // namespace
 
 bool VisualEffects::anyIn(const scene::Effects& wish) {
-    return wish.has_bone_dust() || wish.has_burr_spin() || needsFilm(wish);
+    return wish.has_bone_dust() || wish.has_burr_spin() || wish.has_pulse() || needsFilm(wish);
 }
 
 bool VisualEffects::needsFilm(const scene::Effects& wish) {
@@ -45,6 +45,7 @@ VisualEffects::VisualEffects(const scene::Effects& wish, double burr_radius, con
     if (wish.has_burr_spin()) spin_.emplace(wish.burr_spin());
     if (wish.has_browning()) browning_.emplace(wish.browning());
     if (wish.has_bruising()) bruising_.emplace(wish.bruising());
+    if (wish.has_pulse()) pulse_.emplace(wish.pulse(), materials);
     if (needsFilm(wish)) film_.emplace(filmFor(burr_radius));
     if (bleeding_) surface_.trackFresh();
 }
@@ -96,6 +97,7 @@ void VisualEffects::advance(double dt) {
     left_ += std::min(dt, kLongestAdvance);
     slowest_picture_ = std::max(slowest_picture_, std::min(dt, kLongestAdvance));
     if (spin_) spin_->advance(dt, input_.spin_speed);
+    if (pulse_) pulse_->advance(dt);
     for (; left_ >= kStep; left_ -= kStep) step();
 }
 

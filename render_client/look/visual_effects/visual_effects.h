@@ -11,6 +11,7 @@
 
 #include "render_client/look/visual_effects/burr_effects.h"
 #include "render_client/look/visual_effects/liquids.h"
+#include "render_client/look/visual_effects/pulse.h"
 #include "render_client/look/visual_effects/traces.h"
 
 namespace bonemill {
@@ -21,7 +22,7 @@ class VisualEffects {
     static constexpr double kStep = 1.0 / 120;       // s
     static constexpr double kLongestAdvance = 0.25;  // s of one call; what is beyond is left out
 
-    // `materials` are the scene's; by name those that bleed are found.
+    // `materials` are the scene's; by name those that bleed or pulsate are found.
     VisualEffects(const scene::Effects& wish, double burr_radius, const Materials& materials = {});
     static bool anyIn(const scene::Effects& wish);
     static bool needsFilm(const scene::Effects& wish);  // does any of them leave something on the bone?
@@ -43,6 +44,7 @@ class VisualEffects {
     const Irrigation* irrigation() const { return irrigation_ ? &*irrigation_ : nullptr; }
     bool hasBrowning() const { return browning_.has_value(); }
     bool hasBruising() const { return bruising_.has_value(); }
+    const Pulse* pulse() const { return pulse_ ? &*pulse_ : nullptr; }
     BurrSpin* spin() { return spin_ ? &*spin_ : nullptr; }
 
   private:
@@ -63,6 +65,7 @@ class VisualEffects {
     std::optional<Browning> browning_;
     std::optional<Bruising> bruising_;
     std::optional<BurrSpin> spin_;
+    std::optional<Pulse> pulse_;
     std::optional<SurfaceFilm> film_;
     BoneSurface surface_;
     EffectInput input_;

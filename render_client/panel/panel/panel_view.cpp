@@ -24,7 +24,8 @@ constexpr struct {
                 {"Burr spin", ViewerEffect::kBurrSpin, "Flutes that turn"},
                 {"Milling sound", ViewerEffect::kMillingSound, "Motor and cutting, heard here"},
                 {"Browning", ViewerEffect::kBrowning, "Bone that got too hot"},
-                {"Bruising", ViewerEffect::kBruising, "Protected structures that were touched"}};
+                {"Bruising", ViewerEffect::kBruising, "Protected structures that were touched"},
+                {"Pulse", ViewerEffect::kPulse, "Open dura and vessels rise with the heart"}};
 
 }  // namespace
 
@@ -194,6 +195,8 @@ bool PanelContent::isListed(ViewerEffect effect) const {
             return listed.has_browning();
         case ViewerEffect::kBruising:
             return listed.has_bruising();
+        case ViewerEffect::kPulse:
+            return listed.has_pulse();
     }
     return false;
 }

@@ -243,6 +243,17 @@ TEST_F(SceneFile, tracesNeedTheEffectThatTellsOfThem) {
     EXPECT_NE(refusal(scene + "thermal {} browning { charred_from_c: 55 } }"), "accepted");
 }
 
+TEST_F(SceneFile, onlyProtectedMaterialsPulsate) {
+    const std::string scene =
+        "volume { path: 'v' }\nmaterial { name: 'dura' from_value: 1 is_protected: true }\nmaterial { name: "
+        "'bone' from_value: 2 }\neffects { pulse { ";
+    EXPECT_EQ(refusal(scene + "material: 'dura' } }"), "accepted");
+    EXPECT_NE(refusal(scene + "} }").find("effects.pulse.material"), std::string::npos);
+    EXPECT_NE(refusal(scene + "material: 'sinus' } }").find("no material"), std::string::npos);
+    EXPECT_NE(refusal(scene + "material: 'dura' material: 'bone' } }").find("effects.pulse.material[1]"),
+              std::string::npos);
+}
+
 TEST_F(SceneFile, effectsThatReadContactsNeedTheGradientLaw) {
     const std::string scene =
         "volume { path: 'v' } tool { speed_rpm: 9000 }\neffects { energy_removal {} }\n";

@@ -20,7 +20,7 @@ TEST(ViewerEffects, OfAllEffectsTheyAloneAreKept) {
     for (int n = 0; n < type.field_count(); ++n)
         if (reflection.HasField(effects, type.field(n))) kept.insert(type.field(n)->name());
     EXPECT_EQ(kept, (std::set<std::string>{"bone_dust", "bleeding", "irrigation", "burr_spin",
-                                           "milling_sound", "browning", "bruising"}));
+                                           "milling_sound", "browning", "bruising", "pulse"}));
     EXPECT_TRUE(reflection.GetUnknownFields(effects).empty());
 }
 
