@@ -32,10 +32,11 @@ class JournalAssessment {
         while (!rerun_.isAtEnd()) {
             const uint64_t tick = rerun_.next();
             look(tick);
+            follow(tick);
             const TickRecord& record = rerun_.step();
             if (attempt_ && record.bone_order >= attempt_->recorded.bone_order) attempt_->run.add(record);
-            follow(tick);
         }
+        follow(rerun_.next());
         if (attempt_) end(rerun_.next() - 1);
         for (const std::string& problem : files_.problems()) said_ << "error: " << problem << '\n';
         return files_.problems().empty() ? 0 : 1;
@@ -57,7 +58,8 @@ class JournalAssessment {
         if (next_eye_ > 0) attempt_->run.setEye(eyes_[next_eye_ - 1].p_WC);
     }
 
-    // An attempt begins with an order to put the bone back, which no tick has taken up yet.
+    // Before this tick: an attempt ends behind so many ticks. It begins with an order to put the bone back,
+    // which no tick has taken up yet.
     void follow(uint64_t tick) {
         endAt(tick);
         while (!attempt_ && number_ < attempts_.size() && attempts_[number_].begin <= tick) {

@@ -29,13 +29,14 @@ JudgedAttempt judgedAttempt(const Technique& technique, const TaskMonitor::Resul
 }  // namespace
 
 AttemptController::AttemptController(LessonState& book, Recorder& recorder, BoneHistory& history,
-                                     JournalRecorder& journal, double voxel_volume, const scene::Scene& scene,
-                                     std::function<void(bool begins)> tell_device, TaskMonitor* task)
+                                     JournalRecorder& journal, const BoneModel& bone,
+                                     const scene::Scene& scene, std::function<void(bool begins)> tell_device,
+                                     TaskMonitor* task)
     : book_(book),
       recorder_(recorder),
       history_(history),
+      bone_(bone),
       journal_(journal),
-      voxel_mm3_(voxel_volume * kPerCubicMillimetre),
       effects_(scene.effects()),
       tell_device_(std::move(tell_device)),
       task_(task),
@@ -106,30 +107,34 @@ void AttemptController::countTime() {
 bool AttemptController::end(const std::optional<topics::Command>& order) {
     countTime();
     // While the bone is still going back to the scan nothing was removed.
-    const int64_t removed_voxels = history_.isRestoring() ? 0 : history_.missingVoxels();
+    const bool is_restoring = history_.isRestoring();
+    const std::shared_ptr<const BoneSnapshot> bone = history_.snapshot(bone_);
+    const int64_t removed_voxels = is_restoring ? 0 : bone->missing_voxels;
     if (removed_voxels == 0 && time_s_ < kShortest) {
         journal_.noteAttemptDropped();
         book_.dropAttempt();
         return false;
     }
-    const AttemptFigures figures = recorder_.attempt();
+    EndedAttempt ended = recorder_.endAttempt(is_restoring ? 0 : bone->ticks);
     topics::Attempt attempt;
     attempt.set_time_s(time_s_);
-    attempt.set_removed_mm3(double(removed_voxels) * voxel_mm3_);
-    attempt.set_max_force_n(figures.max_force);
-    effects_.describe(figures.effects, material_names_, attempt);
-    journal_.noteAttemptEnded(attempt);
-    book_.endAttempt(std::move(attempt), order, judgement(figures.breach), told_);
+    attempt.set_removed_mm3(double(removed_voxels) * bone_.volume.voxelVolume() * kPerCubicMillimetre);
+    attempt.set_max_force_n(ended.figures.max_force);
+    effects_.describe(ended.figures.effects, material_names_, attempt);
+    journal_.noteAttemptEnded(attempt, ended.end);
+    book_.endAttempt(std::move(attempt), order, judgement(std::move(ended), bone), told_);
     return true;
 }
 
 // The judging of the bone has begun when this returns. Of an attempt that no tick has seen there is nothing
 // to tell.
-std::optional<AttemptJudgement> AttemptController::judgement(std::optional<double> breach) {
-    const std::shared_ptr<Technique> technique = recorder_.takeTechnique();
-    if (technique) technique->finish();
+std::optional<AttemptJudgement> AttemptController::judgement(EndedAttempt ended,
+                                                             std::shared_ptr<const BoneSnapshot> bone) {
+    const std::shared_ptr<Technique> technique = std::move(ended.technique);
     std::shared_future<TaskMonitor::Result> judged;
-    if (task_) judged = task_->endAttempt(breach, technique ? technique->figures() : Figures{});
+    if (task_)
+        judged = task_->endAttempt(std::move(bone), ended.figures.breach,
+                                   technique ? technique->figures() : Figures{});
     if (!technique || technique->isEmpty()) return std::nullopt;
     AttemptJudgement judgement;
     judgement.scene_hash = scene_hash_;

@@ -26,7 +26,7 @@ class AttemptController {
     // one under way ends without another. `task` (null: none) has each attempt judged, and may limit their
     // number and time.
     AttemptController(LessonState& book, Recorder& recorder, BoneHistory& history, JournalRecorder& journal,
-                      double voxel_volume, const scene::Scene& scene,
+                      const BoneModel& bone, const scene::Scene& scene,
                       std::function<void(bool begins)> tell_device = {}, TaskMonitor* task = nullptr);
 
     // The bone goes back to the scan, and milling goes on. Where
@@ -49,13 +49,13 @@ class AttemptController {
     std::string limitProblem(const std::string& trainee) const;
     // Returns true if the order is answered when the attempt is in the class table.
     bool end(const std::optional<topics::Command>& order);
-    std::optional<AttemptJudgement> judgement(std::optional<double> breach);
+    std::optional<AttemptJudgement> judgement(EndedAttempt ended, std::shared_ptr<const BoneSnapshot> bone);
 
     LessonState& book_;
     Recorder& recorder_;
     BoneHistory& history_;
+    const BoneModel& bone_;
     JournalRecorder& journal_;
-    double voxel_mm3_;
     ShownEffects effects_;
     std::function<void(bool begins)> tell_device_;
     TaskMonitor* task_;

@@ -75,10 +75,10 @@ void JournalRecorder::noteAttemptBegan(const std::string& trainee, uint64_t bone
     journal_->put(JournalTopic::kEvent, event);
 }
 
-void JournalRecorder::noteAttemptEnded(const topics::Attempt& attempt) {
+void JournalRecorder::noteAttemptEnded(const topics::Attempt& attempt, uint64_t ticks) {
     if (!journal_) return;
     journal::Event event;
-    event.set_tick(journal_->ticks());
+    event.set_tick(ticks);
     *event.mutable_attempt_ended() = attempt;
     journal_->put(JournalTopic::kEvent, event);
 }

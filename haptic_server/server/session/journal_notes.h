@@ -33,7 +33,8 @@ class JournalRecorder {
     void noteEye(const SeenEye& eye);
     // It begins when this order to put the bone back is done.
     void noteAttemptBegan(const std::string& trainee, uint64_t bone_order);
-    void noteAttemptEnded(const topics::Attempt& attempt);
+    // Behind so many ticks of the recording.
+    void noteAttemptEnded(const topics::Attempt& attempt, uint64_t ticks);
     void noteAttemptDropped();
     // Of the recording; null if there is none.
     std::shared_ptr<const NewestLink> newestLink() const {

@@ -102,8 +102,8 @@ SceneRun::SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation 
       bone_export_(history_, *simulation_.bone, options.export_dir),
       task_(simulation_.task, *simulation_.bone, history_),
       attempts_(
-          parts.lesson, recorder_, history_, journal_keeper_, simulation_.bone->volume.voxelVolume(),
-          loaded_.scene, [this](bool begins) { parts_.link.announceAttempt(begins); }, &task_),
+          parts.lesson, recorder_, history_, journal_keeper_, *simulation_.bone, loaded_.scene,
+          [this](bool begins) { parts_.link.announceAttempt(begins); }, &task_),
       commands_(loaded_.scene, *simulation_.bone, recorder_,
                 {history_, accuracy_, tools_, parts.stop_requested, bone_export_, io_.resetOrders(),
                  parts.lesson, attempts_, parts.limits, journal_keeper_},

@@ -60,28 +60,29 @@ void TaskMonitor::beginAttempt() {
     if (task_ && task_->feedback == TaskFeedback::kAfterwards) shows_zones_ = false;
 }
 
-std::shared_future<TaskMonitor::Result> TaskMonitor::endAttempt(std::optional<double> breach,
+std::shared_future<TaskMonitor::Result> TaskMonitor::endAttempt(std::shared_ptr<const BoneSnapshot> bone,
+                                                                std::optional<double> breach,
                                                                 Figures technique) {
     if (!task_) return {};
-    judging_ = std::async(std::launch::async, [this, breach, technique = std::move(technique),
-                                               snapshot = history_.snapshot(bone_),
-                                               before = std::exchange(judging_, {})]() mutable {
-        if (before.valid()) before.wait();  // one after the other: each takes a core
-        Result result;
-        try {
-            const VoxelVolume now = history_.volumeOf(*snapshot, bone_.lattice);
-            Product product = measureProduct({history_.scanned(), now, *task_, breach});
-            for (const std::string& what : product.left_out) spdlog::warn("not measured: {}", what);
-            technique.insert(technique.end(), product.figures.begin(), product.figures.end());
-            result.assessment = judge(*task_, std::move(technique));
-            result.picture = std::move(product.picture);
-            logResult(result.assessment);
-        } catch (const std::exception& error) {
-            result.problem = error.what();
-            spdlog::error("the attempt could not be judged: {}", result.problem);
-        }
-        return result;
-    });
+    judging_ = std::async(
+        std::launch::async, [this, breach, technique = std::move(technique), snapshot = std::move(bone),
+                             before = std::exchange(judging_, {})]() mutable {
+            if (before.valid()) before.wait();  // one after the other: each takes a core
+            Result result;
+            try {
+                const VoxelVolume now = history_.volumeOf(*snapshot, bone_.lattice);
+                Product product = measureProduct({history_.scanned(), now, *task_, breach});
+                for (const std::string& what : product.left_out) spdlog::warn("not measured: {}", what);
+                technique.insert(technique.end(), product.figures.begin(), product.figures.end());
+                result.assessment = judge(*task_, std::move(technique));
+                result.picture = std::move(product.picture);
+                logResult(result.assessment);
+            } catch (const std::exception& error) {
+                result.problem = error.what();
+                spdlog::error("the attempt could not be judged: {}", result.problem);
+            }
+            return result;
+        });
     if (task_->feedback == TaskFeedback::kAfterwards) shows_zones_ = true;
     return judging_;
 }

@@ -39,10 +39,11 @@ class TaskMonitor {
     // Some times per second: takes up what changed, for some milliseconds, and a result that is there.
     void round();
     void beginAttempt();
-    // The bone is judged as it is now, after the one of the attempt before; nobody waits for that here. What
+    // The bone is judged after the one of the attempt before; nobody waits for that here. What
     // else was measured of the attempt goes in with it: gates and scores may ask for it. Any thread may wait
     // for what it returns, which is nothing without a task.
-    std::shared_future<Result> endAttempt(std::optional<double> breach, Figures technique);
+    std::shared_future<Result> endAttempt(std::shared_ptr<const BoneSnapshot> bone,
+                                          std::optional<double> breach, Figures technique);
     // Waits for the judgement under way, if there is one, and takes it up.
     void finish();
 

@@ -1,7 +1,9 @@
 #include "haptic_server/server/session/tick_recorder.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 #include <utility>
 
 #include "common/rt/clock.h"
@@ -36,6 +38,7 @@ void Recorder::drain() {
         if (journal_) journal_->add(record);
         addToWindow(record);
         addToAttempt(record);
+        ticks_ = record.tick + 1;
         events.add(record.effects);
         removed += record.removed;
     }
@@ -74,14 +77,16 @@ void Recorder::takeUpAttempt() {
 void Recorder::beginAsked() {
     bone_order_ = *std::exchange(asked_bone_order_, std::nullopt);
     attempt_ = shown_attempt_;
+    attempt_end_ = ticks_;
     if (make_technique_) technique_ = make_technique_();
     if (breach_) breach_->reset();
 }
 
 void Recorder::addToAttempt(const TickRecord& record) {
-    if (record.bone_order < bone_order_) return;
-    const double(&force)[3] = record.f_hand_W;
-    attempt_.max_force = std::max(attempt_.max_force, std::hypot(force[0], force[1], force[2]));
+    if (record.bone_order < bone_order_ || (end_after_ && record.tick >= *end_after_)) return;
+    attempt_end_ = record.tick + 1;
+    if (const TickStep step{record, 0}; step.isInContact())
+        attempt_.max_force = std::max(attempt_.max_force, step.force());
     attempt_.effects.add(record.effects);
     if (technique_) technique_->add(record);
     if (!breach_) return;
@@ -94,9 +99,28 @@ void Recorder::setEye(const Eigen::Vector3d& p_eye_W) {
     p_eye_W_ = p_eye_W;
 }
 
-std::unique_ptr<Technique> Recorder::takeTechnique() {
-    const std::lock_guard lock(technique_mutex_);
-    return std::exchange(technique_, nullptr);
+// Nothing, while ticks are missing that may still come.
+std::optional<EndedAttempt> Recorder::takeAttempt(uint64_t ticks, bool waits) {
+    const std::lock_guard technique_lock(technique_mutex_);
+    end_after_ = std::max(ticks, ticks_);
+    if (ticks_ < ticks && waits) return std::nullopt;
+    end_after_.reset();
+    const std::lock_guard lock(mutex_);
+    return EndedAttempt{asked_bone_order_ ? shown_attempt_ : attempt_, std::exchange(technique_, nullptr),
+                        attempt_end_};
+}
+
+EndedAttempt Recorder::endAttempt(uint64_t ticks) {
+    constexpr int kLooks = 50;  // a millisecond each
+    std::optional<EndedAttempt> ended;
+    for (int look = 0; !(ended = takeAttempt(ticks, look < kLooks)); ++look)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (!ended->technique) return *std::move(ended);
+    ended->technique->finish();
+    // What is measured weighs by time: the first tick has none.
+    const Figures figures = ended->technique->figures();
+    if (const Figure* const most = findFigure(figures, "force.max")) ended->figures.max_force = most->value;
+    return *std::move(ended);
 }
 
 AttemptFigures Recorder::attempt() const {

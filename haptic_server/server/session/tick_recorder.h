@@ -31,9 +31,16 @@ struct LoopHealth {
 
 // What the ticks of an attempt told; before the first one, those of the session.
 struct AttemptFigures {
-    double max_force = 0;  // N, of the wrench on the hand
+    double max_force = 0;  // N, of the wrench on the hand while the tool touches something
     EffectStatistics effects;
     std::optional<double> breach = {};  // m beside the task's planned line; none without one
+};
+
+// An attempt up to one tick, which is the same for all of it.
+struct EndedAttempt {
+    AttemptFigures figures;
+    std::unique_ptr<Technique> technique;  // finished; null: it was not measured, or had not begun
+    uint64_t end = 0;                      // ticks of the session up to there
 };
 
 class Recorder {
@@ -72,9 +79,10 @@ class Recorder {
     // Before the first drain(): every attempt from now on is measured, too, by what this makes (not null).
     using MakeTechnique = std::function<std::unique_ptr<Technique>()>;
     void measureTechnique(MakeTechnique make) { make_technique_ = std::move(make); }
-    // Any normal thread ends the measuring of the attempt, and gets what was measured; null if it has not
-    // begun.
-    std::unique_ptr<Technique> takeTechnique();
+    // Any normal thread ends the attempt behind its first `ticks` ticks of the session, or behind the newest
+    // that was taken from the ring, if that is later; it waits some milliseconds for them, and not for ticks
+    // that do not come.
+    EndedAttempt endAttempt(uint64_t ticks);
     // Any normal thread tells where the trainee's eye is, whenever it moves.
     void setEye(const Eigen::Vector3d& p_eye_W);
     // This is called before finish() and says what the tick thread's page faults were after its first second.
@@ -92,6 +100,7 @@ class Recorder {
     void addToWindow(const TickRecord& record);
     void takeUpAttempt();
     void beginAsked();
+    std::optional<EndedAttempt> takeAttempt(uint64_t ticks, bool waits);
     bool isIncomplete() const;
     void addToAttempt(const TickRecord& record);
 
@@ -106,10 +115,13 @@ class Recorder {
     std::optional<BreachMonitor> breach_;
     AttemptFigures attempt_;
     uint64_t bone_order_ = 0;  // the attempt's
+    uint64_t ticks_ = 0;       // of the session, taken from the ring
     MakeTechnique make_technique_;
     std::mutex technique_mutex_;  // guards what is below; held for as long as a drain()
     std::unique_ptr<Technique> technique_;
-    mutable std::mutex mutex_;  // guards what is below
+    uint64_t attempt_end_ = 0;           // EndedAttempt::end, up to now
+    std::optional<uint64_t> end_after_;  // ticks of the session: the attempt is about to end
+    mutable std::mutex mutex_;           // guards what is below
     std::optional<TickRecord> latest_;
     EventSum new_events_;  // since takeSince()
     double new_removed_ = 0;

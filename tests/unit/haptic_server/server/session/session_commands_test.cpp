@@ -16,7 +16,7 @@ class SessionCommandsTest : public testing::Test {
           accuracy_(presetSettings(Preset::kBalanced)),
           tools_(std::vector<SpoTool>{{&tool_, {.radius = 1e-3}, 5}}, 0),
           bone_export_(ball_.history, ball_.bone, ""),
-          attempts_(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(), sceneOf(),
+          attempts_(lesson_, recorder_, ball_.history, journal_, ball_.bone, sceneOf(),
                     [this](bool begins) { told_ += begins ? 'b' : 'e'; }),
           commands_(sceneOf(), ball_.bone, recorder_, controls(), false) {}
 
@@ -121,6 +121,7 @@ TEST_F(SessionCommandsTest, WhatChangesOfTheLessonTravelsWithoutPictures) {
 TEST_F(SessionCommandsTest, AnAttemptCountsFromZeroAndIsListed) {
     TickRecord before{};
     before.f_hand_W[2] = 9;
+    before.contacts = 1;
     ring_.tryPush(before);
     recorder_.drain();
     EXPECT_EQ(order(stop()), "refused: no attempt is under way");
@@ -128,6 +129,7 @@ TEST_F(SessionCommandsTest, AnAttemptCountsFromZeroAndIsListed) {
     EXPECT_EQ(order(startOf("Ann")), "done");
     EXPECT_FALSE(ball_.history.isMillingPaused());
     TickRecord record{};
+    record.contacts = 1;
     record.f_hand_W[0] = 3;
     record.f_hand_W[1] = 4;
     ball_.restoreAll();
@@ -200,6 +202,7 @@ TEST_F(SessionCommandsTest, WhatViewersRememberOfTheBoneIsOfTheBoneThatWasPutBac
 TEST_F(SessionCommandsTest, FiguresBeginAnewWithAnAttemptAndWithBoneThatIsPutBackOutsideOfOne) {
     const auto felt = [this](double force) {
         TickRecord record{};
+        record.contacts = 1;
         record.f_hand_W[0] = force;
         record.bone_order = ball_.history.finishedOrder();
         ring_.tryPush(record);

@@ -44,7 +44,7 @@ TEST_F(TaskWatching, ASceneWithoutATaskIsNotWatched) {
     TaskMonitor watch(nullptr, ball_.bone, ball_.history);
     watch.round();
     watch.beginAttempt();
-    EXPECT_FALSE(watch.endAttempt({}, {}).valid());
+    EXPECT_FALSE(watch.endAttempt(ball_.history.snapshot(ball_.bone), {}, {}).valid());
     watch.finish();
     EXPECT_FALSE(watch.showsZones());
     topics::Status status;
@@ -84,7 +84,8 @@ TEST_F(TaskWatching, AnAttemptIsJudgedWhenItHasEnded) {
     TaskMonitor watch(task_, ball_.bone, ball_.history);
     watch.beginAttempt();
     ball_.groove(10e-3);
-    const auto judged = watch.endAttempt(1.5e-3, {{"force.max", 1, "Largest force", 3, "N"}});
+    const auto judged = watch.endAttempt(ball_.history.snapshot(ball_.bone), 1.5e-3,
+                                         {{"force.max", 1, "Largest force", 3, "N"}});
     watch.finish();
     const TaskMonitor::Result* const result = &judged.get();
     EXPECT_EQ(result->problem, "");
@@ -109,7 +110,7 @@ TEST_F(TaskWatching, AfterwardsZonesShowBetweenAttemptsAndInAnExaminationNever) 
     EXPECT_FALSE(watch.showsZones());
     EXPECT_EQ(stateOf(watch, true).zones_size(), 0);
     watch.beginAttempt();
-    watch.endAttempt({}, {});
+    watch.endAttempt(ball_.history.snapshot(ball_.bone), {}, {});
     EXPECT_TRUE(watch.showsZones());
     watch.finish();
     EXPECT_TRUE(stateOf(watch, false).is_result());
@@ -119,7 +120,7 @@ TEST_F(TaskWatching, AfterwardsZonesShowBetweenAttemptsAndInAnExaminationNever) 
     task_->feedback = TaskFeedback::kNever;
     task_->time_limit_s = 60;
     TaskMonitor exam(task_, ball_.bone, ball_.history);
-    exam.endAttempt({}, {});
+    exam.endAttempt(ball_.history.snapshot(ball_.bone), {}, {});
     exam.finish();
     EXPECT_FALSE(exam.showsZones());
     topics::TaskState only_time;
@@ -148,8 +149,7 @@ class LimitedAttempts : public TaskWatching {
 TEST_F(LimitedAttempts, EachTraineeHasSoMany) {
     task_->most_attempts = 2;
     TaskMonitor watch(task_, ball_.bone, ball_.history);
-    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(),
-                               {}, {}, &watch);
+    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone, {}, {}, &watch);
     for (int n = 0; n < 2; ++n) {
         EXPECT_NE(start(attempts, "Ann").find("refused"), 0u);
         ball_.restoreAll();
@@ -165,8 +165,7 @@ TEST_F(LimitedAttempts, EachTraineeHasSoMany) {
 TEST_F(LimitedAttempts, AnAttemptEndsWithItsTime) {
     task_->time_limit_s = 1e-3;
     TaskMonitor watch(task_, ball_.bone, ball_.history);
-    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(),
-                               {}, {}, &watch);
+    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone, {}, {}, &watch);
     start(attempts, "Ann");
     ball_.restoreAll();
     ball_.groove(10e-3);
@@ -184,8 +183,7 @@ TEST_F(LimitedAttempts, TheJournalSaysThatOneWasDropped) {
     const DensitiesAsScanned scanned{ball_.history.scanned(), ball_.bone.lattice};
     Journal journal(config, scanned);
     journal_.begin(&journal, Checkpoints(ball_.history, ball_.bone));
-    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(),
-                               {});
+    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone, {});
     start(attempts, "Ann");
     attempts.stop();
     start(attempts, "Bob");
@@ -208,8 +206,7 @@ TEST_F(LimitedAttempts, OfAnExaminationOnlyTheTimeIsTold) {
     scene::Scene scene;
     scene.mutable_assessment()->set_exam(true);
     scene.mutable_effects()->mutable_thermal();
-    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(),
-                               scene, {}, &watch);
+    AttemptController attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone, scene, {}, &watch);
     start(attempts, "Ann");
     ball_.restoreAll();
     ball_.groove(10e-3);

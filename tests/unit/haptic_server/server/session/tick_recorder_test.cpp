@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 #include "tests/support/temporary_folder.h"
 
@@ -68,6 +70,7 @@ TEST_F(RecorderTest, AnAttemptCountsFromWhereItsBoneIsPutBack) {
     const auto push = [&](double force, float damaged, uint64_t bone_order) {
         TickRecord record{};
         record.tick = tick_++;
+        record.contacts = 1;
         record.f_hand_W[0] = force;
         record.effects.damaged_volume = damaged;
         record.bone_order = bone_order;
@@ -99,16 +102,42 @@ TEST_F(RecorderTest, AnAttemptIsMeasuredFromWhereItsBoneIsPutBack) {
         recorder.drain();
     };
     push(0), push(0);
-    EXPECT_EQ(recorder.takeTechnique(), nullptr) << "there is no attempt";
+    EXPECT_EQ(recorder.endAttempt(0).technique, nullptr) << "there is no attempt";
     recorder.beginAttempt(2);
     push(1), push(2), push(2), push(2);
-    const std::unique_ptr<Technique> technique = recorder.takeTechnique();
+    const std::unique_ptr<Technique> technique = recorder.endAttempt(0).technique;
     ASSERT_NE(technique, nullptr);
     push(2);
-    technique->finish();
     EXPECT_DOUBLE_EQ(technique->beginS(), 3e-3);
     EXPECT_NEAR(findFigure(technique->figures(), "time.session")->value, 2e-3, 1e-12);
-    EXPECT_EQ(recorder.takeTechnique(), nullptr);
+    EXPECT_EQ(recorder.endAttempt(0).technique, nullptr);
+}
+
+// What was removed, how and when, is all as of the same tick, although ticks go on meanwhile.
+TEST_F(RecorderTest, AnAttemptEndsBehindTheTickThatIsSaid) {
+    Recorder recorder(ring_, kPeriodNs);
+    recorder.measureTechnique([] { return std::make_unique<Technique>(TechniqueScene{}); });
+    const auto push = [&] {
+        TickRecord record{};
+        record.t_s = 1e-3 * double(tick_);
+        record.tick = tick_++;
+        record.contacts = 1;
+        record.f_hand_W[0] = double(tick_);
+        ring_.tryPush(record);
+        recorder.drain();
+    };
+    recorder.beginAttempt(0);
+    push(), push();
+    std::thread later([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        for (int n = 0; n < 10; ++n) push();
+    });
+    const EndedAttempt ended = recorder.endAttempt(5);
+    later.join();
+    EXPECT_EQ(ended.figures.max_force, 5);
+
+    EXPECT_NEAR(findFigure(ended.technique->figures(), "time.session")->value, 4e-3, 1e-12);
+    EXPECT_EQ(recorder.endAttempt(1000).technique, nullptr) << "ticks that do not come are not waited for";
 }
 
 TEST_F(RecorderTest, ATraceThatLacksTicksIsNotWhole) {
