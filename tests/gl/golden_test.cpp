@@ -316,7 +316,7 @@ TEST_F(Golden, TheComparisonSeesAMissingRoundField) {
 }
 
 TEST_F(Golden, TheComparisonSeesAnEndoscopeWithoutItsLightsFalloff) {
-    expectSeen("endoscope", {{"if (light_reach <= 0.0) return 1.0;", "return 1.0;"}},
+    expectSeen("endoscope", {{"if (light_reach <= 0.0) return light_strength;", "return 1.0;"}},
                [this] { scene_->settings().camera = CameraMode::kEndoscope; });
 }
 

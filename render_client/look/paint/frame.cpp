@@ -40,6 +40,9 @@ void extendBy(Eigen::AlignedBox3d& box_W, const Pose& X_WA, const Box& box_A) {
     }
 }
 
+// It meets the surface head-on: as bright as the room's it would leave bone white, without its relief.
+constexpr float kMicroscopeStrength = 0.7f;
+
 // Towards the key light (C), of any length. A microscope's light comes in beside the eyepieces.
 Eigen::Vector3d directionOf(LightRig light) {
     switch (light) {
@@ -71,7 +74,8 @@ KeyLight aimKeyLight(const Camera& camera, LightRig light, const Sphere& lit_W, 
     shadow_from_camera.topRightCorner<3, 1>() = -(R_LC * center_C).array() * scale;
     return {key_C.cast<float>(), shadow_from_camera.cast<float>(),
             float(2 * half_size / RenderTargets::kShadowSize),
-            light == LightRig::kEndoscope ? float(kReach * camera.focus) : 0};
+            light == LightRig::kEndoscope ? float(kReach * camera.focus) : 0,
+            light == LightRig::kMicroscope ? kMicroscopeStrength : 1};
 }
 
 }  // namespace
@@ -176,6 +180,11 @@ Frame Frame::make(const FrameView& view, const Eigen::AlignedBox3f& tool_T, doub
     return frame;
 }
 
+void Frame::setStrength(const Program& program) const {
+    program.set("light_reach", key.reach);
+    program.set("light_strength", key.strength);
+}
+
 void Frame::setLight(const GlApi& gl, const Program& program, GLuint shadow_texture) const {
     gl.ActiveTexture(GL_TEXTURE0);
     gl.BindTexture(GL_TEXTURE_2D, shadow_texture);
@@ -183,7 +192,7 @@ void Frame::setLight(const GlApi& gl, const Program& program, GLuint shadow_text
     program.set("has_shadow", has_shadow ? 1 : 0);
     program.set("key_direction", key.direction);
     program.set("shadow_texel", key.shadow_texel);
-    program.set("light_reach", key.reach);
+    setStrength(program);
     program.set("shadow_from_camera", key.shadow_from_camera);
     program.set("clip_from_camera", clip_from_camera);
 }

@@ -106,7 +106,8 @@ struct KeyLight {
     Eigen::Vector3f direction;           // C, towards the light
     Eigen::Matrix4f shadow_from_camera;  // to the shadow map's -1 .. 1
     float shadow_texel;                  // m
-    float reach;  // m from the eye to where an endoscope's light is as bright; 0: it is the room's
+    float reach;     // m from the eye to where an endoscope's light is as bright; 0: it is the room's
+    float strength;  // against the room's, where it has no reach
 };
 
 // The part of the tool that casts a shadow where there is no shadow map: the burr as a ball and a piece of
@@ -152,6 +153,7 @@ struct Frame {
     static DepthRange neededRange(const FrameView& view, const Eigen::AlignedBox3f& tool_T);
 
     // Sets the uniforms of the lighting and of the projection; the shadow map goes to unit 0.
+    void setStrength(const Program& program) const;
     void setLight(const GlApi& gl, const Program& program, GLuint shadow_texture) const;
 };
 

@@ -191,7 +191,7 @@ void StructurePainter::drawSections(const Frame& frame, const std::vector<Struct
         section_->set("tangents", frame.tangents);
         section_->set("shift", frame.shift);
         section_->set("clip_from_camera", frame.clip_from_camera);
-        section_->set("light_reach", frame.key.reach);
+        frame.setStrength(*section_);
         section_->set("structure_colour", look.colour);
         section_->set("glow", look.glow);
         gl_.BindVertexArray(no_attributes_.name());

@@ -3,6 +3,11 @@
 // shadow map.
 uniform vec3 key_direction;   // C, towards the light
 uniform float light_reach;    // m from the eye to where its own light is as bright as the room's; 0: the room's
+#ifdef GL_ES
+const float light_strength = 1.0;
+#else
+uniform float light_strength;  // against the room's, without a reach
+#endif
 #ifndef GL_ES
 #define SHADOW
 #endif
@@ -45,7 +50,7 @@ float keyVisibility(vec3 p_C, vec3 normal) {
 }
 
 float falloff(vec3 p_C) {
-    if (light_reach <= 0.0) return 1.0;
+    if (light_reach <= 0.0) return light_strength;
     float spot = mix(0.5, 1.0, smoothstep(0.60, 0.97, -normalize(p_C).z));
     return spot * 1.5 / (0.85 + dot(p_C, p_C) / (light_reach * light_reach));
 }

@@ -75,7 +75,7 @@ void main() {
     float ring = 0.5 + 0.5 * sin(40.0 * p_M.y / max(burr_radius, 1e-6) + 6.0 * sin(17.0 * p_M.y / max(burr_radius, 1e-6)));
     shaded *= 1.0 - 0.22 * fluted * ring * smoothstep(0.5, 1.0, abs(flutes * spin_sweep) / 3.14159265);
 #endif
-    shaded *= 1.0 - 0.55 * burr * min(dot(milling_glow, vec3(1.0)), 1.0);  // leave room for the glow
-    shaded += milling_glow * burr * (0.40 + 0.9 * pow(1.0 - max(dot(normal, to_eye), 0.0), 1.5)) * (1.0 - 0.6 * groove);
+    shaded *= 1.0 - 0.30 * burr * min(dot(milling_glow, vec3(1.0)), 1.0);  // leave room for the glow
+    shaded += milling_glow * burr * (0.14 + 0.9 * pow(1.0 - max(dot(normal, to_eye), 0.0), 1.5)) * (1.0 - 0.6 * groove);
     colour = vec4(toneMap(shaded * min(falloff(p_C), 1.0)), 1.0);
 }
