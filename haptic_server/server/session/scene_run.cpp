@@ -104,9 +104,10 @@ SceneRun::SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation 
       attempts_(
           parts.lesson, recorder_, history_, journal_keeper_, simulation_.bone->volume.voxelVolume(),
           loaded_.scene, [this](bool begins) { parts_.link.announceAttempt(begins); }, &task_),
+      hand_(recorder_, [this](HandChoice hand) { parts_.link.announceHand(hand); }),
       commands_(loaded_.scene, *simulation_.bone, recorder_,
                 {history_, accuracy_, tools_, parts.stop_requested, bone_export_, io_.resetOrders(),
-                 parts.lesson, attempts_, parts.limits, journal_keeper_},
+                 parts.lesson, attempts_, parts.limits, journal_keeper_, hand_},
                 options.instructor_only),
       show_(
           parts.publisher, loaded_.scene, simulation_, history_, figuresOf(options), outbox_, recorder_,

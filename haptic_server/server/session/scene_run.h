@@ -104,6 +104,7 @@ class SceneRun {
     SessionExport bone_export_;
     TaskMonitor task_;
     AttemptController attempts_;
+    ScriptedHand hand_;
     SessionCommands commands_;
     ShowSession show_;
     PublishFigures published_;  // publisher thread's until it is joined

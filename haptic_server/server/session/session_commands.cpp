@@ -55,6 +55,10 @@ std::optional<Answer> SessionCommands::carryOut(const topics::Command& command) 
         case topics::Command::kResetDevice:
             controls_.reset_orders.fetch_add(1, std::memory_order_relaxed);
             return Answer::done();
+        case topics::Command::kBeginAgain:
+            return beginAgain();
+        case topics::Command::kTakeOver:
+            return controls_.hand.takeOver(command.sender());
         case topics::Command::kChooseScene:
             return controls_.lesson.orderScene(command);
         case topics::Command::kStartAttempt:
@@ -121,6 +125,18 @@ Answer SessionCommands::selectTool(uint32_t index) {
     return Answer::done();
 }
 
+// An attempt has a bone and a beginning of its own.
+Answer SessionCommands::beginAgain() {
+    if (controls_.attempts.isRunning())
+        return Answer::refused("an attempt is under way: end it, or start the next one");
+    if (const std::string why_not = controls_.hand.whyNotAgain(); !why_not.empty())
+        return Answer::refused(why_not);
+    const Answer answer = restore(Checkpoints::kScannedBone);
+    controls_.history.pauseMilling(false);
+    controls_.hand.beginAnew();
+    return answer;
+}
+
 Answer SessionCommands::restore(uint32_t checkpoint) {
     if (checkpoints_.has(checkpoint)) {
         controls_.journal.expectPutBack(checkpoint);
@@ -148,6 +164,7 @@ void SessionCommands::describe(topics::Status& status) const {
         status.set_bone_restores(controls_.history.finishedOrder());
         controls_.replay->describe(*status.mutable_replay());
     } else {
+        if (status.has_device()) controls_.hand.describe(*status.mutable_device());
         status.set_is_milling_paused(controls_.history.isMillingPaused());
         status.set_bone_restores(controls_.history.newestOrder());
     }

@@ -84,6 +84,8 @@ void addDevice(const HudInput& input, std::vector<Condition>& conditions) {
     if (const auto stop = deviceStop(device, tool))
         conditions.push_back({"stop", stop->text, stop->tone, true});
     if (const auto wait = deviceWait(device, tool)) conditions.push_back({"wait", wait->text, wait->tone});
+    if (device.script().has_ended() && !input.status->has_replay())
+        conditions.push_back({"script", "The scripted hand has done all of its script, and rests."});
 }
 
 // Who presses the pedal wonders.
