@@ -28,6 +28,8 @@ TEST_F(CommandWords, EachWordIsItsCommand) {
     EXPECT_FALSE(of("resume").pause_milling());
     EXPECT_TRUE(of(" checkpoint ").save_checkpoint());
     EXPECT_TRUE(of("reset-device").reset_device());
+    EXPECT_TRUE(of("again").begin_again());
+    EXPECT_TRUE(of("take-over").take_over());
     EXPECT_TRUE(of("shutdown").shut_down());
     EXPECT_EQ(of("scene tooth_cavity").choose_scene(), "tooth_cavity");
     EXPECT_EQ(of("start Ann Lee").start_attempt(), "Ann Lee");

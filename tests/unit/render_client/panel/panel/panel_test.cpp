@@ -275,6 +275,31 @@ TEST_F(PanelClicks, ADeviceIsResetWhereThereIsOne) {
     EXPECT_TRUE(clickForCommand("Reset the device (D)").reset_device());
 }
 
+TEST_F(PanelClicks, AfterAScriptTwoButtonsStandOverThePictureAlsoWithoutThePanel) {
+    for (const bool is_open : {true, false}) {
+        status_.clear_device();
+        layOut();
+        EXPECT_FALSE(panel_.find("Again (Shift+C)"));
+        status_.mutable_device()->mutable_script()->set_has_ended(true);
+        EXPECT_TRUE(clickForCommand("Again (Shift+C)").begin_again());
+        EXPECT_TRUE(clickForCommand("Take over (G)").take_over());
+        if (is_open) switchPanel();
+    }
+    session_.role = topics::Viewer::VIEWER;
+    layOut();
+    EXPECT_FALSE(panel_.find("Take over (G)")) << "who only looks says nothing";
+    EXPECT_FALSE(panel_.drawData());
+}
+
+TEST_F(PanelClicks, WhoHasTakenOverGivesTheHandBackToTheScript) {
+    status_.mutable_device()->set_kind(uint32_t(DeviceKind::kPointer));
+    layOut();
+    EXPECT_FALSE(panel_.find("Again")) << "there is no script";
+    status_.mutable_device()->mutable_script()->set_taken_over_by(9);
+    EXPECT_FALSE(panel_.find("Take over (G)"));
+    EXPECT_TRUE(clickForCommand("Again (Shift+C)").begin_again());
+}
+
 TEST_F(PanelClicks, WhatIsInForceAlreadyIsNotAskedForAgain) {
     click("6 mm##tool 0");
     click("balanced");
