@@ -13,7 +13,6 @@
 #include "common/rt/periodic_timer.h"
 #include "common/rt/realtime.h"
 #include "common/rt/rt_guard.h"
-#include "device_daemon/apps/device_daemon/resting_hand.h"
 #include "device_daemon/control/device_loop/black_box.h"
 
 namespace bonemill {
@@ -70,6 +69,7 @@ Daemon::End Daemon::run() {
 }
 
 void Daemon::runLoop() {
+    memory_.between.reset();
     const int64_t start_ns = monotonicNowNs();
     PeriodicTimer timer(period_ns_, start_ns);
     const bool has_clock = device_.hasClock();
@@ -90,7 +90,10 @@ void Daemon::runLoop() {
             is_ending_ = true;  // what happens now is its own doing
         }
     }
-    if (!is_run_over_ || should_stop_) sayGoodbye(link_, memory_);
+    if (!is_run_over_ || should_stop_)
+        sayGoodbye(link_, memory_);
+    else if (is_hand_over_ && memory_.last_sample)
+        memory_.between.emplace(link_, *memory_.last_sample);
     loop_.blackBox().finish();
     statistics_.wall_time += secondsOfNs(monotonicNowNs() - start_ns);
     statistics_.missed_periods += timer.missedPeriods();
@@ -244,6 +247,7 @@ void Daemon::followHand(const SceneNotice& notice) {
     if (wanted != scene_.hand) {
         spdlog::info("haptic_server wants {} to be the hand: force ramps to zero",
                      wanted == HandChoice::kPointer ? "a viewer's mouse" : "the script");
+        is_hand_over_ = true;
         is_run_over_ = true;
         return;
     }

@@ -12,6 +12,7 @@
 #include "common/rt/stop_signals.h"
 #include "device_daemon/apps/device_daemon/child_program.h"
 #include "device_daemon/apps/device_daemon/daemon_options.h"
+#include "device_daemon/apps/device_daemon/resting_hand.h"
 #include "device_daemon/apps/device_daemon/scene_follower.h"
 #include "device_daemon/control/device_loop/device_loop.h"
 #include "device_daemon/control/safety/safety_states.h"
@@ -44,6 +45,7 @@ struct DaemonMemory {
     LoopStatistics statistics;
     SafetyLatch stop;                         // a stop holds until a user resets the device
     std::optional<DeviceSample> last_sample;  // that went out; nothing before the first and after a goodbye
+    std::optional<RestingHand> between;  // from the end of a hand's loop to the beginning of the next one's
 };
 
 // Lets haptic_server tell an orderly end from a fault. RT-safe.
@@ -64,8 +66,9 @@ class Daemon {
 
     enum class End { kLeft, kOtherSceneOrHand };
     // Blocks until the device leaves, --seconds or a signal ends it, or haptic_server has another scene or
-    // wants another hand, and the force has ramped to zero. Throws UserError when there is no real-time scheduling with --strict-rt,
-    // when no server answered within --wait-seconds, or when the device is not the scene's.
+    // wants another hand, and the force has ramped to zero. Throws UserError when there is no real-time
+    // scheduling with --strict-rt, when no server answered within --wait-seconds, or when the device is not
+    // the scene's.
     End run();
 
   private:
@@ -120,6 +123,7 @@ class Daemon {
     Progress progress_;
     std::atomic<bool> should_stop_ = false;
     std::atomic<bool> is_ending_ = false;
+    std::atomic<bool> is_hand_over_ = false;
     std::atomic<bool> is_run_over_ = false;  // another daemon goes on from here
 };
 

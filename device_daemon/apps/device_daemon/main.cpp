@@ -13,7 +13,6 @@
 #include "common/process/standard_output.h"
 #include "device_daemon/apps/device_daemon/daemon.h"
 #include "device_daemon/apps/device_daemon/device_choice.h"
-#include "device_daemon/apps/device_daemon/resting_hand.h"
 #include "device_daemon/ares/ares_device/ares_settings.h"
 #include "device_daemon/control/device_loop/black_box.h"
 
@@ -92,18 +91,11 @@ std::string jsonLineOf(const LoopStatistics& s, const std::string& device_words)
 struct Leaving {
     DeviceLink& link;
     DaemonMemory& memory;
-    ~Leaving() { sayGoodbye(link, memory); }
+    ~Leaving() {
+        memory.between.reset();
+        sayGoodbye(link, memory);
+    }
 };
-
-// A device that the scene does not say stays.
-void changeDevice(const FollowedScene& scene, const DaemonOptions& options, DeviceLink& link,
-                  const DaemonMemory& memory, std::optional<ChosenDevice>& chosen) {
-    std::optional<RestingHand> between;
-    if (const auto& last = memory.last_sample; last && last->scene_revision == scene.revision)
-        between.emplace(link, *last);
-    if (chosen && chosen->is_of_scene) chosen.reset();
-    if (!chosen) chosen = chooseDevice(scene, options);
-}
 
 // Each scene has its own loop; what the device is and has found out stays unless the scene says what it is.
 void serve(const DaemonOptions& options, SceneFollower& scenes, DeviceLink& link,
@@ -113,7 +105,8 @@ void serve(const DaemonOptions& options, SceneFollower& scenes, DeviceLink& link
     std::optional<ChosenDevice> chosen;
     std::string device_words;
     while (const std::optional<FollowedScene> scene = scenes.next()) {
-        changeDevice(*scene, options, link, memory, chosen);
+        if (chosen && chosen->is_of_scene) chosen.reset();
+        if (!chosen) chosen = chooseDevice(*scene, options);
         DaemonOptions of_run = options;
         if (chosen->leaves_by_itself) of_run.seconds.reset();
         Daemon daemon(*scene, of_run, *chosen->device, chosen->program.get(), stop_signals, link, memory);

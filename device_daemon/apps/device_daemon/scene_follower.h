@@ -15,9 +15,9 @@ namespace bonemill {
 
 struct FollowedScene {
     std::string file;
-    uint64_t hash = 0;      // sceneHashOf()
-    uint32_t revision = 0;  // SceneNotice; 0: the daemon's own
-    uint64_t epoch = 0;     // likewise
+    uint64_t hash = 0;                   // sceneHashOf()
+    uint32_t revision = 0;               // SceneNotice; 0: the daemon's own
+    uint64_t epoch = 0;                  // likewise
     HandChoice hand = HandChoice::kOwn;  // that the server wants, as far as this daemon does what it wants
     DeviceSetup setup;
 };

@@ -42,6 +42,7 @@ TEST(DeviceLoop, OnlyASimulatedHandHasAScriptThatEnds) {
     for (const bool is_simulated : {false, true}) {
         LoopRig rig;
         if (is_simulated) rig.device.device.abilities |= kAbilitySimulated;
+        ++rig.device.version;
         rig.step();
         EXPECT_FALSE(rig.sample.flags & kDeviceFlagScriptEnded);
         rig.device.reading.status |= kStatusScriptEnded;
