@@ -13,7 +13,8 @@ namespace bonemill {
 bool isHandCardOnScreen(const SessionView& session);
 
 // It is called between ImGui::NewFrame() and ImGui::Render(), while the card is on the screen. `places` takes
-// where each button is, by its label; the card stands low in the middle of the view of this width (pixels).
+// where each button is, by its label; the card stands low in the middle of what the panel leaves of the
+// view: this width (pixels).
 void buildHandCard(ViewerControls& controls, const SessionView& session, Wishes& wishes,
                    std::map<std::string, PixelPoint>& places, float scale, float view_width);
 

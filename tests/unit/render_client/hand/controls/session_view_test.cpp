@@ -41,7 +41,8 @@ TEST(SessionCommands, AfterAScriptItBeginsAgainOrIsTakenOver) {
     session.status.mutable_device()->mutable_script()->set_has_ended(true);
     EXPECT_TRUE(session.ask(Action::kAgain).begin_again());
     EXPECT_EQ(whyNotTakeOver(session.view()), "");
-    EXPECT_EQ(whyNotTakeOver(session.view(topics::Viewer::EXAMINER)), "An examiner leaves the tool to others");
+    EXPECT_EQ(whyNotTakeOver(session.view(topics::Viewer::EXAMINER)),
+              "An examiner leaves the tool to others");
     EXPECT_NE(whyNotTakeOver(session.view(topics::Viewer::VIEWER)), "");
     session.status.mutable_replay();
     EXPECT_NE(whyNotTakeOver(session.view()), "") << "a recording's hand";
