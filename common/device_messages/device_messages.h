@@ -58,7 +58,7 @@ struct SceneNotice {
     uint64_t epoch;         // that viewers know the server's run by; 0: not told
     uint32_t hand;          // HandChoice; a daemon whose own hand is not a scripted one stays with it
     uint32_t hand_repeats;  // counts the orders that a scripted hand does its script anew. Set by the link.
-    char path[1024];  // absolute; ends with 0
+    char path[1024];        // absolute; ends with 0
 };
 
 // This is what moves with the handle, and how late the device is. The server fits the coupling to it

@@ -3,7 +3,8 @@
 namespace bonemill {
 namespace {
 
-constexpr char kNoEnd[] = "no scripted hand has done all of its script (device_daemon --device simulated --hold)";
+constexpr char kNoEnd[] =
+    "no scripted hand has done all of its script (device_daemon --device simulated --hold)";
 
 }  // namespace
 

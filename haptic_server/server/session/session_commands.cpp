@@ -39,6 +39,9 @@ std::optional<Answer> SessionCommands::carryOut(const topics::Command& command) 
             return Answer::done();
         case topics::Command::kSetAccuracy:
             return setAccuracy(command.set_accuracy());
+        case topics::Command::kTune:
+            return controls_.tuning ? controls_.tuning->tune(command.tune())
+                                    : Answer::refused("nothing can be tuned here");
         case topics::Command::kSelectTool:
             return selectTool(command.select_tool());
         case topics::Command::kSaveCheckpoint:
@@ -158,6 +161,7 @@ double SessionCommands::sessionS() const {
 
 void SessionCommands::describe(topics::Status& status) const {
     status.set_session_s(sessionS());
+    if (controls_.tuning) controls_.tuning->describe(status);
     if (controls_.replay) {
         const auto latest = recorder_.latest();
         status.set_is_milling_paused(latest && latest->input.decisions.is_milling_paused);

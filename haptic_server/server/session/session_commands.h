@@ -17,6 +17,7 @@
 #include "haptic_server/server/session/scripted_hand.h"
 #include "haptic_server/server/session/session_export.h"
 #include "haptic_server/server/session/tick_recorder.h"
+#include "haptic_server/server/session/tuning_desk.h"
 #include "haptic_server/teaching/lessons/lesson_state.h"
 #include "haptic_server/teaching/lessons/remark_list.h"
 #include "proto/topics.pb.h"
@@ -49,6 +50,7 @@ struct SessionControls {
     JournalRecorder& journal;
     ScriptedHand& hand;
     ReplayOrders* replay = nullptr;  // there where a recording is shown
+    TuningDesk* tuning = nullptr;    // there in a live session
 };
 
 class SessionCommands {

@@ -100,6 +100,7 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
     assign(info.mutable_bone_max_m(), box.max());
     info.set_lacks_patient_axes(simulation.lacks_patient_axes);
     for (const SceneTool& tool : simulation.tools) info.add_tool_names(tool.name);
+    *info.mutable_tunable() = simulation.tunable.ofScene();
     fillCamera(scene.camera(), info.mutable_camera());
     const scene::Scene shown = shownSceneOf(scene, simulation.segment_colors);
     describeToViewers(shown, info);

@@ -199,10 +199,10 @@ void HandFeed::showHand(const SessionView& session, Clock::time_point now) {
     const float opacity = hintOpacity(hint_end - now);
     scene_.setHint(opacity > 0 ? std::optional(HudHint{hold.isHolding() ? hintRows() : startRows(), opacity})
                                : std::nullopt);
-    scene_.setHelp(helpGroups(hold.isHolding()         ? HelpFor::kHolding
-                              : isReplay(session)      ? HelpFor::kReplay
+    scene_.setHelp(helpGroups(hold.isHolding()                                  ? HelpFor::kHolding
+                              : isReplay(session)                               ? HelpFor::kReplay
                               : isHeldByMouse(session) || hasHandEnded(session) ? HelpFor::kMayHold
-                                                       : HelpFor::kLooking,
+                                                                                : HelpFor::kLooking,
                               session.lesson != nullptr));
 }
 

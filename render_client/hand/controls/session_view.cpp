@@ -41,9 +41,9 @@ std::optional<Question> beforeScene(const SessionView& session) {
 std::optional<Question> beforeOtherBone(const topics::Command& command, const SessionView& session) {
     if (!hasUnsavedWork(session)) return std::nullopt;
     const bool is_checkpoint = command.has_restore_checkpoint();
-    const std::string what =
-        is_checkpoint ? "Back to checkpoint " + std::to_string(command.restore_checkpoint()) + "?"
-                      : "Put the bone back?";
+    const std::string what = is_checkpoint
+                                 ? "Back to checkpoint " + std::to_string(command.restore_checkpoint()) + "?"
+                                 : "Put the bone back?";
     return Question{.text = what + " " + milledText(session) + " and in no checkpoint.",
                     .yes = is_checkpoint ? "Go back" : "Put back",
                     .offers_checkpoint = true};

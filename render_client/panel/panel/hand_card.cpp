@@ -5,7 +5,8 @@
 namespace bonemill {
 namespace {
 
-constexpr float kHeight = 0.86f;  // of the picture: below the bone, above what the head-up display says lowest
+constexpr float kHeight =
+    0.86f;  // of the picture: below the bone, above what the head-up display says lowest
 
 struct CardButton {
     const char* text;

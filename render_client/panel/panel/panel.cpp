@@ -217,13 +217,14 @@ void Panel::frame(double seconds, ViewerControls& controls, const SessionView& s
         ImGui::SetWindowFocus(nullptr);
     const bool is_bare = isHelpInFront(controls);
     if (controls.isPanelOpen() && !is_bare)
-        PanelContent(controls, session, wishes, places_, is_ending_, lesson_, remark_, invite_,
+        PanelContent(controls, session, wishes, places_, is_ending_, lesson_, remark_, invite_, tuning_,
                      pictures_.all(), plots_, stage_.scale(), view_width_)
             .build();
     if (lesson_.isOnScreen(session) && !is_bare)
         LessonCards(controls, session, wishes, lesson_, places_, stage_.scale(), view_width_).build();
     if (isHandCardOnScreen(session) && !is_bare)
-        buildHandCard(controls, session, wishes, places_, stage_.scale(), view_width_);
+        buildHandCard(controls, session, wishes, places_, stage_.scale(),
+                      freeWidth(controls, view_width_, stage_.scale()));
     if (!session.offered.empty()) buildSessionChoice(session, wishes, places_, stage_.scale());
     buildQuestion(controls, session, wishes, places_, stage_.scale(), view_width_);
     stage_.end();

@@ -42,6 +42,16 @@ TEST_F(CommandWords, EachWordIsItsCommand) {
     EXPECT_EQ(of("export after lunch").export_(), "after lunch");
 }
 
+TEST_F(CommandWords, WhatIsTunedIsWordedAsInASceneFile) {
+    const topics::Command command = of("tune coupling { damping_time_ms: 2 max_force_n: 6 }");
+    EXPECT_EQ(command.tune().coupling().damping_time_ms(), 2);
+    EXPECT_EQ(command.tune().coupling().max_force_n(), 6);
+    EXPECT_EQ(of("tune scene").action_case(), topics::Command::kTune);
+    EXPECT_EQ(of("tune scene").tune().ByteSizeLong(), 0u);
+    for (const char* text : {"tune", "tune 3", "tune loop { rate_hz: 500 }", "tune coupling { softness: 1 }"})
+        EXPECT_NE(commandProblem(text), "") << text;
+}
+
 TEST_F(CommandWords, AReplayIsLedByWords) {
     EXPECT_EQ(of("seek 12.5").replay().seek_s(), 12.5);
     EXPECT_EQ(of("speed 0.25").replay().speed(), 0.25);
