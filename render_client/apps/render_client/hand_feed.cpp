@@ -147,7 +147,8 @@ bool HandFeed::takesOver(const SessionView& session) {
 bool HandFeed::isOffered(const SessionView& session, bool has_seen_bone) {
     const bool is_wanted = begins_by_itself_ || isHeldByMouse(session);
     if (!has_seen_bone || !is_wanted || !mayHoldTool(session.role)) return false;
-    if (isTakenOver(session)) return false;  // by who has asked for it
+    // The mouse of a take-over is that of who has asked for it, and nobody's when the script goes on.
+    if (isTakenOver(session)) offered_epoch_ = subscriber_.epoch();
     return std::exchange(offered_epoch_, subscriber_.epoch()) != subscriber_.epoch();
 }
 

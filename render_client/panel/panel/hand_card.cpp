@@ -5,8 +5,8 @@
 namespace bonemill {
 namespace {
 
-constexpr float kHeight =
-    0.86f;  // of the picture: below the bone, above what the head-up display says lowest
+// Letters' heights from the picture's lower edge: between the sentences and the notices of hud_layout.cpp.
+constexpr float kAboveEdge = 4;
 
 struct CardButton {
     const char* text;
@@ -25,8 +25,8 @@ bool isHandCardOnScreen(const SessionView& session) {
 
 void buildHandCard(ViewerControls& controls, const SessionView& session, Wishes& wishes,
                    std::map<std::string, PixelPoint>& places, float scale, float view_width) {
-    ImGui::SetNextWindowPos(ImVec2(view_width / 2, ImGui::GetIO().DisplaySize.y * kHeight), ImGuiCond_Always,
-                            ImVec2(0.5f, 0.5f));
+    const float bottom = ImGui::GetIO().DisplaySize.y - kAboveEdge * ImGui::GetFontSize();
+    ImGui::SetNextWindowPos(ImVec2(view_width / 2, bottom), ImGuiCond_Always, ImVec2(0.5f, 1));
     ImGui::Begin("##hand", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
                      ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |

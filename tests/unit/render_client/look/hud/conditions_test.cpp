@@ -132,6 +132,16 @@ TEST(Conditions, TheEndOfAScriptIsNoFault) {
     EXPECT_EQ(conditions[0].tone, HudTone::kPlain);
 }
 
+TEST(Conditions, AHandThatMakesWayWaitsForNothing) {
+    HudInput input = runningSession();
+    topics::Device& device = *input.status->mutable_device();
+    device.set_state(uint32_t(SafetyState::kPaused));
+    device.set_abilities(kAbilityEnablingSwitch);
+    EXPECT_TRUE(findCondition(conditionsOf(input), "wait"));
+    device.mutable_script()->set_taken_over_by(7);
+    EXPECT_FALSE(findCondition(conditionsOf(input), "wait"));
+}
+
 TEST(FaultWords, EveryFaultOfTheServerHasWords) {
     std::string all;
     for (uint32_t fault = 1; fault <= kLastFault; fault <<= 1) {
