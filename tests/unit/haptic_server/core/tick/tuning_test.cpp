@@ -65,18 +65,18 @@ TEST(Tuning, InContactTheForceGoesToWhatWasTunedAtALimitedRateAndBack) {
             const TickRecord before = bench.run(held(600)).back();
             ASSERT_GT(forceOf(before).norm(), 0.5) << what;
             bench.tune(change);
-            const Records tuned = bench.run(held(1500));
+            const Records tuned = bench.run(held(700));
             expectNoJump(before, tuned, what);
 
             // As if it had been so from the beginning.
             ToolBench alone(1, presetSettings(preset));
             alone.tune(change);
             alone.run(pressing(300));
-            const double wanted = forceOf(alone.run(held(2100)).back()).norm();
+            const double wanted = forceOf(alone.run(held(1300)).back()).norm();
             EXPECT_NEAR(forceOf(tuned.back()).norm(), wanted, 0.02 * wanted + 1e-3) << what;
 
             bench.tunings.choose(TuningSwitch::kOfScene);
-            const Records back = bench.run(held(1500));
+            const Records back = bench.run(held(700));
             expectNoJump(tuned.back(), back, what);
             EXPECT_NEAR((forceOf(back.back()) - forceOf(before)).norm(), 0, 0.02 * forceOf(before).norm())
                 << what;
@@ -89,10 +89,10 @@ TEST(Tuning, WhatWasTunedIsFelt) {
     bench.run(pressing(300));
     const double before = forceOf(bench.run(held(600)).back()).norm();
     bench.tune(kChanges[1].second);
-    const double softer = forceOf(bench.run(held(1500)).back()).norm();
+    const double softer = forceOf(bench.run(held(700)).back()).norm();
     EXPECT_LT(softer, 0.6 * before);
     bench.tune(kChanges[6].second);
-    EXPECT_NEAR(forceOf(bench.run(held(1500)).back()).norm(), 0.3, 1e-6);
+    EXPECT_NEAR(forceOf(bench.run(held(700)).back()).norm(), 0.3, 1e-6);
 }
 
 // A burr that the wall carries less for is pulled less: the tool's saturation follows the contact's
@@ -102,9 +102,9 @@ TEST(Tuning, TheToolInUseIsPulledWithWhatWasTunedForIt) {
     bench.run(pressing(300));
     const Change weak_burrs = [](TickTuning& t) { t.saturation_forces = {1, 0.4, 2}; };
     bench.tune(weak_burrs);
-    EXPECT_LE(forceOf(bench.run(held(1500)).back()).norm(), 0.4 * (1 + 1e-9));
+    EXPECT_LE(forceOf(bench.run(held(700)).back()).norm(), 0.4 * (1 + 1e-9));
     bench.tools.choose(2);
-    const double large = forceOf(bench.run(held(1500)).back()).norm();
+    const double large = forceOf(bench.run(held(700)).back()).norm();
     EXPECT_GT(large, 0.8);
     EXPECT_LE(large, 2 * (1 + 1e-9));
 }
