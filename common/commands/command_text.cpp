@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/commands/command_rows.h"
+#include "common/config/live_fields.h"
 #include "common/text/foreign_text.h"
 #include "common/text/hex_text.h"
 #include "common/text/printed_text.h"
@@ -19,6 +20,15 @@ struct Value {
     std::string text;
 };
 
+// Empty for another message.
+std::string tunedText(const Message& message) {
+    const auto* const tuning = dynamic_cast<const scene::Tuning*>(&message);
+    if (!tuning) return "";
+    std::string text = tuningText(*tuning);
+    std::ranges::replace(text, '\n', ' ');
+    return text.empty() ? "as the scene file says" : text;
+}
+
 Value valueOf(const Message& message, const FieldDescriptor& field) {
     const auto& r = *message.GetReflection();
     switch (field.cpp_type()) {
@@ -34,6 +44,8 @@ Value valueOf(const Message& message, const FieldDescriptor& field) {
             const std::string text = r.GetString(message, &field);
             return {text.empty() ? 0.0 : 1.0, text};
         }
+        case FieldDescriptor::CPPTYPE_MESSAGE:
+            return {0, tunedText(r.GetMessage(message, &field))};
         default:
             return {};
     }
@@ -42,6 +54,7 @@ Value valueOf(const Message& message, const FieldDescriptor& field) {
 std::string argumentText(const CommandForm& form, const Value& value) {
     switch (form.kind()) {
         case CommandForm::TEXT:
+        case CommandForm::SCENE_TEXT:
             return value.text;
         case CommandForm::TOOL:
             return printed("%.0f", value.number + 1);
@@ -97,6 +110,7 @@ std::string orderText(const topics::Command& command) {
         return field->name() + " " + repeatedText(reflection->GetString(command, field));
     if (field->type() == FieldDescriptor::TYPE_UINT32)
         return field->name() + " " + std::to_string(reflection->GetUInt32(command, field));
+    if (command.has_tune()) return field->name() + " " + tunedText(command.tune());
     if (field->type() == FieldDescriptor::TYPE_MESSAGE) return field->name();
     return reflection->GetBool(command, field) ? field->name() : field->name() + " false";
 }

@@ -70,13 +70,7 @@ void SceneChecker::checkValues(const Message& message, const std::string& prefix
 
 void SceneChecker::checkNumber(const FieldDescriptor& field, double value, const std::string& path,
                                std::string_view unit) const {
-    if (!std::isfinite(value)) refuse(path, "= " + numberText(value) + " is not a finite number");
-    if (!field.options().HasExtension(scene::range)) return;
-    const scene::Range& range = field.options().GetExtension(scene::range);
-    if (value >= range.min() && value <= range.max()) return;
-    const std::string suffix = unit.empty() ? "" : " (" + std::string(unit) + ")";
-    refuse(path, "= " + numberText(value) + " is outside " + numberText(range.min()) + " .. " +
-                     numberText(range.max()) + suffix);
+    if (const std::string why = numberProblem(field, value, unit); !why.empty()) refuse(path, why);
 }
 
 // Texts become file names and go over the network as UTF-8.
@@ -167,6 +161,16 @@ void SceneChecker::checkWaypoints(const scene::SimulatedOperator& simulated_oper
 }
 
 }  // namespace
+
+std::string numberProblem(const FieldDescriptor& field, double value, std::string_view unit) {
+    if (!std::isfinite(value)) return "= " + numberText(value) + " is not a finite number";
+    if (!field.options().HasExtension(scene::range)) return "";
+    const scene::Range& range = field.options().GetExtension(scene::range);
+    if (value >= range.min() && value <= range.max()) return "";
+    const std::string suffix = unit.empty() ? "" : " (" + std::string(unit) + ")";
+    return "= " + numberText(value) + " is outside " + numberText(range.min()) + " .. " +
+           numberText(range.max()) + suffix;
+}
 
 void checkScene(const ParsedScene& parsed, const std::string& name) {
     SceneChecker checker(parsed.lines, name);

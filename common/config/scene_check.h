@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "common/config/scene_text.h"
 
@@ -11,6 +12,11 @@ namespace bonemill {
 // Throws UserError "name:line: field `path` = value ..." for the first value that is not finite, outside its
 // (range), or in conflict with another field.
 void checkScene(const ParsedScene& parsed, const std::string& name);
+
+// Says what is wrong with a number in this field, by itself: "= 200 is outside 0 .. 100 (ms)"; empty if
+// nothing is.
+std::string numberProblem(const google::protobuf::FieldDescriptor& field, double value,
+                          std::string_view unit);
 
 // It takes the path of a field and what is wrong with it, and throws.
 using RefuseField = std::function<void(const std::string& path, const std::string& why)>;

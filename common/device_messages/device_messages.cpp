@@ -63,8 +63,8 @@ bool isPlausible(const DeviceCapabilities& capabilities) noexcept {
 bool isPlausible(const SceneNotice& notice) noexcept {
     const char* const end = std::find(std::begin(notice.path), std::end(notice.path), '\0');
     const auto is_control = [](char c) { return (unsigned char)c < ' ' || c == 127; };
-    return notice.revision != 0 && notice.path[0] == '/' && end != std::end(notice.path) &&
-           std::none_of(std::begin(notice.path), end, is_control);
+    return notice.revision != 0 && notice.hand <= uint32_t(HandChoice::kPointer) && notice.path[0] == '/' &&
+           end != std::end(notice.path) && std::none_of(std::begin(notice.path), end, is_control);
 }
 
 }  // namespace bonemill

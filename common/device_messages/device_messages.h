@@ -1,4 +1,4 @@
-// device_daemon and haptic_server say this to each other through shared memory (layout 5).
+// device_daemon and haptic_server say this to each other through shared memory (layout 6).
 //
 // The frames are D, the device's base, and T, the tool frame of the handle. Units are m, N, N·m; stamps are
 // CLOCK_MONOTONIC ns of this machine. Everything here is RT-safe.
@@ -42,6 +42,12 @@ struct WrenchCommand {
     uint32_t scene_revision;    // as in DeviceSample: each side ignores what belongs to another scene
 };
 
+// Which hand the server wants.
+enum class HandChoice : uint32_t {
+    kOwn = 0,      // the device that the daemon was started with
+    kPointer = 1,  // the mouse in a viewer, in place of a scripted hand
+};
+
 // The server says so which scene is in force. The daemon reads the file, and goes by it only if it is the one
 // that the server has read.
 struct SceneNotice {
@@ -49,8 +55,10 @@ struct SceneNotice {
     uint32_t revision;  // 1, 2, ...: set by the link; a new number is a new scene, or a server started anew
     // Counts the beginnings and the ends of attempts: odd while one is under way. Set by the link.
     uint32_t attempt_changes;
-    uint64_t epoch;   // that viewers know the server's run by; 0: not told
-    char path[1024];  // absolute; ends with 0
+    uint64_t epoch;         // that viewers know the server's run by; 0: not told
+    uint32_t hand;          // HandChoice; a daemon whose own hand is not a scripted one stays with it
+    uint32_t hand_repeats;  // counts the orders that a scripted hand does its script anew. Set by the link.
+    char path[1024];        // absolute; ends with 0
 };
 
 // This is what moves with the handle, and how late the device is. The server fits the coupling to it
@@ -94,6 +102,7 @@ enum DeviceFlag : uint32_t {
     kDeviceFlagCalibrated = 1u << 4,    // positions count from a zero that the device has found
     kDeviceFlagForceWaits =
         1u << 5,  // it does not engage because the wrench is not small: move the tool away
+    kDeviceFlagScriptEnded = 1u << 6,  // a scripted hand has done all of its script, and rests
 };
 
 enum class DeviceKind : uint32_t {
@@ -130,8 +139,9 @@ static_assert(sizeof(WrenchCommand) == 80 && offsetof(WrenchCommand, f_hand_D) =
               offsetof(WrenchCommand, t_hand_D) == 40 && offsetof(WrenchCommand, answers_sequence) == 64 &&
               offsetof(WrenchCommand, reset_orders) == 72 && offsetof(WrenchCommand, scene_revision) == 76);
 static_assert(std::is_trivially_copyable_v<SceneNotice> && std::is_standard_layout_v<SceneNotice>);
-static_assert(sizeof(SceneNotice) == 1048 && offsetof(SceneNotice, attempt_changes) == 12 &&
-              offsetof(SceneNotice, epoch) == 16 && offsetof(SceneNotice, path) == 24);
+static_assert(sizeof(SceneNotice) == 1056 && offsetof(SceneNotice, attempt_changes) == 12 &&
+              offsetof(SceneNotice, epoch) == 16 && offsetof(SceneNotice, hand) == 24 &&
+              offsetof(SceneNotice, hand_repeats) == 28 && offsetof(SceneNotice, path) == 32);
 static_assert(std::is_trivially_copyable_v<DeviceCapabilities> &&
               std::is_standard_layout_v<DeviceCapabilities>);
 static_assert(sizeof(HandleDynamics) == 64 && sizeof(DeviceCapabilities) == 160 &&
@@ -160,7 +170,8 @@ bool isPlausible(const WrenchCommand& command) noexcept;
 // Tells whether the server may adapt to it: its text ends, its kind is known, and its figures are finite and
 // not negative.
 bool isPlausible(const DeviceCapabilities& capabilities) noexcept;
-// Tells whether the daemon may look for the file: its path is absolute, ends, and can stand in a log.
+// Tells whether the daemon may look for the file: its path is absolute, ends, and can stand in a log. The
+// hand is one that there is.
 bool isPlausible(const SceneNotice& notice) noexcept;
 
 }  // namespace bonemill

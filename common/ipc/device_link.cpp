@@ -177,11 +177,13 @@ uint32_t DeviceLink::announceScene(const std::string& absolute_path, uint64_t ha
     memory_->scene.value.tryRead(notice);
     const uint32_t revision = notice.revision + 1 == 0 ? 1 : notice.revision + 1;
     const uint32_t attempt_changes = notice.attempt_changes + notice.attempt_changes % 2;
+    const uint32_t hand_repeats = notice.hand_repeats;
     notice = {};
     notice.hash = hash;
     notice.epoch = epoch;
     notice.revision = revision;
     notice.attempt_changes = attempt_changes;
+    notice.hand_repeats = hand_repeats;
     std::copy(absolute_path.begin(), absolute_path.end(), notice.path);
     capabilities_version_ = 0;  // who reads for the new scene knows no device yet
     memory_->scene.value.write(notice);
@@ -194,6 +196,14 @@ void DeviceLink::announceAttempt(bool begins) {
     const bool is_running = notice.attempt_changes % 2 == 1;
     if (!begins && !is_running) return;
     notice.attempt_changes += begins && is_running ? 2 : 1;
+    memory_->scene.value.write(notice);
+}
+
+void DeviceLink::announceHand(HandChoice hand) {
+    SceneNotice notice{};
+    if (!memory_->scene.value.tryRead(notice) || notice.revision == 0) return;
+    notice.hand = uint32_t(hand);
+    if (hand == HandChoice::kOwn) ++notice.hand_repeats;
     memory_->scene.value.write(notice);
 }
 

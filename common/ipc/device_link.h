@@ -63,6 +63,9 @@ class DeviceLink {
     // For the server: says that an attempt begins, or that the one under way ends, in the scene that was
     // announced. It is not RT-safe; any one thread may call it beside the tick.
     void announceAttempt(bool begins);
+    // For the server: says which hand it wants; the daemon's own scripted hand does its script anew. It holds
+    // until another scene is announced. It is not RT-safe; any one thread may call it beside the tick.
+    void announceHand(HandChoice hand);
     // For the daemon: reads what was announced last; false if nothing plausible was. Any thread may call it
     // beside the loop.
     bool readScene(SceneNotice& notice) const noexcept;

@@ -15,7 +15,7 @@
 namespace bonemill {
 
 inline constexpr uint64_t kLinkMagic = 0x4b4e494c4c494d42;  // "BMILLINK" in memory
-inline constexpr uint32_t kLinkLayoutVersion = 5;
+inline constexpr uint32_t kLinkLayoutVersion = 6;
 
 // The set of semaphores with the memory's key: 0 is free, 1 is held.
 enum LinkSemaphore : unsigned short { kSetupSemaphore = 0, kServerSemaphore = 1, kDaemonSemaphore = 2 };

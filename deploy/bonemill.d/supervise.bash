@@ -111,6 +111,8 @@ command_of() {
             words+=(--device "${option[device]:-auto}" --stop-dir "$logs")
             mapfile -t -O "${#words[@]}" words < <(network_words)
             [[ $flags != *" --no-enabling-switch "* ]] || words+=(--no-enabling-switch)
+            # Whoever watches says in the window what comes after the script.
+            [[ ${option[device]:-} != simulated || $flags == *" --no-viewer "* ]] || words+=(--hold)
             [[ -z ${option[seconds]:-} ]] || words+=(--seconds "${option[seconds]}") ;;
         viewer)  # Whoever sits here has the hand, so the window may command, as it may on one PC.
             words=("$bin/render_client" --session "$number" --role operator)

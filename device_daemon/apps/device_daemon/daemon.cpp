@@ -65,10 +65,11 @@ Daemon::End Daemon::run() {
         throw;
     }
     end();
-    return is_scene_over_ && !should_stop_ ? End::kOtherScene : End::kLeft;
+    return is_run_over_ && !should_stop_ ? End::kOtherSceneOrHand : End::kLeft;
 }
 
 void Daemon::runLoop() {
+    memory_.between.reset();
     const int64_t start_ns = monotonicNowNs();
     PeriodicTimer timer(period_ns_, start_ns);
     const bool has_clock = device_.hasClock();
@@ -89,7 +90,10 @@ void Daemon::runLoop() {
             is_ending_ = true;  // what happens now is its own doing
         }
     }
-    if (!is_scene_over_ || should_stop_) sayGoodbye(link_, memory_);
+    if (!is_run_over_ || should_stop_)
+        sayGoodbye(link_, memory_);
+    else if (is_hand_over_ && memory_.last_sample)
+        memory_.between.emplace(link_, *memory_.last_sample);
     loop_.blackBox().finish();
     statistics_.wall_time += secondsOfNs(monotonicNowNs() - start_ns);
     statistics_.missed_periods += timer.missedPeriods();
@@ -104,7 +108,12 @@ void Daemon::tick(int64_t instant_ns, double elapsed) noexcept {
     const int64_t woke_ns = monotonicNowNs();
 
     DeviceSample sample;
-    if (loop_.read(woke_ns, elapsed, sample)) publish(sample);
+    bool has_sample = loop_.read(woke_ns, elapsed, sample);
+    if (!has_sample && isAfterAnotherHand()) {
+        sample = restingAt(*memory_.last_sample, woke_ns);
+        has_sample = true;
+    }
+    if (has_sample) publish(sample);
     WrenchCommand command;
     const bool has_command = link_.readCommand(command) &&
                              command.scene_revision == scene_revision_.load(std::memory_order_relaxed);
@@ -117,6 +126,12 @@ void Daemon::tick(int64_t instant_ns, double elapsed) noexcept {
     if (!device_.hasClock()) statistics_.wakeup_latency.record(woke_ns - instant_ns);
     statistics_.compute_time.record(monotonicNowNs() - woke_ns);
     recordTick(is_for_us ? &command : nullptr);
+}
+
+// The last sample is of another device of this scene as long as this one has said nothing.
+bool Daemon::isAfterAnotherHand() const noexcept {
+    return memory_.last_sample &&
+           memory_.last_sample->scene_revision == scene_revision_.load(std::memory_order_relaxed);
 }
 
 // A device that is faster than the loop of the scene is felt at its own pace; the server gets what it asked
@@ -172,7 +187,7 @@ bool Daemon::shouldEnd() const noexcept {
     const bool is_over = options_.seconds && statistics_.attached_ns != 0 &&
                          secondsOfNs(monotonicNowNs() - statistics_.attached_ns) > *options_.seconds;
     return is_over || should_stop_.load(std::memory_order_relaxed) ||
-           is_scene_over_.load(std::memory_order_relaxed) || (loop_.reading().status & kStatusLeaving);
+           is_run_over_.load(std::memory_order_relaxed) || (loop_.reading().status & kStatusLeaving);
 }
 
 void Daemon::watch() {
@@ -210,16 +225,34 @@ void Daemon::watch() {
 // A server that is started anew announces the same scene once more, and nothing changes.
 void Daemon::lookForNotice() {
     SceneNotice notice;
-    if (is_scene_over_ || !link_.readScene(notice)) return;
-    if (notice.revision == scene_revision_) return followAttempts(notice);
+    if (is_run_over_ || !link_.readScene(notice)) return;
+    if (notice.revision == scene_revision_) {
+        followHand(notice);
+        return followAttempts(notice);
+    }
     attempt_changes_.reset();
+    hand_repeats_.reset();
     if (notice.hash == scene_.hash) {
         scene_revision_ = notice.revision;
         device_.followRun(notice.epoch);
         return;
     }
     spdlog::info("haptic_server changes to {}: force ramps to zero", notice.path);
-    is_scene_over_ = true;
+    is_run_over_ = true;
+}
+
+// Who comes to be the hand has heard of no order before: it is at its beginning anyway.
+void Daemon::followHand(const SceneNotice& notice) {
+    const HandChoice wanted = handFor(notice, options_);
+    if (wanted != scene_.hand) {
+        spdlog::info("haptic_server wants {} to be the hand: force ramps to zero",
+                     wanted == HandChoice::kPointer ? "a viewer's mouse" : "the script");
+        is_hand_over_ = true;
+        is_run_over_ = true;
+        return;
+    }
+    const std::optional<uint32_t> before = std::exchange(hand_repeats_, notice.hand_repeats);
+    if (before && *before != notice.hand_repeats && program_) program_->tell(HandOrder::kBeginAnew);
 }
 
 // Nothing has happened before the first look at a scene.

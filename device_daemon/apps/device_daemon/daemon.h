@@ -12,6 +12,7 @@
 #include "common/rt/stop_signals.h"
 #include "device_daemon/apps/device_daemon/child_program.h"
 #include "device_daemon/apps/device_daemon/daemon_options.h"
+#include "device_daemon/apps/device_daemon/resting_hand.h"
 #include "device_daemon/apps/device_daemon/scene_follower.h"
 #include "device_daemon/control/device_loop/device_loop.h"
 #include "device_daemon/control/safety/safety_states.h"
@@ -44,6 +45,7 @@ struct DaemonMemory {
     LoopStatistics statistics;
     SafetyLatch stop;                         // a stop holds until a user resets the device
     std::optional<DeviceSample> last_sample;  // that went out; nothing before the first and after a goodbye
+    std::optional<RestingHand> between;  // from the end of a hand's loop to the beginning of the next one's
 };
 
 // Lets haptic_server tell an orderly end from a fault. RT-safe.
@@ -62,10 +64,11 @@ class Daemon {
     Daemon(const FollowedScene& scene, const DaemonOptions& options, HapticDevice& device,
            ChildProgram* program, const StopSignals& stop_signals, DeviceLink& link, DaemonMemory& memory);
 
-    enum class End { kLeft, kOtherScene };
-    // Blocks until the device leaves, --seconds or a signal ends it, or haptic_server has another scene, and
-    // the force has ramped to zero. Throws UserError when there is no real-time scheduling with --strict-rt,
-    // when no server answered within --wait-seconds, or when the device is not the scene's.
+    enum class End { kLeft, kOtherSceneOrHand };
+    // Blocks until the device leaves, --seconds or a signal ends it, or haptic_server has another scene or
+    // wants another hand, and the force has ramped to zero. Throws UserError when there is no real-time
+    // scheduling with --strict-rt, when no server answered within --wait-seconds, or when the device is not
+    // the scene's.
     End run();
 
   private:
@@ -84,6 +87,7 @@ class Daemon {
 
     void runLoop();
     void tick(int64_t instant_ns, double elapsed) noexcept;
+    bool isAfterAnotherHand() const noexcept;
     void publish(DeviceSample& sample) noexcept;
     void noteAttached(const WrenchCommand& command) noexcept;
     void recordTick(const WrenchCommand* command) noexcept;
@@ -91,6 +95,7 @@ class Daemon {
 
     void watch();
     void lookForNotice();
+    void followHand(const SceneNotice& notice);
     void followAttempts(const SceneNotice& notice);
     void reportServer(bool& was_there) const;
     void reportState(SafetyState& shown_state, StopCause& shown_cause) const;
@@ -108,6 +113,7 @@ class Daemon {
     int64_t period_ns_;
     std::atomic<uint32_t> scene_revision_;     // the watcher may find a new one for the same scene
     std::optional<uint32_t> attempt_changes_;  // SceneNotice, as seen last
+    std::optional<uint32_t> hand_repeats_;     // likewise
     uint32_t capabilities_version_ = 0;
     int64_t publish_at_ns_ = 0;    // when the next sample is due
     uint64_t first_sequence_ = 0;  // of this run's samples; 0 before the first
@@ -117,7 +123,8 @@ class Daemon {
     Progress progress_;
     std::atomic<bool> should_stop_ = false;
     std::atomic<bool> is_ending_ = false;
-    std::atomic<bool> is_scene_over_ = false;
+    std::atomic<bool> is_hand_over_ = false;
+    std::atomic<bool> is_run_over_ = false;  // another daemon goes on from here
 };
 
 }  // namespace bonemill

@@ -11,6 +11,8 @@
 
 namespace bonemill {
 
+inline constexpr char kScriptedHand[] = "simulated";  // the word for --device
+
 struct DaemonOptions {
     std::string scene;
     std::string device = "auto";  // device_choice.h

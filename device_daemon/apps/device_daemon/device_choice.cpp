@@ -144,7 +144,7 @@ ChosenDevice deviceOf(const std::string& word, const FollowedScene& scene, const
         return {nullptr, std::make_unique<GamepadDevice>(setup.rates, setup.X_DT_start, gamepadAt(place))};
     if (!place.empty())
         throw UserError("--device " + word + ": only ares, bridge and gamepad take more than a word");
-    if (kind == "simulated") return simulated(scene, options);
+    if (kind == kScriptedHand) return simulated(scene, options);
     if (kind == "force-dimension") return bridged("bonemill_bridge_force_dimension");
     if (kind == "touch") return bridged("bonemill_bridge_touch");
     if (kind == "haply") return bridged("bonemill_bridge_haply");
@@ -179,8 +179,10 @@ const char* deviceChoices() {
 }
 
 ChosenDevice chooseDevice(const FollowedScene& scene, const DaemonOptions& options) {
-    ChosenDevice chosen =
-        deviceOf(options.device == "auto" ? bestOf(foundDevices()) : options.device, scene, options);
+    std::string word = options.device;
+    if (word == "auto") word = bestOf(foundDevices());
+    if (scene.hand == HandChoice::kPointer) word = "pointer";
+    ChosenDevice chosen = deviceOf(word, scene, options);
     if (!options.pedal.empty())
         chosen.device = std::make_unique<PedalledDevice>(std::move(chosen.device), options.pedal);
     return chosen;

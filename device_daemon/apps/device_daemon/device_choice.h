@@ -27,6 +27,7 @@ struct ChosenDevice {
     bool is_of_scene = true;        // another scene needs another one; false: it describes itself
 };
 
+// The device that --device names, or the mouse where the scene is to have it in place of a scripted hand.
 // Throws UserError for a word that names no device, and for a device that is not there.
 ChosenDevice chooseDevice(const FollowedScene& scene, const DaemonOptions& options);
 

@@ -91,7 +91,10 @@ std::string jsonLineOf(const LoopStatistics& s, const std::string& device_words)
 struct Leaving {
     DeviceLink& link;
     DaemonMemory& memory;
-    ~Leaving() { sayGoodbye(link, memory); }
+    ~Leaving() {
+        memory.between.reset();
+        sayGoodbye(link, memory);
+    }
 };
 
 // Each scene has its own loop; what the device is and has found out stays unless the scene says what it is.

@@ -17,6 +17,10 @@ constexpr int64_t kLookEveryNs = 50 * kNsPerMillisecond;
 
 }  // namespace
 
+HandChoice handFor(const SceneNotice& notice, const DaemonOptions& options) noexcept {
+    return options.device == kScriptedHand ? HandChoice(notice.hand) : HandChoice::kOwn;
+}
+
 FollowedScene followedSceneOf(const std::string& file) {
     const LoadedScene loaded = loadScene(file);
     try {
@@ -24,6 +28,7 @@ FollowedScene followedSceneOf(const std::string& file) {
                 .hash = sceneHashOf(loaded.scene),
                 .revision = 0,
                 .epoch = 0,
+                .hand = HandChoice::kOwn,
                 .setup = deviceSetupOf(loaded.scene)};
     } catch (const UserError& error) {
         throw UserError(file + ": " + error.what());
@@ -57,6 +62,7 @@ std::optional<FollowedScene> SceneFollower::takeAnnounced() {
         FollowedScene scene = *own_;
         scene.revision = notice.revision;
         scene.epoch = notice.epoch;
+        scene.hand = handFor(notice, options_);
         return scene;
     }
     try {
@@ -68,6 +74,7 @@ std::optional<FollowedScene> SceneFollower::takeAnnounced() {
                 "anew");
         scene.revision = notice.revision;
         scene.epoch = notice.epoch;
+        scene.hand = handFor(notice, options_);
         spdlog::info("the scene is haptic_server's, {}", scene.file);
         return scene;
     } catch (const UserError& error) {

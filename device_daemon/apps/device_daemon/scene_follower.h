@@ -15,11 +15,16 @@ namespace bonemill {
 
 struct FollowedScene {
     std::string file;
-    uint64_t hash = 0;      // sceneHashOf()
-    uint32_t revision = 0;  // SceneNotice; 0: the daemon's own
-    uint64_t epoch = 0;     // likewise
+    uint64_t hash = 0;                   // sceneHashOf()
+    uint32_t revision = 0;               // SceneNotice; 0: the daemon's own
+    uint64_t epoch = 0;                  // likewise
+    HandChoice hand = HandChoice::kOwn;  // that the server wants, as far as this daemon does what it wants
     DeviceSetup setup;
 };
+
+// The hand that a daemon with these options gives where this is announced: only a scripted hand makes way for
+// another, never one that a person may hold. RT-safe.
+HandChoice handFor(const SceneNotice& notice, const DaemonOptions& options) noexcept;
 
 // Reads the file; the revision is 0. Throws UserError.
 FollowedScene followedSceneOf(const std::string& file);

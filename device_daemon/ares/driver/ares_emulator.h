@@ -108,6 +108,11 @@ class AresEmulator final : public JointDevice {
     // The scenario's time goes back to its beginning, once the hand has drawn back as in a pause.
     void beginAnew() noexcept { is_going_back_ = state_.scenario_time > 0; }
 
+    // The hand has passed its last waypoint, and does not begin anew. Who only rests at one never ends.
+    bool hasEnded() const noexcept {
+        return path_.duration() > 0 && state_.scenario_time >= path_.duration() && !is_going_back_;
+    }
+
     // Shorts the motors' windings or opens them again: shorted, they brake every motion. The amplifiers must
     // then be told to give nothing.
     void setBraked(bool is_braked) noexcept { is_braked_ = is_braked; }

@@ -49,6 +49,7 @@ uint32_t deviceStatusOf(uint32_t inputs, uint16_t statusword, bool is_trusted) n
     if (!(inputs & wire::kInputChainClosed)) status |= kStatusEmergencyStop;
     if (inputs & wire::kInputReset) status |= kStatusResetPressed;
     if (inputs & wire::kInputLeaving) status |= kStatusLeaving;
+    if (inputs & wire::kInputScriptEnded) status |= kStatusScriptEnded;
     return status;
 }
 

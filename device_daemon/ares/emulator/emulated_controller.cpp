@@ -186,6 +186,7 @@ uint32_t EmulatedController::inputs(int64_t now_ns) const noexcept {
     if (is_homed_) inputs |= wire::kInputHomed;
     if (is_homing_) inputs |= wire::kInputHoming;
     if (is_leaving_) inputs |= wire::kInputLeaving;
+    if (plant_.hasEnded()) inputs |= wire::kInputScriptEnded;
     return inputs;
 }
 

@@ -49,6 +49,7 @@ enum Input : uint32_t {
     kInputReset = 1u << 4,    // a reset button is held
     kInputLeaving = 1u << 5,  // the controller ends in order
     kInputHoming = 1u << 6,
+    kInputScriptEnded = 1u << 7,  // a scripted hand has done all of its script, and rests
 };
 inline constexpr int kFirstButtonInput = 8;
 

@@ -82,7 +82,10 @@ void DeviceLoop::fill(DeviceSample& sample) const noexcept {
     sample.fault_code = states_.faultCode();
     sample.reset_count = states_.resetCount();
     sample.placements = reading_.placements;
-    if (abilities_ & kAbilitySimulated) sample.flags |= kDeviceFlagSimulated;
+    const bool is_simulated = abilities_ & kAbilitySimulated;
+    if (is_simulated) sample.flags |= kDeviceFlagSimulated;
+    // No person's hand is ever taken for a script.
+    if (is_simulated && (reading_.status & kStatusScriptEnded)) sample.flags |= kDeviceFlagScriptEnded;
     if (limiter_.events() != kWrenchNotLimited && given_factor_ > 0) sample.flags |= kDeviceFlagForceLimited;
     if (reading_.status & kStatusEnabled) sample.flags |= kDeviceFlagEnabled;
     if (reading_.status & kStatusCalibrated) sample.flags |= kDeviceFlagCalibrated;

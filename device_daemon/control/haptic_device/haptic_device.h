@@ -24,6 +24,7 @@ enum DeviceStatus : uint32_t {
     kStatusEmergencyStop = 1u << 5,  // the emergency stop chain is open
     kStatusResetPressed = 1u << 6,   // a button to reset is held
     kStatusLeaving = 1u << 7,        // it ends in order, and nothing is wrong
+    kStatusScriptEnded = 1u << 8,    // its hand is a scripted one that has done all of its script, and rests
 };
 
 struct DeviceReading {

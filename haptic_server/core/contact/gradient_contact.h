@@ -71,6 +71,9 @@ class GradientContact {
     bool gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT, double margin,
                 size_t most_tests = SIZE_MAX) noexcept;
 
+    // From the next gathering on.
+    void setStiffness(const GradientContactConfig& config) noexcept { config_ = config; }
+
     // From now on there are not more candidates than this, however much room there is.
     void limitCandidates(size_t most) noexcept {
         near_.most = candidates_.most = std::min(most, candidates_.patch.size());

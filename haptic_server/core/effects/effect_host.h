@@ -22,6 +22,8 @@ class EffectHost final : private ContactWeights, private SolveEnergy {
     ContactWeights* weights() noexcept {
         return any(HapticEffect::kScales | HapticEffect::kReadsContacts) ? this : nullptr;
     }
+    // κ is another one from now on.
+    void setStiffness(double stiffness_per_area) noexcept { stiffness_per_area_ = stiffness_per_area; }
     SolveEnergy* energy() noexcept { return any(HapticEffect::kHasEnergy) ? this : nullptr; }
 
     // The phases of a tick come in this order. Each is RT-safe, for the tick thread only.

@@ -64,13 +64,21 @@ void GradientModel::setTool(const SpoTool& tool) noexcept {
 
 void GradientModel::setCoupling(const SpoCoupling& coupling) noexcept {
     most_pull_ = coupling.most_pull;
+    saturation_force_ = coupling.saturation_force;
     wished_ = coupling.energy;
     relaxing_.stretch(coupling.stretched);
     saturate();
 }
 
+// What was learnt of the curvature is in the units of the stiffness.
+void GradientModel::setContact(const GradientContactConfig& contact) noexcept {
+    config_.contact = contact;
+    contact_.setStiffness(contact);
+    curvature_.forget();
+}
+
 void GradientModel::saturate() noexcept {
-    const double most = std::min(tool_.saturation_force, most_pull_);
+    const double most = std::min(saturation_force_.value_or(tool_.saturation_force), most_pull_);
     coupling_ = {wished_, most};
     coupling_.damping_time =
         std::min(wished_.damping_time, most / (kSpeedHeldBack * wished_.translation_stiffness));

@@ -64,6 +64,7 @@ class GradientModel final : public SpoModel {
     void setAccuracy(const AccuracySettings& settings) noexcept override;
     void setTool(const SpoTool& tool) noexcept override;
     void setCoupling(const SpoCoupling& coupling) noexcept override;
+    void setContact(const GradientContactConfig& contact) noexcept override;
     void setAffordableSamples(size_t most) noexcept override { affordable_samples_ = most; }
     void setEffects(ContactWeights* weights, SolveEnergy* energy) noexcept override;
     size_t listContacts(std::span<SurfaceContact> out) noexcept override;
@@ -132,6 +133,7 @@ class GradientModel final : public SpoModel {
     EnergyCouplingConfig wished_;
     EnergyCoupling coupling_;  // of tool_
     double most_pull_ = std::numeric_limits<double>::infinity();
+    std::optional<double> saturation_force_;  // N, in place of tool_'s
     double dt_;
     AccuracySettings settings_;
     int level_ = 0;

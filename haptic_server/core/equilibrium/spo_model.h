@@ -7,10 +7,12 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "haptic_server/core/accuracy/accuracy_settings.h"
 #include "haptic_server/core/contact/candidates.h"
+#include "haptic_server/core/contact/contact_configs.h"
 #include "haptic_server/core/contact/penalty_contact.h"
 #include "haptic_server/core/contact/point_shell.h"
 #include "haptic_server/core/coupling/energy_coupling.h"
@@ -52,6 +54,7 @@ struct SpoCoupling {
     // Of `energy`: the hand's place for the tool is so much farther from the tool than before, as seen from
     // there, that the pull stays what it was.
     double stretched = 1;
+    std::optional<double> saturation_force = {};  // N, in place of the tool's own; none: that
 };
 
 // A law asks this of the tick around it.
@@ -101,6 +104,8 @@ class SpoModel {
     // Gives another tool at the same pose.
     virtual void setTool(const SpoTool& tool) noexcept = 0;
     virtual void setCoupling(const SpoCoupling& coupling) noexcept = 0;
+    // The bone is felt so stiff.
+    virtual void setContact(const GradientContactConfig&) noexcept {}
     // Takes what effects add; null adds nothing.
     virtual void setEffects(ContactWeights*, SolveEnergy*) noexcept {}
     // The burr removes bone, or no longer does.

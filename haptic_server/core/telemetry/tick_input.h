@@ -27,6 +27,7 @@ inline constexpr int kMostThrift = 3;
 struct TickDecisions {
     uint32_t tool = 0;      // of ToolSwitch
     uint32_t accuracy = 0;  // of AccuracySwitch
+    uint32_t tuning = 0;    // of TuningSwitch
     bool is_milling_paused = false;
     bool is_write_refused = false;                             // by BoneHistory::beginWrite()
     bool is_milling_put_off = false, is_heat_put_off = false;  // by LaterWork

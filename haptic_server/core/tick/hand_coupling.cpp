@@ -48,6 +48,16 @@ void HandCoupling::adaptTo(const DeviceCapabilities& device) noexcept {
     watch_.expectOtherDevice(device.handle.mass > 0);
     stands_alone_ = true;
     has_device_ = true;
+    device_ = device;
+}
+
+void HandCoupling::beginAnew() noexcept {
+    stretched_ = 1;
+    if (has_device_) return adaptTo(DeviceCapabilities(device_));
+    side_ = handSideOf(config_);
+    wished_ = side_.gradient;
+    tank_.fill();
+    watch_.begin();
 }
 
 bool HandCoupling::goOnFitting() noexcept {

@@ -156,6 +156,8 @@ class HandCoupling {
 
     // Another device is there.
     void adaptTo(const DeviceCapabilities& device) noexcept;
+    // `config` says something else than before, of the same device if there is one.
+    void beginAnew() noexcept;
     // At the end of a tick of the gradient law, with its wrench before the effects' and the limits'. True:
     // the coupling is another from now on.
     bool takeAccount(const Pose& X_VT_device, const SpoStep& step, bool is_milling) noexcept;
@@ -182,6 +184,7 @@ class HandCoupling {
     DeviceFit fit_;
     bool stands_alone_ = true;
     bool has_device_ = false, is_fitted_ = true;
+    DeviceCapabilities device_{};  // then: in the hand
     EnergyTank tank_;
     int given_ = 0, given_turns_ = 0;  // so many steps of translation and of rotation were given up
     UnrestWatch watch_;

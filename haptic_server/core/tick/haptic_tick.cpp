@@ -36,6 +36,7 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
       history_(bone.history),
       tools_(choices.tools),
       accuracy_(choices.accuracy),
+      tunings_(choices.tuning),
       tool_(tools_.chosen()),
       models_(config.laws, {config.contact,
                             config.coupling,
@@ -113,7 +114,9 @@ void HapticTick::adaptTo(const DeviceCapabilities& device) noexcept {
 
 void HapticTick::useCoupling() noexcept {
     const HandSide& side = hand_coupling_.side();
-    const SpoCoupling coupling{side.thesis, side.gradient, side.most_pull, hand_coupling_.stretched()};
+    SpoCoupling coupling{side.thesis, side.gradient, side.most_pull, hand_coupling_.stretched()};
+    if (tuning_ != TuningSwitch::kOfScene)
+        coupling.saturation_force = (*tunings_)[tuning_].saturation_forces[tool_];
     models_.forEach([&](SpoModel& model) { model.setCoupling(coupling); });
     hand_limits_.setDevice(side.limits, side.spring);
 }
@@ -136,6 +139,7 @@ void HapticTick::decide(const DeviceInput& input) noexcept {
     }
     decisions_.tool = uint32_t(tools_.chosen());
     decisions_.accuracy = uint32_t(accuracy_.choice());
+    decisions_.tuning = tunings_ ? tunings_->chosen() : TuningSwitch::kOfScene;
     decisions_.is_milling_paused = history_ && history_->isMillingPaused();
     decisions_.milling_thrift = uint8_t(later_work_.millingThrift());
     decisions_.is_write_refused = decisions_.is_milling_put_off = decisions_.is_heat_put_off = false;
@@ -150,6 +154,22 @@ void HapticTick::chooseTool() noexcept {
     models_.forEach([&](SpoModel& model) { model.setTool(tools_[tool_]); });
     effects_.restart(Restart::kOtherTool);
     noteSuddenChange(SuddenChange::kTool);
+    if (tuning_ != TuningSwitch::kOfScene) useCoupling();  // which is another tool's
+}
+
+void HapticTick::tune() noexcept {
+    if (decisions_.tuning == tuning_ || !tunings_) return;
+    tuning_ = decisions_.tuning;
+    const TickTuning& tuning = (*tunings_)[tuning_];
+    config_.coupling = tuning.thesis;
+    config_.gradient.coupling = tuning.gradient;
+    config_.gradient.contact = tuning.contact;
+    config_.hand = tuning.hand;
+    models_.forEach([&](SpoModel& model) { model.setContact(tuning.contact); });
+    effects_.setStiffness(tuning.contact.stiffness_per_area);
+    hand_coupling_.beginAnew();
+    useCoupling();
+    noteSuddenChange(SuddenChange::kSettings);
 }
 
 const TickRecord* HapticTick::tick(TickIo& io) noexcept {
@@ -161,6 +181,7 @@ const TickRecord* HapticTick::tick(TickIo& io) noexcept {
     if (input.other_device) adaptTo(*input.other_device);
     acceptPose(input, faults);
     chooseTool();
+    tune();
     beginEffects(input);
     const SpoStep step = moveAndFeel(input, faults);
     const int64_t force_at_ns = io.write(step.wrench_hand_V.rotatedBy(X_WV_.rotation));

@@ -18,6 +18,7 @@
 #include "haptic_server/core/tick/tick_choices.h"
 #include "haptic_server/core/tick/tick_config.h"
 #include "haptic_server/core/tick/tick_io.h"
+#include "haptic_server/core/tick/tick_tuning.h"
 
 namespace bonemill {
 
@@ -31,6 +32,7 @@ struct TickBone {
 struct TickChoices {
     const ToolSwitch& tools;
     const AccuracySwitch& accuracy;
+    const TuningSwitch* tuning = nullptr;  // null: nothing is ever tuned
 };
 
 class HapticTick {
@@ -65,6 +67,7 @@ class HapticTick {
     void chooseSettings(SpoStep step, uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;
     void chooseTool() noexcept;
+    void tune() noexcept;
     void beginEffects(const DeviceInput& input) noexcept;
     SpoStep moveAndFeel(const DeviceInput& input, uint32_t& faults) noexcept;
     MillingResult mill(const DeviceInput& input, TickIo& io, uint32_t& faults) noexcept;
@@ -80,9 +83,11 @@ class HapticTick {
     BoneHistory* history_;
     const ToolSwitch& tools_;
     const AccuracySwitch& accuracy_;
-    size_t tool_;                // of tools_
-    TickDecisions decisions_;    // for the tick under way
-    uint32_t most_samples_ = 0;  // in force; 0: no cap
+    const TuningSwitch* tunings_;
+    uint32_t tuning_ = TuningSwitch::kOfScene;  // of *tunings_, in force
+    size_t tool_;                               // of tools_
+    TickDecisions decisions_;                   // for the tick under way
+    uint32_t most_samples_ = 0;                 // in force; 0: no cap
     SpoModels models_;
     SpoModel* model_;  // of models_, in force
     AccuracySettings settings_;

@@ -34,13 +34,16 @@ std::string lineOf(const JournalTick& tick) {
     return line + '\n';
 }
 
-// The first tick that took up an order to put the bone back; else the number of ticks.
-uint64_t firstPutBack(const Recording& recording) {
+// The first tick that `simulate` cannot do: it took up an order to put the bone back, or was tuned. Else the
+// number of ticks.
+uint64_t firstBeyondScene(const Recording& recording) {
     RecordedTicks ticks(recording);
     const uint64_t at_first = ticks.at(0).input.decisions.bone_order;
     if (recording.content().put_backs.contains(at_first)) return 0;
     for (uint64_t tick = 0; tick < recording.ticks(); ++tick)
-        if (ticks.at(tick).input.decisions.bone_order != at_first) return tick;
+        if (const TickDecisions& decisions = ticks.at(tick).input.decisions;
+            decisions.bone_order != at_first || decisions.tuning != 0)
+            return tick;
     return recording.ticks();
 }
 
@@ -80,13 +83,15 @@ void ToolPathExport::finish() {
 }
 
 void writeTrajectory(const std::string& path, const Recording& recording) {
-    const uint64_t count = firstPutBack(recording);
+    const uint64_t count = firstBeyondScene(recording);
     if (count == 0 || recording.manifest().has_resumed_from())
-        throw UserError(path +
-                        ": the session does not begin on the scanned bone, as `simulate` does; "
-                        "`session verify` runs its ticks again");
+        throw UserError(
+            path +
+            ": the session does not begin on the scanned bone and as its scene says, as `simulate` does; "
+            "`session verify` runs its ticks again");
     if (count < recording.ticks())
-        spdlog::warn("{}: only the {:.3f} s before the bone was put back", path, recording.secondsOf(count));
+        spdlog::warn("{}: only the {:.3f} s before the bone was put back, or the contact law tuned", path,
+                     recording.secondsOf(count));
     WholeFile file(path);
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(std::fopen(file.part().c_str(), "w"),
                                                               &std::fclose);

@@ -163,6 +163,8 @@ void encodeRuns(std::span<const JournalTick> ticks, journal::Inputs& out) {
     putRuns(ticks, *out.mutable_stale_factor_bits(),
             [](T t) { return std::bit_cast<uint64_t>(t.input.stale_factor); });
     putRuns(ticks, *out.mutable_bone_order(), [](T t) { return t.input.decisions.bone_order; });
+    if (std::ranges::any_of(ticks, [](T t) { return t.input.decisions.tuning != 0; }))
+        putRuns(ticks, *out.mutable_tuning(), [](T t) { return t.input.decisions.tuning; });
 }
 
 bool decodeNumbers(const journal::Inputs& in, std::span<JournalTick> ticks) {
@@ -193,6 +195,11 @@ bool decodeRuns(const journal::Inputs& in, std::span<JournalTick> ticks) {
         t.input.decisions.bone_order = value;
         return true;
     };
+    const auto tuning = [](T t, uint64_t value) {
+        t.input.decisions.tuning = uint32_t(value);
+        return value <= UINT32_MAX;
+    };
+    if (in.has_tuning() && !takeRuns(in.tuning(), ticks, tuning)) return false;
     return decodeNumbers(in, ticks) && takeRuns(in.buttons(), ticks, buttons) &&
            takeRuns(in.stale_factor_bits(), ticks, factor) && takeRuns(in.bone_order(), ticks, order);
 }

@@ -63,6 +63,8 @@ class Keeper {
                 return takePutBack(message);
             case JournalTopic::kEvent:
                 return takeEvent(message);
+            case JournalTopic::kTuned:
+                return takeTuned(message);
             default:
                 return true;
         }
@@ -91,6 +93,13 @@ class Keeper {
         journal::PutBack put_back;
         if (!keep(message, put_back)) return false;
         content_.put_backs[put_back.bone_order()] = put_back.checkpoint();
+        return true;
+    }
+
+    bool takeTuned(const mcap::Message& message) {
+        journal::Tuned tuned;
+        if (!keep(message, tuned)) return false;
+        content_.tunings[tuned.number()] = tuned.values();
         return true;
     }
 

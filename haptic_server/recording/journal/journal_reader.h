@@ -22,7 +22,8 @@ struct JournalContent {
     std::vector<journal::Inputs> inputs;  // as they were written
     std::vector<journal::StateHash> hashes;
     std::vector<journal::Order> orders;
-    std::map<uint64_t, uint32_t> put_backs;  // PutBack.bone_order -> checkpoint
+    std::map<uint64_t, uint32_t> put_backs;     // PutBack.bone_order -> checkpoint
+    std::map<uint32_t, scene::Tuning> tunings;  // by Tuned.number
     std::vector<journal::Event> events;
     uint64_t ticks = 0;                     // whose input is there, from tick 0 on without a gap
     std::string problem;                    // why the file is not whole, for people; empty if it is

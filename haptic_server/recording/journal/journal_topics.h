@@ -24,6 +24,7 @@ enum class JournalTopic : uint16_t {
     kHand,    // where the hand is, likewise
     kWrench,  // on the hand, likewise
     kChain,   // per second and at the end: what was written until then
+    kTuned,   // numbers of tunings, and what they stand for
 };
 
 struct JournalTopicName {
@@ -46,6 +47,7 @@ inline constexpr std::array kJournalTopics = {
     JournalTopicName{JournalTopic::kHand, "/hand", "foxglove.PoseInFrame"},
     JournalTopicName{JournalTopic::kWrench, "/wrench", "bonemill.journal.WrenchInFrame"},
     JournalTopicName{JournalTopic::kChain, "/chain", "bonemill.journal.Link"},
+    JournalTopicName{JournalTopic::kTuned, "/tuned", "bonemill.journal.Tuned"},
 };
 
 // Of journal::Manifest.format.

@@ -86,10 +86,16 @@ RecordedMoment momentOf(const Recording& recording, const Simulation& simulation
     if (const Keyframe& from = keyframeBefore(bones.keyframes, tick); from.tick > 0) rerun.startAt(from);
     TickDecisions decisions;
     while (rerun.next() <= tick) decisions = rerun.step().input.decisions;
+    scene::Tuning tuning;
+    const uint32_t recorded = RecordedTicks(recording).at(tick).input.decisions.tuning;
+    if (const auto known = recording.content().tunings.find(recorded);
+        known != recording.content().tunings.end())
+        tuning = known->second;
     RecordedMoment moment;
     moment.bone = rerun.history().snapshot(bone);
     moment.tool = decisions.tool;
     moment.accuracy = decisions.accuracy;
+    moment.tuning = tuning;
     moment.from.set_file(recording.path().filename().string());
     moment.from.set_journal_id(recording.manifest().journal_id());
     moment.from.set_tick(tick + 1);
@@ -137,10 +143,23 @@ Rerun::Rerun(const Recording& recording, const Simulation& simulation, const Rec
       history_(bone),
       tools_(simulation.spoTools()),
       accuracy_(simulation.accuracy),
+      tunings_(simulation.tunable.with({})),
       ticks_(recording) {
+    addTunings(simulation.tunable);
     if (start.bone) history_.startFrom(bone_, start.bone);
     next_ = start.tick;
     makeTick();
+}
+
+// A journal may be anybody's: what could not have been tuned so counts as the scene's own.
+void Rerun::addTunings(const TunableScene& scene) {
+    for (const auto& [number, values] : recording_.content().tunings)
+        if (scene.problem(values).empty()) tuning_numbers_[number] = tunings_.add(scene.with(values));
+}
+
+uint32_t Rerun::tuningOf(const TickDecisions& decisions) const {
+    const auto known = tuning_numbers_.find(decisions.tuning);
+    return known == tuning_numbers_.end() ? TuningSwitch::kOfScene : known->second;
 }
 
 void Rerun::startAt(const Keyframe& keyframe) {
@@ -159,7 +178,8 @@ void Rerun::makeTick() {
         bone_order_ = first.bone_order;
     done_order_ = bone_order_;
     is_device_told_ = false;
-    tick_ = std::make_unique<HapticTick>(config_, TickBone{bone_, &history_}, TickChoices{tools_, accuracy_});
+    tick_ = std::make_unique<HapticTick>(config_, TickBone{bone_, &history_},
+                                         TickChoices{tools_, accuracy_, &tunings_});
 }
 
 // What the journal names was checked against the scene's tools and the presets when it was read.
@@ -186,6 +206,7 @@ const TickRecord& Rerun::step() {
     choose(tick.input.decisions);
     tick.input.decisions.tool = uint32_t(tools_.chosen());
     tick.input.decisions.accuracy = uint32_t(accuracy_.choice());
+    tick.input.decisions.tuning = tuningOf(tick.input.decisions);
     putBack(tick.input.decisions);
     const DeviceCapabilities* device = tick.input.has_other_device ? &tick.input.other_device : nullptr;
     if (!is_device_told_ && !device) device = recording_.deviceBefore(next_);

@@ -47,6 +47,8 @@ class Rerun {
   private:
     class Io;
     void makeTick();
+    void addTunings(const TunableScene& scene);
+    uint32_t tuningOf(const TickDecisions& decisions) const;
     void choose(const TickDecisions& decisions);
     void putBack(const TickDecisions& decisions);
 
@@ -57,6 +59,8 @@ class Rerun {
     BoneHistory history_;
     ToolSwitch tools_;
     AccuracySwitch accuracy_;
+    TuningSwitch tunings_;
+    std::map<uint32_t, uint32_t> tuning_numbers_;  // of tunings_, by the recording's
     RecordedTicks ticks_;
     std::unique_ptr<HapticTick> tick_;
     TickRecord record_{};
@@ -80,6 +84,7 @@ struct RecordedMoment {
     journal::ResumedFrom from;
     std::shared_ptr<const BoneSnapshot> bone;
     uint32_t tool = 0, accuracy = 0;  // in force then
+    scene::Tuning tuning;             // likewise
 };
 
 // Another bone like that of a fresh simulation of the scene.

@@ -321,6 +321,7 @@ Simulation makeSimulation(const LoadedScene& loaded) {
     warnOfColdRemoval(simulation);
     warnOfFineHeat(simulation);
     fitToolsToBone(simulation, scene);
+    simulation.tunable = TunableScene(scene, simulation.bone->volume.spacing().minCoeff());
     return simulation;
 }
 

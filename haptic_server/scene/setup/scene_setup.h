@@ -15,6 +15,7 @@
 #include "haptic_server/scans/densify/densify.h"
 #include "haptic_server/scene/setup/scene_accuracy.h"
 #include "haptic_server/scene/setup/scene_materials.h"
+#include "haptic_server/scene/setup/tunable_scene.h"
 #include "haptic_server/scene/tool_build/build_tool.h"
 
 namespace bonemill {
@@ -41,6 +42,7 @@ struct Simulation {
     std::shared_ptr<const JudgedTask> task = nullptr;              // null: the scene has none
     bool lacks_patient_axes = false;                               // RawVolume
     Pose X_WD;                                                     // device base in the world
+    TunableScene tunable = {};                                     // while the session runs
     std::vector<std::string> remarks;                              // for people: what was read or proposed
     std::vector<std::string> warnings;  // what the user would better change in the scene
 

@@ -54,7 +54,7 @@ class ReplayServer {
           attempts_(lesson_, recorder_, rerun_.history(), keeper_, *simulation_.bone, scene_.scene),
           commands_(scene_.scene, *simulation_.bone, recorder_,
                     {rerun_.history(), rerun_.accuracies(), rerun_.tools(), stop_requested_, bone_export_,
-                     reset_orders_, lesson_, attempts_, limits_, keeper_, &player_},
+                     reset_orders_, lesson_, attempts_, limits_, keeper_, hand_, &player_},
                     options.instructor_only),
           publisher_(soleServerOf(options.domain, options.session, options.network)),
           show_(
@@ -175,6 +175,7 @@ class ReplayServer {
     JournalRecorder keeper_;  // of nothing: a replay is not recorded
     TaskMonitor task_;
     AttemptController attempts_;
+    ScriptedHand hand_{recorder_, [](HandChoice) {}};  // a recording's, which nobody orders anything
     OrderLimits limits_;
     std::atomic<uint32_t> reset_orders_{0};
     std::atomic<bool> stop_requested_{false}, has_failed_{false};

@@ -44,6 +44,14 @@ void JournalRecorder::expectPutBack(uint32_t checkpoint) {
     journal_->put(JournalTopic::kPutBack, put_back);
 }
 
+void JournalRecorder::noteTuned(uint32_t number, const scene::Tuning& values) {
+    if (!journal_) return;
+    journal::Tuned tuned;
+    tuned.set_number(number);
+    *tuned.mutable_values() = values;
+    journal_->put(JournalTopic::kTuned, tuned);
+}
+
 void JournalRecorder::noteOrder(const topics::Command& command, const std::string& result) {
     if (!journal_) return;
     journal::Order order;

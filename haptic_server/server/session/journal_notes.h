@@ -28,6 +28,8 @@ class JournalRecorder {
     void noteCheckpoint(const Checkpoints::Checkpoint& checkpoint);
     // Before the bone may be put back to this checkpoint: a tick that takes the order up is understood then.
     void expectPutBack(uint32_t checkpoint);
+    // Before a tick may take it up.
+    void noteTuned(uint32_t number, const scene::Tuning& values);
     void noteOrder(const topics::Command& command, const std::string& result);
     // What the trainee sees now.
     void noteEye(const SeenEye& eye);

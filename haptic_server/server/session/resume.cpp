@@ -129,7 +129,8 @@ struct ResumeReading::Raw {
     std::vector<Run> runs;
     size_t bytes = 0;  // of all runs
     std::map<uint64_t, uint32_t> put_backs;
-    uint64_t bone_order = 0;  // that is done in the newest bone
+    std::map<uint32_t, scene::Tuning> tunings;  // by their numbers
+    uint64_t bone_order = 0;                    // that is done in the newest bone
     uint32_t newest_checkpoint = 0;
     journal::Inputs last_inputs;
     uint64_t lost_bytes = 0;
@@ -142,6 +143,9 @@ struct ResumeReading::Raw {
             if (order.ParseFromArray(message.data.data(), size))
                 put_backs[order.bone_order()] = order.checkpoint();
         }
+        journal::Tuned tuned;
+        if (topic == JournalTopic::kTuned && tuned.ParseFromArray(message.data.data(), size))
+            tunings[tuned.number()] = tuned.values();
         journal::Bone bone;
         if (topic == JournalTopic::kBone && bone.ParseFromArray(message.data.data(), size))
             takeBone(std::move(bone));
@@ -219,6 +223,8 @@ ResumedSession ResumeReading::take(const BoneModel& bone_as_scanned) {
         out.tool = uint32_t(last.tool().values(last.tool().values_size() - 1));
         if (last.accuracy().values_size() > 0)
             out.accuracy = uint32_t(last.accuracy().values(last.accuracy().values_size() - 1));
+        if (last.tuning().values_size() > 0)
+            out.tuning = raw->tunings[uint32_t(last.tuning().values(last.tuning().values_size() - 1))];
     }
     out.lost_bytes = raw->lost_bytes;
     out.from.set_file(unfinished_.path.filename().string());

@@ -38,6 +38,7 @@ struct ResumedSession {
     };
     std::vector<Checkpoint> checkpoints;  // by id
     uint32_t tool = 0, accuracy = 0;      // chosen last
+    scene::Tuning tuning;                 // likewise
     uint64_t lost_bytes = 0;              // at the end of the file
     std::string text() const;             // for people
 };

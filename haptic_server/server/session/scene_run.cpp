@@ -91,12 +91,14 @@ SceneRun::SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation 
       history_(*simulation_.bone),
       accuracy_(simulation_.accuracy),
       tools_(simulation_.spoTools()),
+      tunings_(simulation_.tunable.with({})),
       ring_(kRingRecords),
       cuts_(kRingCuts),
       io_(ioConfigOf(options, loaded_.scene.loop(), simulation_), parts.link),
-      tick_(simulation_.tick, {*simulation_.bone, &history_}, {tools_, accuracy_}),
+      tick_(simulation_.tick, {*simulation_.bone, &history_}, {tools_, accuracy_, &tunings_}),
       resumed_(std::move(resumed)),
       journal_keeper_(history_, *simulation_.bone),
+      tuning_(simulation_.tunable, tunings_, journal_keeper_),
       recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns,
                 recordedEffectsOf(loaded_.scene.effects()), breachWatchOf(simulation_)),
       bone_export_(history_, *simulation_.bone, options.export_dir),
@@ -104,9 +106,10 @@ SceneRun::SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation 
       attempts_(
           parts.lesson, recorder_, history_, journal_keeper_, *simulation_.bone, loaded_.scene,
           [this](bool begins) { parts_.link.announceAttempt(begins); }, &task_),
+      hand_(recorder_, [this](HandChoice hand) { parts_.link.announceHand(hand); }),
       commands_(loaded_.scene, *simulation_.bone, recorder_,
                 {history_, accuracy_, tools_, parts.stop_requested, bone_export_, io_.resetOrders(),
-                 parts.lesson, attempts_, parts.limits, journal_keeper_},
+                 parts.lesson, attempts_, parts.limits, journal_keeper_, hand_, nullptr, &tuning_},
                 options.instructor_only),
       show_(
           parts.publisher, loaded_.scene, simulation_, history_, figuresOf(options), outbox_, recorder_,
@@ -126,6 +129,8 @@ void SceneRun::beginWith(const ResumedSession& resumed) {
     if (resumed.tool < tools_.count()) tools_.choose(resumed.tool);
     const bool is_switchable = loaded_.scene.accuracy().switchable();
     if (is_switchable && resumed.accuracy < AccuracySwitch::count()) accuracy_.choose(resumed.accuracy);
+    if (const Answer tuned = tuning_.tune(resumed.tuning); tuned.outcome != topics::DONE)
+        spdlog::warn("it is not tuned as before: {}", tuned.text);
     spdlog::info("{}", resumed.text());
 }
 
@@ -139,6 +144,7 @@ void SceneRun::startJournal() {
     journal_ = std::make_unique<Journal>(*journal_config_,
                                          DensitiesAsScanned{history_.scanned(), simulation_.bone->lattice});
     journal_keeper_.begin(journal_.get(), commands_.checkpoints());
+    tuning_.noteInForce();
     recorder_.keepJournal(journal_.get());
     spdlog::info("recording to {}", journal_->path().string());
     if (!resumed_ || options_.resumed_journal.empty()) return;

@@ -90,6 +90,7 @@ class SceneRun {
     BoneHistory history_;
     AccuracySwitch accuracy_;
     ToolSwitch tools_;
+    TuningSwitch tunings_;
     SpscRing<TickRecord> ring_;  // from the tick to the recorder
     SpscRing<Cut> cuts_;         // and to the mesher
     DeviceLinkIo io_;
@@ -99,11 +100,13 @@ class SceneRun {
     std::unique_ptr<Journal> journal_;             // null: nothing is recorded
     std::future<void> closing_;                    // the journal of before gets its end
     JournalRecorder journal_keeper_;
+    TuningDesk tuning_;
     Recorder recorder_;
     MeshOutbox outbox_;
     SessionExport bone_export_;
     TaskMonitor task_;
     AttemptController attempts_;
+    ScriptedHand hand_;
     SessionCommands commands_;
     ShowSession show_;
     PublishFigures published_;  // publisher thread's until it is joined

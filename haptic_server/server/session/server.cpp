@@ -86,6 +86,7 @@ class Server {
         resumed.bone = std::move(moment.bone);
         resumed.tool = moment.tool;
         resumed.accuracy = moment.accuracy;
+        resumed.tuning = moment.tuning;
         return resumed;
     }
 

@@ -39,6 +39,9 @@ std::optional<Answer> SessionCommands::carryOut(const topics::Command& command) 
             return Answer::done();
         case topics::Command::kSetAccuracy:
             return setAccuracy(command.set_accuracy());
+        case topics::Command::kTune:
+            return controls_.tuning ? controls_.tuning->tune(command.tune())
+                                    : Answer::refused("nothing can be tuned here");
         case topics::Command::kSelectTool:
             return selectTool(command.select_tool());
         case topics::Command::kSaveCheckpoint:
@@ -55,6 +58,10 @@ std::optional<Answer> SessionCommands::carryOut(const topics::Command& command) 
         case topics::Command::kResetDevice:
             controls_.reset_orders.fetch_add(1, std::memory_order_relaxed);
             return Answer::done();
+        case topics::Command::kBeginAgain:
+            return beginAgain();
+        case topics::Command::kTakeOver:
+            return controls_.hand.takeOver(command.sender());
         case topics::Command::kChooseScene:
             return controls_.lesson.orderScene(command);
         case topics::Command::kStartAttempt:
@@ -121,6 +128,18 @@ Answer SessionCommands::selectTool(uint32_t index) {
     return Answer::done();
 }
 
+// An attempt has a bone and a beginning of its own.
+Answer SessionCommands::beginAgain() {
+    if (controls_.attempts.isRunning())
+        return Answer::refused("an attempt is under way: end it, or start the next one");
+    if (const std::string why_not = controls_.hand.whyNotAgain(); !why_not.empty())
+        return Answer::refused(why_not);
+    const Answer answer = restore(Checkpoints::kScannedBone);
+    controls_.history.pauseMilling(false);
+    controls_.hand.beginAnew();
+    return answer;
+}
+
 Answer SessionCommands::restore(uint32_t checkpoint) {
     if (checkpoints_.has(checkpoint)) {
         controls_.journal.expectPutBack(checkpoint);
@@ -142,12 +161,14 @@ double SessionCommands::sessionS() const {
 
 void SessionCommands::describe(topics::Status& status) const {
     status.set_session_s(sessionS());
+    if (controls_.tuning) controls_.tuning->describe(status);
     if (controls_.replay) {
         const auto latest = recorder_.latest();
         status.set_is_milling_paused(latest && latest->input.decisions.is_milling_paused);
         status.set_bone_restores(controls_.history.finishedOrder());
         controls_.replay->describe(*status.mutable_replay());
     } else {
+        if (status.has_device()) controls_.hand.describe(*status.mutable_device());
         status.set_is_milling_paused(controls_.history.isMillingPaused());
         status.set_bone_restores(controls_.history.newestOrder());
     }

@@ -14,8 +14,10 @@
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "haptic_server/server/session/attempt_controller.h"
 #include "haptic_server/server/session/journal_notes.h"
+#include "haptic_server/server/session/scripted_hand.h"
 #include "haptic_server/server/session/session_export.h"
 #include "haptic_server/server/session/tick_recorder.h"
+#include "haptic_server/server/session/tuning_desk.h"
 #include "haptic_server/teaching/lessons/lesson_state.h"
 #include "haptic_server/teaching/lessons/remark_list.h"
 #include "proto/topics.pb.h"
@@ -46,7 +48,9 @@ struct SessionControls {
     AttemptController& attempts;
     OrderLimits& limits;
     JournalRecorder& journal;
+    ScriptedHand& hand;
     ReplayOrders* replay = nullptr;  // there where a recording is shown
+    TuningDesk* tuning = nullptr;    // there in a live session
 };
 
 class SessionCommands {
@@ -65,7 +69,8 @@ class SessionCommands {
     Checkpoints& checkpoints() noexcept { return checkpoints_; }
     AttemptController& attempts() noexcept { return controls_.attempts; }
     RemarkList& remarks() noexcept { return remarks_; }
-    // Fills in the session clock, the pause, the checkpoints and what the bone has lost.
+    // Fills in the session clock, the pause, the checkpoints, what the bone has lost and, where the device is
+    // described, how its script stands.
     void describe(topics::Status& status) const;
     const ToolSwitch& tools() const noexcept { return controls_.tools; }
     const AccuracySwitch& accuracy() const noexcept { return controls_.accuracy; }
@@ -76,6 +81,7 @@ class SessionCommands {
     std::optional<Answer> carryOutInReplay(const topics::Command& command);
     Answer setAccuracy(const std::string& name);
     Answer selectTool(uint32_t index);
+    Answer beginAgain();
     Answer restore(uint32_t checkpoint);
     double sessionS() const;
 

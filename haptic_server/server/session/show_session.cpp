@@ -101,6 +101,7 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
     assign(info.mutable_bone_max_m(), box.max());
     info.set_lacks_patient_axes(simulation.lacks_patient_axes);
     for (const SceneTool& tool : simulation.tools) info.add_tool_names(tool.name);
+    *info.mutable_tunable() = simulation.tunable.ofScene();
     fillCamera(scene.camera(), info.mutable_camera());
     const scene::Scene shown = shownSceneOf(scene, simulation.segment_colors);
     describeToViewers(shown, info);
@@ -374,16 +375,16 @@ void ShowSession::publishStatus() {
     status.set_dropped_ticks(health.dropped_ticks);
     status.set_faults(health.faults);
     status.set_fault_text(faultNames(health.faults));
-    commands_.describe(status);
-    if (!scene_.assessment().exam()) effects_.describe(recorder_.attempt().effects, material_names_, status);
-    task_.describe(commands_.attempts().isRunning(), commands_.attempts().timeS(), status);
     const auto latest = recorder_.latest();
-    status.set_device_stale(!latest || (latest->faults & kFaultStaleDevice));
     if (latest) {
         DeviceCapabilities capabilities;
         const bool is_known = device_(capabilities);
         *status.mutable_device() = shownDevice(*latest, is_known ? &capabilities : nullptr);
     }
+    commands_.describe(status);
+    if (!scene_.assessment().exam()) effects_.describe(recorder_.attempt().effects, material_names_, status);
+    task_.describe(commands_.attempts().isRunning(), commands_.attempts().timeS(), status);
+    status.set_device_stale(!latest || (latest->faults & kFaultStaleDevice));
     publisher_.publishStatus(std::move(status));
 }
 

@@ -69,6 +69,7 @@ void HandFeed::lookAt(int width, int height) {
 
 std::optional<HudNotice> HandFeed::update(const SessionView& session, bool begin_now, Clock::time_point now) {
     rest(session, now);
+    begin_now = takesOver(session) || begin_now;
     const bool has_seen_bone = std::exchange(shows_model_, session.is_complete);
     const bool is_offered = isOffered(session, has_seen_bone) && !controls_.toolHold().isHolding();
     const bool goes_on = goesOn(has_seen_bone, now);
@@ -128,11 +129,26 @@ std::optional<HudNotice> HandFeed::watch(const SessionView& session, Clock::time
     return std::nullopt;
 }
 
+// The mouse that comes in the place of a scripted hand is that of who has asked for it; with the script, or
+// another scene, the hold ends.
+bool HandFeed::takesOver(const SessionView& session) {
+    const bool has_taken_over = isTakenOver(session) && isHeldByMouse(session) &&
+                                session.status->device().script().taken_over_by() == subscriber_.sender();
+    const bool had_taken_over = std::exchange(has_taken_over_, has_taken_over);
+    if (had_taken_over && !has_taken_over) {
+        controls_.toolHold().letGo();
+        goes_on_at_.reset();
+    }
+    return has_taken_over && !had_taken_over && !controls_.toolHold().isHolding();
+}
+
 // Once in each run of the server: a user who has let the tool go, or whom another user was faster than, is
 // not asked again.
 bool HandFeed::isOffered(const SessionView& session, bool has_seen_bone) {
     const bool is_wanted = begins_by_itself_ || isHeldByMouse(session);
     if (!has_seen_bone || !is_wanted || !mayHoldTool(session.role)) return false;
+    // The mouse of a take-over is that of who has asked for it, and nobody's when the script goes on.
+    if (isTakenOver(session)) offered_epoch_ = subscriber_.epoch();
     return std::exchange(offered_epoch_, subscriber_.epoch()) != subscriber_.epoch();
 }
 
@@ -184,10 +200,10 @@ void HandFeed::showHand(const SessionView& session, Clock::time_point now) {
     const float opacity = hintOpacity(hint_end - now);
     scene_.setHint(opacity > 0 ? std::optional(HudHint{hold.isHolding() ? hintRows() : startRows(), opacity})
                                : std::nullopt);
-    scene_.setHelp(helpGroups(hold.isHolding()         ? HelpFor::kHolding
-                              : isReplay(session)      ? HelpFor::kReplay
-                              : isHeldByMouse(session) ? HelpFor::kMayHold
-                                                       : HelpFor::kLooking,
+    scene_.setHelp(helpGroups(hold.isHolding()                                  ? HelpFor::kHolding
+                              : isReplay(session)                               ? HelpFor::kReplay
+                              : isHeldByMouse(session) || hasHandEnded(session) ? HelpFor::kMayHold
+                                                                                : HelpFor::kLooking,
                               session.lesson != nullptr));
 }
 

@@ -32,6 +32,7 @@ class HandFeed {
 
   private:
     void rest(const SessionView& session, Clock::time_point now);
+    bool takesOver(const SessionView& session);
     bool isOffered(const SessionView& session, bool has_seen_bone);
     bool goesOn(bool has_seen_bone, Clock::time_point now) const;
     std::optional<HudNotice> watch(const SessionView& session, Clock::time_point now);
@@ -48,6 +49,7 @@ class HandFeed {
     uint64_t offered_epoch_ = 0;  // run of the server in which the tool was offered last
     bool shows_model_ = false;    // the picture before showed the whole model
     bool was_holding_ = false;
+    bool has_taken_over_ = false;  // from a scripted hand, as this viewer has asked
     uint64_t seen_epoch_ = 0;
     int64_t seen_attempt_ns_ = 0;                  // start of the newest attempt
     std::optional<Clock::time_point> goes_on_at_;  // the hold that rests in a new scene or attempt

@@ -202,6 +202,7 @@ class WindowViewer {
         if (wishes.centre_at)
             if (const auto p_W = pick(*wishes.centre_at)) scene_.camera().target_W = *p_W;
         if (wishes.removal_at) askForRemoval(*wishes.removal_at);
+        if (!wishes.copy.empty()) window_.setClipboard(wishes.copy);
         if (wishes.notice) notices_.show(*wishes.notice);
         if (!wishes.asked.empty()) spdlog::info("asked: {}", wishes.asked);
         has_quit_ = has_quit_ || wishes.quit;

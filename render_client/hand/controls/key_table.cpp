@@ -95,6 +95,7 @@ constexpr KeyBinding kKeys[] = {
     {"U", keyOf('U'), false, Action::kLastCheckpoint, "back to the last checkpoint"},
     {"N", keyOf('N'), false, Action::kNextTool, "next tool"},
     {"D", keyOf('D'), false, Action::kResetDevice, "reset the device after a stop"},
+    {"Shift+C", keyOf('C'), true, Action::kAgain, "again: whole bone, the scripted hand anew"},
     {"Shift+N", keyOf('N'), true, Action::kNextScene, "next scene of the lesson", false, false, true},
     {"Shift+P", keyOf('P'), true, Action::kTrainee, "type the trainee's name; Enter starts", false, false,
      true},

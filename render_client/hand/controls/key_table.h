@@ -47,6 +47,7 @@ enum class Action {
     kLastCheckpoint,
     kNextTool,
     kResetDevice,
+    kAgain,
     kNextScene,  // this and the two below are of use in a lesson
     kTrainee,
     kStopAttempt,

@@ -40,11 +40,12 @@ std::optional<Question> beforeScene(const SessionView& session) {
 
 std::optional<Question> beforeOtherBone(const topics::Command& command, const SessionView& session) {
     if (!hasUnsavedWork(session)) return std::nullopt;
-    const std::string what = command.reset_volume()
-                                 ? "Put the bone back?"
-                                 : "Back to checkpoint " + std::to_string(command.restore_checkpoint()) + "?";
+    const bool is_checkpoint = command.has_restore_checkpoint();
+    const std::string what = is_checkpoint
+                                 ? "Back to checkpoint " + std::to_string(command.restore_checkpoint()) + "?"
+                                 : "Put the bone back?";
     return Question{.text = what + " " + milledText(session) + " and in no checkpoint.",
-                    .yes = command.reset_volume() ? "Put back" : "Go back",
+                    .yes = is_checkpoint ? "Go back" : "Put back",
                     .offers_checkpoint = true};
 }
 
@@ -58,7 +59,9 @@ std::optional<Question> beforeCommand(const topics::Command& command, const Sess
     }
     if (command.has_erase_remark() && command.erase_remark() == 0)
         return Question{"Erase all notes and strokes, for everybody?", "Erase"};
-    if (command.reset_volume() || command.has_restore_checkpoint()) return beforeOtherBone(command, session);
+    const bool is_work_lost = command.begin_again() && isTakenOver(session);  // a script does its own again
+    if (command.reset_volume() || command.has_restore_checkpoint() || is_work_lost)
+        return beforeOtherBone(command, session);
     return std::nullopt;
 }
 
@@ -136,6 +139,12 @@ CommandOrReason stopAttempt(const SessionView& session) {
     return order(&topics::Command::set_stop_attempt, true);
 }
 
+CommandOrReason beginAgain(const SessionView& session) {
+    if (!hasHandEnded(session) && !isTakenOver(session))
+        return refuse("no scripted hand has done all of its script");
+    return order(&topics::Command::set_begin_again, true);
+}
+
 CommandOrReason askedBy(Action action, const SessionView& session) {
     topics::Command command;
     switch (action) {
@@ -162,6 +171,8 @@ CommandOrReason askedBy(Action action, const SessionView& session) {
             return stopAttempt(session);
         case Action::kResetDevice:
             return order(&topics::Command::set_reset_device, true);
+        case Action::kAgain:
+            return beginAgain(session);
         case Action::kAccuracyScene:
         case Action::kAccuracy1:
         case Action::kAccuracy2:
@@ -210,6 +221,20 @@ bool isReplay(const SessionView& session) {
 bool isHeldByMouse(const SessionView& session) {
     return session.status && session.status->has_device() &&
            session.status->device().kind() == uint32_t(DeviceKind::kPointer);
+}
+
+bool hasHandEnded(const SessionView& session) {
+    return session.status && !isReplay(session) && session.status->device().script().has_ended();
+}
+
+bool isTakenOver(const SessionView& session) {
+    return session.status && !isReplay(session) && session.status->device().script().taken_over_by() != 0;
+}
+
+std::string whyNotTakeOver(const SessionView& session) {
+    if (const std::string why_not = whyNotCommand(session); !why_not.empty()) return why_not;
+    if (!mayHoldTool(session.role)) return "An examiner leaves the tool to others";
+    return hasHandEnded(session) ? "" : "no scripted hand has done all of its script";
 }
 
 std::string whyNotHold(const SessionView& session) {

@@ -73,6 +73,13 @@ bool isReplay(const SessionView& session);
 // The session's tool is held by a mouse (device_daemon --device pointer).
 bool isHeldByMouse(const SessionView& session);
 
+// A scripted hand has done all of its script, and rests.
+bool hasHandEnded(const SessionView& session);
+// The mouse of viewers has come in the place of a scripted hand.
+bool isTakenOver(const SessionView& session);
+// Returns why this viewer may not take the tool over from a hand that has ended; empty when it may.
+std::string whyNotTakeOver(const SessionView& session);
+
 // Returns the command that this setter fills in.
 template <class Value>
 topics::Command commandWith(void (topics::Command::*set)(Value), std::type_identity_t<Value> value) {

@@ -121,6 +121,8 @@ void ViewerControls::switchHold(const SessionView& session, Wishes& wishes) {
                                   HudTone::kPlain};
         return;
     }
+    if (whyNotTakeOver(session).empty())
+        return request(commandWith(&topics::Command::set_take_over, true), session, wishes);
     const std::string why_not = whyNotHold(session);
     wishes.hold_tool = why_not.empty();
     if (!why_not.empty()) wishes.notice = HudNotice{why_not, HudTone::kWarning};

@@ -32,6 +32,7 @@ struct Wishes {
     std::string replay_of;                      // an attempt's results, to be seen again; empty: none
     std::string invite;                         // this person; empty: nobody
     std::string invite_as;                      // the person's role
+    std::string copy;                           // into the clipboard; empty: nothing
     std::string open_file;                      // by the desktop's program for it; empty: none
     bool type_trainee = false;                  // in the panel
     bool next_trainee = false;                  // in the panel: another name

@@ -11,6 +11,7 @@
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/commands/command_rows.h"
+#include "common/config/live_fields.h"
 #include "common/config/scene_tools.h"
 
 namespace bonemill {
@@ -57,6 +58,11 @@ std::optional<std::array<double, 3>> placeOf(const std::string& text) {
         part = *number * kMillimetre;
     }
     return words >> word ? std::nullopt : std::optional(place);
+}
+
+// "scene" is the scene's own, in which nothing is tuned.
+std::optional<scene::Tuning> tunedBy(const std::string& text) {
+    return text == "scene" ? scene::Tuning() : tuningOfText(text);
 }
 
 uint32_t toolOf(const std::string& name, const topics::SceneInfo& scene) {
@@ -110,6 +116,8 @@ std::string argumentProblem(CommandForm::Kind kind, const std::string& argument)
             return realOf(argument) ? "" : "no number of times";
         case CommandForm::PLACE:
             return placeOf(argument) ? "" : "no place: three numbers, in mm";
+        case CommandForm::SCENE_TEXT:
+            return tunedBy(argument) ? "" : "no part of a scene file that can be tuned, nor scene";
         default:
             return "";
     }
@@ -142,6 +150,8 @@ void mean(Message& message, const FieldDescriptor& field, const CommandForm& for
         case FieldDescriptor::CPPTYPE_STRING:
             return r.SetString(&message, &field, argument);
         default:
+            if (form.kind() == CommandForm::SCENE_TEXT)
+                return r.MutableMessage(&message, &field)->CopyFrom(tunedBy(argument).value());
             return setPlace(dynamic_cast<topics::Place&>(*r.MutableMessage(&message, &field)), argument);
     }
 }

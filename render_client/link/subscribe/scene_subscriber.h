@@ -103,6 +103,7 @@ class SceneSubscriber : private SessionSink {
     // was here first is shown for as long as it lives.
     std::optional<std::string> otherServer() const { return ear_.otherServer(); }
 
+    uint64_t sender() const noexcept { return outbox_.sender(); }
     // Queues a command (sender, role and sequence are filled in) and returns its sequence; poll() sends it.
     uint32_t sendCommand(topics::Command command);
     // Returns how commands ended since the last call, acknowledged by the server or given up 5 s

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <sstream>
 
+#include "common/device_messages/device_messages.h"
 #include "render_client/look/hud/device_lines.h"
 
 namespace bonemill {
@@ -83,7 +84,13 @@ void addDevice(const HudInput& input, std::vector<Condition>& conditions) {
     const topics::ToolState* const tool = input.tool ? &*input.tool : nullptr;
     if (const auto stop = deviceStop(device, tool))
         conditions.push_back({"stop", stop->text, stop->tone, true});
-    if (const auto wait = deviceWait(device, tool)) conditions.push_back({"wait", wait->text, wait->tone});
+    // A scripted hand that makes way for the mouse waits for nothing.
+    const bool makes_way =
+        device.script().taken_over_by() != 0 && device.kind() != uint32_t(DeviceKind::kPointer);
+    if (const auto wait = deviceWait(device, tool); wait && !makes_way)
+        conditions.push_back({"wait", wait->text, wait->tone});
+    if (device.script().has_ended() && !input.status->has_replay())
+        conditions.push_back({"script", "The scripted hand has done all of its script, and rests."});
 }
 
 // Who presses the pedal wonders.

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "render_client/hand/controls/viewer_controls.h"
+#include "render_client/panel/panel/hand_card.h"
 #include "render_client/panel/panel/lesson_cards.h"
 #include "render_client/panel/panel/panel_content.h"
 
@@ -186,7 +187,8 @@ bool Panel::handle(const WindowEvent& event, ViewerControls& controls, const Ses
 
 bool Panel::isWanted(const ViewerControls& controls, const SessionView& session) const {
     if (!session.offered.empty() || controls.question(session)) return true;
-    return !isHelpInFront(controls) && (controls.isPanelOpen() || lesson_.isOnScreen(session));
+    return !isHelpInFront(controls) &&
+           (controls.isPanelOpen() || lesson_.isOnScreen(session) || isHandCardOnScreen(session));
 }
 
 void Panel::layOut(ViewerControls& controls, const SessionView& session, Wishes& wishes) {
@@ -215,11 +217,14 @@ void Panel::frame(double seconds, ViewerControls& controls, const SessionView& s
         ImGui::SetWindowFocus(nullptr);
     const bool is_bare = isHelpInFront(controls);
     if (controls.isPanelOpen() && !is_bare)
-        PanelContent(controls, session, wishes, places_, is_ending_, lesson_, remark_, invite_,
+        PanelContent(controls, session, wishes, places_, is_ending_, lesson_, remark_, invite_, tuning_,
                      pictures_.all(), plots_, stage_.scale(), view_width_)
             .build();
     if (lesson_.isOnScreen(session) && !is_bare)
         LessonCards(controls, session, wishes, lesson_, places_, stage_.scale(), view_width_).build();
+    if (isHandCardOnScreen(session) && !is_bare)
+        buildHandCard(controls, session, wishes, places_, stage_.scale(),
+                      freeWidth(controls, view_width_, stage_.scale()));
     if (!session.offered.empty()) buildSessionChoice(session, wishes, places_, stage_.scale());
     buildQuestion(controls, session, wishes, places_, stage_.scale(), view_width_);
     stage_.end();

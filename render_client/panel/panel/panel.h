@@ -69,6 +69,7 @@ class Panel {
     LessonDraft lesson_;
     RemarkDraft remark_;
     InviteDraft invite_;
+    TuningDraft tuning_;
     ScenePictures pictures_;
     PlotHistory plots_;
 };

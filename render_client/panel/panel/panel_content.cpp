@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/commands/role_rules.h"
+
 namespace bonemill {
 namespace {
 
@@ -45,6 +47,12 @@ void PanelContent::build() {
     section(true, "Notes and strokes", &Content::buildRemarks);
     section(true, "Who is watching", &Content::buildWatchers);
     section(session_.has_launcher && !isReplay(session_), "Invite a colleague", &Content::buildInvite);
+    if (session_.info && session_.status && !isReplay(session_) &&
+        mayOrder(session_.role, topics::Command::kTune)) {
+        gap();
+        if (ImGui::CollapsingHeader("Tuning")) buildTuning();  // folded at first
+        note("Tuning", "Stiffness, damping and limits of the contact law, while the session runs");
+    }
     if (session_.tool) {
         gap();
         if (ImGui::CollapsingHeader("Plots")) buildPlots();  // for the lab: folded at first

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "common/config/live_fields.h"
 #include "proto/topics.pb.h"
 #include "render_client/hand/controls/viewer_controls.h"
 #include "render_client/look/camera/view_settings.h"
@@ -13,6 +14,9 @@
 #include "render_client/panel/panel/plot_history.h"
 
 namespace bonemill {
+
+// What is tuned and the accuracy in force, as a scene file says them; empty if that can say nothing.
+std::string sceneTextOf(const topics::Status& status);
 
 class PanelContent {
   public:
@@ -23,7 +27,7 @@ class PanelContent {
     // end of the session waits to be confirmed.
     PanelContent(ViewerControls& controls, const SessionView& session, Wishes& wishes,
                  std::map<std::string, PixelPoint>& places, bool& is_ending, LessonDraft& draft,
-                 RemarkDraft& remark_draft, InviteDraft& invite_draft,
+                 RemarkDraft& remark_draft, InviteDraft& invite_draft, TuningDraft& tuning_draft,
                  const std::map<std::string, ScenePicture>& pictures, const PlotHistory& plots, float scale,
                  float view_width)
         : controls_(controls),
@@ -35,6 +39,7 @@ class PanelContent {
           draft_(draft),
           remark_draft_(remark_draft),
           invite_draft_(invite_draft),
+          tuning_draft_(tuning_draft),
           pictures_(pictures),
           plots_(plots),
           scale_(scale),
@@ -86,6 +91,10 @@ class PanelContent {
     void buildPlots();
     void buildPlot(const char* name, const PlotHistory::Curve& curve, double limit, const char* unit);
     void buildWatchers();
+    // These tune the contact law (panel_tuning.cpp).
+    void buildTuning();
+    void buildTuned(const LiveField& field);
+    void tune(const scene::Tuning& tuning);
     // Lets people from elsewhere in (panel_invite.cpp).
     void buildInvite();
     void buildInvitation();
@@ -124,6 +133,7 @@ class PanelContent {
     LessonDraft& draft_;
     RemarkDraft& remark_draft_;
     InviteDraft& invite_draft_;
+    TuningDraft& tuning_draft_;
     const std::map<std::string, ScenePicture>& pictures_;
     const PlotHistory& plots_;
     float scale_;

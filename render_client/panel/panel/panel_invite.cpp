@@ -35,7 +35,7 @@ void PanelContent::buildInvitation() {
     if (!invitation.problem.empty()) return sayWrapped(invitation.problem, HudTone::kWarning);
     if (invitation.link.empty()) return say("making a link for " + invitation.name + " ...", HudTone::kPlain);
     ImGui::SameLine();
-    if (button("Copy the link", "Into the clipboard")) ImGui::SetClipboardText(invitation.link.c_str());
+    if (button("Copy the link", "Into the clipboard")) wishes_.copy = invitation.link;
     sayWrapped("For " + invitation.name + ": " + invitation.link, HudTone::kGood);
     if (invite_draft_.link != invitation.link) {
         invite_draft_.link = invitation.link;

@@ -33,6 +33,12 @@ struct InviteDraft {
 };
 inline constexpr std::array<const char*, 3> kInvitedRoles = {"observer", "operator", "instructor"};
 
+// Of a slider that is being dragged: of which field, and where it is.
+struct TuningDraft {
+    std::string path;  // empty: of none
+    double value = 0;
+};
+
 // Of the user's side of a lesson: a name that is being typed, which task and which summary are on the screen.
 class LessonDraft {
   public:

@@ -59,6 +59,8 @@ void PanelContent::buildHold() {
     ImGui::BeginDisabled(!why_not.empty());
     box("Hold the tool", Action::kHoldTool, is_holding, "The tool follows the mouse; the left button mills");
     ImGui::EndDisabled();
+    if (isTakenOver(session_) && whyNotCommand(session_).empty())
+        button("Again", Action::kAgain, "The bone is put back, and the scripted hand begins anew");
     if (!why_not.empty()) sayWrapped(why_not, HudTone::kWarning);
     sayQuietly(is_holding ? withKey("Mouse and keys: the help", Action::kHelp)
                           : keyLabelOf(Action::kHoldTool) + " takes it where the mouse is");

@@ -110,6 +110,19 @@ TEST_F(Bonemill, AHandThatHasFinishedEndsTheSession) {
     EXPECT_TRUE(allAreGone());
 }
 
+TEST_F(Bonemill, AScriptedHandRestsAtItsEndWhereThereIsAWindowToSayWhatComesNext) {
+    for (const bool has_window : {true, false}) {
+        BonemillRig rig;
+        std::vector<std::string> words{"start", rig.scene(), "--device", "simulated"};
+        if (!has_window) words.push_back("--no-viewer");
+        Process session(rig.words(words));
+        ASSERT_TRUE(rig.awaitStarts("device_daemon", 1)) << session.errSoFar();
+        EXPECT_EQ(has(rig.events(), " --hold"), has_window) << rig.events();
+        session.signal(SIGTERM);
+        EXPECT_EQ(session.wait().exit_code, 0);
+    }
+}
+
 TEST_F(Bonemill, WithoutADisplayThereIsNoWindow) {
     rig_.setDisplay(false);
     Process session(startWords());

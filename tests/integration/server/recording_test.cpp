@@ -21,6 +21,7 @@
 #include "haptic_server/recording/rerun/verify_journal.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "tests/integration/dds/client_probe.h"
+#include "tests/integration/server/block_hand.h"
 #include "tests/support/every_effect_scene.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
@@ -32,28 +33,6 @@ using namespace std::chrono_literals;
 using test::Finished;
 using test::Process;
 using test::run;
-
-// The hand goes down into the block and to and fro there, with the pedal, for as long as a test takes.
-void addHand(scene::Scene& scene, const test::EveryEffectBlock& block) {
-    const double middle = block.edge * block.voxel_mm / 2, face = middle + block.burr_radius_mm;
-    const auto add = [&](double time_s, double x, double z, bool removes) {
-        auto& point = *scene.mutable_simulated_operator()->add_waypoint();
-        point.set_time_s(time_s);
-        point.mutable_p_wt_mm()->set_x(x), point.mutable_p_wt_mm()->set_y(middle);
-        point.mutable_p_wt_mm()->set_z(z);
-        point.mutable_q_wt()->set_w(0.6), point.mutable_q_wt()->set_x(0.77);
-        point.mutable_q_wt()->set_y(0.2), point.mutable_q_wt()->set_z(0.0843);
-        point.set_remove(removes);
-    };
-    add(0, middle, face + 0.4, false);
-    add(0.5, middle, face + 0.1, true);
-    for (int n = 0; n < 60; ++n) add(1.5 + n, middle + (n % 2 ? 1.2 : -1.2), face - 0.3 - 0.02 * n, true);
-    scene.mutable_simulated_operator()->set_tremor_mm(0.02);
-    scene.mutable_simulated_operator()->set_hand_stiffness_n_per_m(2000);
-    auto& place = *scene.mutable_device()->mutable_p_wd_mm();
-    place.set_x(middle), place.set_y(middle), place.set_z(face);
-    *scene.mutable_device()->mutable_q_wd() = scene.simulated_operator().waypoint(0).q_wt();
-}
 
 class Recording : public testing::Test {
   protected:
@@ -67,7 +46,7 @@ class Recording : public testing::Test {
         scene.mutable_tool(1)->set_name("small");
         scene.mutable_tool(1)->set_burr_radius_mm(0.6);
         scene.mutable_accuracy()->set_switchable(true);
-        addHand(scene, block);
+        test::addHand(scene, block);
         scene_ = folder_ / "scene.textproto";
         test::writeScene(scene_, scene);
     }
@@ -123,6 +102,12 @@ class Recording : public testing::Test {
         });
         return answer;
     }
+    // Only an instructor may.
+    static int tune(const std::string& values) {
+        return run({"render_client", "--command", "tune " + values, "--role", "instructor", "--session",
+                    session(), "--domain", domain()})
+            .exit_code;
+    }
     // All that others may decide for a tick, while it mills.
     void orderEverything(const Process& hand) {
         using C = topics::Command;
@@ -134,6 +119,10 @@ class Recording : public testing::Test {
         EXPECT_TRUE(hasTicked(0.3));
         order([](C& c) { c.set_set_accuracy("fast"); });  // nor is each switchable
         EXPECT_TRUE(hasTicked(0.2));
+        EXPECT_EQ(
+            tune("coupling { translation_stiffness_n_per_mm: 1.5 } contact { stiffness_n_per_mm3: 300 }"), 0);
+        EXPECT_TRUE(hasTicked(0.3));
+        EXPECT_EQ(tune("coupling { max_force_n: 2 }"), 0);
         EXPECT_EQ(order([](C& c) { c.set_pause_milling(true); }), "done");
         hand.signal(SIGSTOP);
         EXPECT_TRUE(hasTicked(0.3));
@@ -143,6 +132,7 @@ class Recording : public testing::Test {
         EXPECT_TRUE(hasTicked(0.3));
         EXPECT_EQ(order([](C& c) { c.set_save_checkpoint(true); }), "done");
         order([](C& c) { c.set_set_accuracy("scene"); });
+        EXPECT_EQ(tune("scene"), 0);
         if (tool == "done") {
             EXPECT_EQ(order([](C& c) { c.set_select_tool(0); }), "done");
         }
@@ -219,17 +209,20 @@ TEST_P(RecordingOfLaw, ALiveSessionWithAllOrdersRunsAgainToTheBit) {
     EXPECT_EQ(content.problem, "");
     EXPECT_GE(content.orders.size(), 10u);
     EXPECT_GE(content.put_backs.size(), 3u);
-    uint64_t stale = 0, small = 0, paused = 0;
+    EXPECT_EQ(content.tunings.size(), 2u);
+    uint64_t stale = 0, small = 0, paused = 0, tuned = 0;
     std::vector<JournalTick> ticks;
     for (const journal::Inputs& inputs : content.inputs) ASSERT_TRUE(decodeInputs(inputs, ticks));
     for (const JournalTick& tick : ticks) {
         stale += tick.input.is_stale, small += tick.input.decisions.tool == 1;
         paused += tick.input.decisions.is_milling_paused;
+        tuned += tick.input.decisions.tuning != 0;
     }
     EXPECT_GT(most_removed_, 0.05) << "mm3";
     EXPECT_GT(stale, 10u) << "the device was silent for a while";
     EXPECT_GT(small, 100u);
     EXPECT_GT(paused, 100u);
+    EXPECT_GT(tuned, 100u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Law, RecordingOfLaw, testing::Values(test::kByTime, test::kByEnergy),

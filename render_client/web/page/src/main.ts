@@ -1,7 +1,7 @@
 // The page: brings together the link (a worker), the picture, and what the user does.
 import { mayOrder, mayPoint, orderText } from './shared/commands';
 import { CommandOrder, FromLink, ToLink } from './shared/messages';
-import { kPointerDevice, OrderDesk, whyNot, whyNotHold, whyNotPoint } from './orders';
+import { hasTakenOver, kPointerDevice, OrderDesk, whyNot, whyNotHold, whyNotPoint, whyNotTakeOver } from './orders';
 import { Session } from './session';
 import { SoundPlayer } from './sound/sound_player';
 import { Stage } from './stage';
@@ -110,6 +110,7 @@ function holdOrLetGo(at?: Place): void {
   if (hold.isHolding) {
     hold.letGo();
   } else {
+    if (!whyNotTakeOver(session)) return desk.give({ action: 'takeOver' });
     const why = whyNotHold(session, Date.now());
     if (why) return say(why, 'warning');
     const burr = session.scene?.burrRadius || 1e-3;
@@ -203,6 +204,9 @@ function drawBar(): void {
   if (SoundPlayer.isOffered(session)) buttons.push(pressed(button('Sound', 'Shift+M', toggleSound), sound.isOn));
   if (session.status?.device?.kind === kPointerDevice && !whyNot('selectTool', session))
     buttons.push(pressed(button('Hold tool', 'G', () => holdOrLetGo()), hold.isHolding));
+  if (!whyNotTakeOver(session))
+    buttons.push(button('Again', 'Shift+C: whole bone, the scripted hand anew', () => desk.give({ action: 'beginAgain' })),
+      button('Take over', 'G: the tool comes to your mouse', () => holdOrLetGo()));
   const bar = byId('bar'), key = JSON.stringify(buttons.map((one) => [one.textContent, one.ariaPressed]));
   if (bar.dataset.key === key) return;
   bar.dataset.key = key;
@@ -222,8 +226,15 @@ function tellHand(): void {
   tell({ kind: 'hand', p: hold.wish.p, q: hold.wish.q, buttons: hold.buttons, isHolding: hold.isHolding });
 }
 
-let wasHolding = false;
+let wasHolding = false, hadTakenOver = false;
+// The mouse that comes in the place of a scripted hand is that of who has asked for it, until the script goes on.
+function followTakeOver(): void {
+  const has = hasTakenOver(session);
+  if (has !== hadTakenOver && hold.isHolding !== has) holdOrLetGo(input.cursor);
+  hadTakenOver = has;
+}
 function onTick(): void {
+  followTakeOver();
   if (wasHolding && !hold.isHolding) tellHand();
   if (hold.isHolding) tellHand();
   wasHolding = hold.isHolding;

@@ -27,6 +27,16 @@ export function whyNotHold(session: Session, now: number): string {
   if (device && device.kind !== kPointerDevice) return `${device.name || 'A device'} holds the tool`;
   return '';
 }
+
+// A scripted hand has done all of its script, and this viewer may take the tool over from it; empty if so.
+export function whyNotTakeOver(session: Session): string {
+  return whyNot('takeOver', session) || (session.status?.device?.script?.hasEnded ? '' : 'no scripted hand has done all of its script');
+}
+// The mouse that came in the place of a scripted hand is ours.
+export function hasTakenOver(session: Session): boolean {
+  const device = session.status?.device;
+  return device?.kind === kPointerDevice && device.script?.takenOverBy === session.sender;
+}
 export const kPointerDevice = 6;  // DeviceKind::kPointer of common/device_messages
 
 // A checkpoint has the bone as it is when just as much was removed until then.
@@ -44,7 +54,9 @@ export function questionBefore(order: CommandOrder, session: Session): string {
   const removed = session.status?.removedMm3 ?? 0;
   if (order.action === 'chooseScene')
     return removed > 0 ? `Change the scene? ${readableText(removed, ' mm³')} are milled and go with this one: once more does it` : '';
-  if (!['startAttempt', 'resetVolume', 'restoreCheckpoint'].includes(order.action)) return '';
+  // A script does its own work again; that of who has taken over is lost.
+  if (order.action === 'beginAgain' && (session.status?.device?.script?.takenOverBy ?? '0') === '0') return '';
+  if (!['startAttempt', 'resetVolume', 'restoreCheckpoint', 'beginAgain'].includes(order.action)) return '';
   const lost = unsavedWork(session);
   if (!lost) return '';
   const what = order.action === 'startAttempt' ? 'Start on whole bone?'

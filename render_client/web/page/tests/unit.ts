@@ -14,7 +14,7 @@ import * as payloads from '../src/link/payloads';
 import { Placement } from '../src/link/place_node';
 import { kMilledBit, kVertexBytes, Role, type CommandOrder, type StatusView, type ToolView } from '../src/shared/messages';
 import { clockText, readableText } from '../src/shared/format';
-import { OrderDesk, questionBefore, whyNot, whyNotHold } from '../src/orders';
+import { hasTakenOver, kPointerDevice, OrderDesk, questionBefore, whyNot, whyNotHold, whyNotTakeOver } from '../src/orders';
 import { orderText } from '../src/shared/commands';
 import { Pace } from '../src/pace';
 import { Session } from '../src/session';
@@ -260,6 +260,23 @@ test('what loses something is asked for twice', () => {
   assert.equal(sent.length, 1);
   session.status!.checkpoints.push({ id: 2, sessionS: 5, removedMm3: session.status!.removedMm3 });
   assert.equal(questionBefore({ action: 'resetVolume' }, session), '');
+});
+
+test('after a script it begins again, or is taken over', () => {
+  const session = live(Role.Operator), device = session.status!.device!;
+  assert.notEqual(whyNotTakeOver(session), '');
+  device.script = { hasEnded: true, takenOverBy: '0' };
+  assert.equal(whyNotTakeOver(session), '');
+  assert.match(conditions(session)[0].text, /all of its script/);
+  assert.equal(questionBefore({ action: 'beginAgain' }, session), '', 'a script does its own work again');
+  assert.notEqual(whyNotTakeOver({ ...session, role: Role.Examiner, isLive: true } as Session), '');
+  device.script = { hasEnded: false, takenOverBy: '7' };
+  assert.ok(!hasTakenOver(session), 'the mouse is not there yet');
+  device.kind = kPointerDevice;
+  assert.ok(hasTakenOver(session));
+  assert.match(questionBefore({ action: 'beginAgain' }, session), /once more does it/);
+  device.script.takenOverBy = '8';
+  assert.ok(!hasTakenOver(session), 'somebody else has');
 });
 
 test('a viewer that falls silent is gone', () => {

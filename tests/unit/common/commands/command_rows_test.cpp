@@ -24,7 +24,9 @@ TEST(CommandRows, EveryActionHasARowWithWordsForAllThatItMayBe) {
             ASSERT_EQ(place.field != nullptr, form.has_field()) << name << " has no field " << form.field();
             const bool is_message =
                 (place.field ? place.field : place.action)->type() == FieldDescriptor::TYPE_MESSAGE;
-            EXPECT_EQ(is_message, form.kind() == topics::CommandForm::PLACE) << name;
+            EXPECT_EQ(is_message, form.kind() == topics::CommandForm::PLACE ||
+                                      form.kind() == topics::CommandForm::SCENE_TEXT)
+                << name;
         }
     });
     EXPECT_EQ(actions, topics::Command::descriptor()->FindOneofByName("action")->field_count());

@@ -29,5 +29,16 @@ TEST(OrderText, NamesEveryOrder) {
     }
 }
 
+TEST(OrderText, WhatIsTunedIsInOneLine) {
+    topics::Command command;
+    command.mutable_tune()->mutable_coupling()->set_damping_time_ms(2);
+    command.mutable_tune()->mutable_contact()->set_stiffness_n_per_mm3(50);
+    const std::string text = "contact { stiffness_n_per_mm3: 50 } coupling { damping_time_ms: 2 }";
+    EXPECT_EQ(orderText(command), "tune " + text);
+    EXPECT_EQ(commandText(command), "tune " + text);
+    command.mutable_tune()->Clear();
+    EXPECT_EQ(commandText(command), "tune as the scene file says");
+}
+
 }  // namespace
 }  // namespace bonemill

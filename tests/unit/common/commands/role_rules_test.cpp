@@ -11,8 +11,9 @@ using topics::Viewer;
 constexpr Viewer::Role kRoles[] = {Viewer::VIEWER, Viewer::OPERATOR, Viewer::INSTRUCTOR, Viewer::EXAMINER,
                                    Viewer::Role(9)};
 // What changes the bone, the tool or the device.
-constexpr CommandAction kOfTheHand[] = {Command::kResetVolume, Command::kRestoreCheckpoint,
-                                        Command::kSetAccuracy, Command::kSelectTool, Command::kResetDevice};
+constexpr CommandAction kOfTheHand[] = {
+    Command::kResetVolume, Command::kRestoreCheckpoint, Command::kSetAccuracy, Command::kSelectTool,
+    Command::kResetDevice, Command::kBeginAgain,        Command::kTakeOver};
 
 TEST(RoleRules, InstructorsMayEverythingAndObserversAndUnknownRolesNothing) {
     forEachCommand([](CommandAction action, const topics::CommandRow&) {
@@ -25,13 +26,14 @@ TEST(RoleRules, InstructorsMayEverythingAndObserversAndUnknownRolesNothing) {
     EXPECT_FALSE(mayOrderAnything(Viewer::Role(9)));
 }
 
-TEST(RoleRules, ExaminersLeaveTheHandAloneAndOperatorsDoAllButEndTheSession) {
+TEST(RoleRules, ExaminersLeaveTheHandAloneAndOperatorsDoAllButTuneAndEndTheSession) {
     for (const CommandAction action : kOfTheHand) {
         EXPECT_FALSE(mayOrder(Viewer::EXAMINER, action)) << fieldOf(action)->name();
         EXPECT_TRUE(mayOrder(Viewer::OPERATOR, action)) << fieldOf(action)->name();
     }
     forEachCommand([](CommandAction action, const topics::CommandRow&) {
-        EXPECT_EQ(mayOrder(Viewer::OPERATOR, action), action != Command::kShutDown)
+        EXPECT_EQ(mayOrder(Viewer::OPERATOR, action),
+                  action != Command::kShutDown && action != Command::kTune)
             << fieldOf(action)->name();
         EXPECT_TRUE(!mayOrder(Viewer::EXAMINER, action) || mayOrder(Viewer::OPERATOR, action));
     });

@@ -119,6 +119,37 @@ TEST(LinkStart, theDaemonLearnsWhenAttemptsBeginAndEnd) {
     EXPECT_EQ(notice.attempt_changes, 6u) << "another scene ends it";
 }
 
+TEST(LinkStart, theDaemonLearnsWhichHandIsWantedAndWhenItsScriptBeginsAnew) {
+    const TestSession session;
+    const DeviceLink daemon = session.open(LinkSide::kDaemon);
+    DeviceLink server = session.open(LinkSide::kServer);
+    server.announceHand(HandChoice::kPointer);
+    SceneNotice notice{};
+    EXPECT_FALSE(daemon.readScene(notice)) << "there is no scene to be the hand of";
+    server.announceScene("/scenes/tooth.textproto", 7, 99);
+    const auto wanted = [&] {
+        EXPECT_TRUE(daemon.readScene(notice));
+        EXPECT_EQ(notice.revision, 1u);
+        EXPECT_EQ(notice.epoch, 99u);
+        return std::pair(HandChoice(notice.hand), notice.hand_repeats);
+    };
+    EXPECT_EQ(wanted(), std::pair(HandChoice::kOwn, 0u));
+    server.announceHand(HandChoice::kOwn);
+    EXPECT_EQ(wanted(), std::pair(HandChoice::kOwn, 1u));
+    server.announceHand(HandChoice::kPointer);
+    server.announceAttempt(true);
+    EXPECT_EQ(wanted(), std::pair(HandChoice::kPointer, 1u));
+    server.announceHand(HandChoice::kOwn);
+    EXPECT_EQ(wanted(), std::pair(HandChoice::kOwn, 2u));
+    server.announceHand(HandChoice::kPointer);
+    server.announceScene("/scenes/skull.textproto", 8);
+    ASSERT_TRUE(daemon.readScene(notice));
+    EXPECT_EQ(HandChoice(notice.hand), HandChoice::kOwn) << "another scene has a hand of its own";
+    EXPECT_EQ(notice.hand_repeats, 2u);
+    notice.hand = 2;
+    EXPECT_FALSE(isPlausible(notice)) << "there is no such hand";
+}
+
 TEST(LinkStart, aSceneThatNobodyCanMeanIsNotBelieved) {
     const TestSession session;
     DeviceLink server = session.open(LinkSide::kServer);

@@ -154,6 +154,7 @@ export function statusOf(payload: Uint8Array): StatusView {
     device: device && {
       name: device.name, kind: device.kind, state: device.state, stopCause: device.stopCause,
       isSimulated: device.isSimulated, forceWaits: device.forceWaits,
+      script: device.script && { hasEnded: device.script.hasEnded, takenOverBy: String(device.script.takenOverBy) },
     },
   };
 }

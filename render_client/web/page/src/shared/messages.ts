@@ -106,6 +106,13 @@ export interface DeviceView {
   stopCause: number;
   isSimulated: boolean;
   forceWaits: boolean;
+  script?: ScriptView;
+}
+
+// A scripted hand that has done all of its script, or made way for the mouse of viewers.
+export interface ScriptView {
+  hasEnded: boolean;
+  takenOverBy: string;  // a sender; '0': nobody
 }
 
 export interface StatusView {

@@ -4,7 +4,7 @@ export type Action =
   | 'firstView' | 'cutX' | 'cutY' | 'cutZ' | 'flipX' | 'flipY' | 'flipZ' | 'cutLower' | 'cutHigher' | 'transparency'
   | 'structures' | 'endoscope' | 'forceArrow' | 'orbitLeft' | 'orbitRight' | 'orbitUp' | 'orbitDown' | 'zoomIn'
   | 'zoomOut' | 'panel' | 'figures' | 'details' | 'largerText' | 'smallerText' | 'help' | 'sound' | 'remarks' | 'look'
-  | 'pause' | 'resetBone' | 'saveCheckpoint' | 'lastCheckpoint' | 'nextTool' | 'resetDevice' | 'accuracy0'
+  | 'pause' | 'resetBone' | 'saveCheckpoint' | 'lastCheckpoint' | 'nextTool' | 'resetDevice' | 'again' | 'accuracy0'
   | 'accuracy1' | 'accuracy2' | 'accuracy3' | 'accuracy4' | 'nextScene' | 'stopAttempt' | 'holdTool' | 'toolDeeper'
   | 'toolNearer';
 
@@ -54,6 +54,7 @@ const kRows: [string, Action, string, KeyBinding['group'], boolean?][] = [
   ['U', 'lastCheckpoint', 'back to the last checkpoint', 'session'],
   ['N', 'nextTool', 'next tool', 'session'],
   ['D', 'resetDevice', 'reset the device after a stop', 'session'],
+  ['Shift+C', 'again', 'again: whole bone, the scripted hand anew', 'session'],
   ['0', 'accuracy0', 'accuracy of the scene file', 'session'],
   ['1', 'accuracy1', 'accuracy thesis_2012', 'session'],
   ['2', 'accuracy2', 'accuracy fast', 'session'],

@@ -85,6 +85,7 @@ export class Keyboard {
       case 'lastCheckpoint': return desk.backToLastCheckpoint();
       case 'nextTool': return desk.nextTool();
       case 'resetDevice': return desk.give({ action: 'resetDevice' });
+      case 'again': return desk.give({ action: 'beginAgain' });
       case 'nextScene': return desk.nextScene();
       case 'stopAttempt': return desk.stopAttempt();
       case 'holdTool': return this.acts.holdOrLetGo();

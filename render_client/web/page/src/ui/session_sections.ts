@@ -97,7 +97,7 @@ export function ordersSection(acts: SessionActs): Section {
     key: () => {
       const { status, scene } = session;
       return [permission(acts), session.name, status?.isMillingPaused, status?.checkpoints, scene?.toolNames,
-        scene?.toolIndex, status?.preset];
+        scene?.toolIndex, status?.preset, status?.device?.script];
     },
     content: () => {
       const { status, scene } = session, why = whyNot('pauseMilling', session);
@@ -110,6 +110,12 @@ export function ordersSection(acts: SessionActs): Section {
         orderButton(acts, 'Save checkpoint', 'K', { action: 'saveCheckpoint' }),
         orderButton(acts, 'Reset device', 'D', { action: 'resetDevice' }),
       )];
+      const script = status?.device?.script;
+      if (script)
+        parts.push(row(
+          orderButton(acts, 'Again', 'Shift+C', { action: 'beginAgain' }),
+          ...(script.hasEnded ? [orderButton(acts, 'Take over', 'G', { action: 'takeOver' })] : []),
+        ));
       const checkpoints = status?.checkpoints ?? [];
       if (checkpoints.length > 0)
         parts.push(row(...checkpoints.map((one) => orderButton(acts, `Back to ${one.id}`,

@@ -169,6 +169,7 @@ export function conditions(session: Session): { text: string; tone: Tone }[] {
     if (kStopped.includes(state)) list.push({ text: `${name}: ${kStates[state]}${stop}. ${todo}`, tone: 'alarm' });
     if ((state === 3 || state === 5) && device.forceWaits) list.push({ text: `${name} is ${kStates[state]}: move the tool away.`, tone: 'warning' });
   }
+  if (device?.script?.hasEnded) list.push({ text: 'The scripted hand has done all of its script, and rests.', tone: 'plain' });
   if (tool?.waitsForRelease && tool.buttons !== 0 && !status?.isMillingPaused)
     list.push({ text: 'The bone was put back: release the pedal, then the burr cuts again.', tone: 'warning' });
   if (status?.deviceStale && status.ticks > 0) list.push({ text: 'The device sends nothing: there is no force.', tone: 'alarm' });

@@ -195,10 +195,11 @@ TEST_F(UdpJointDeviceTest, SaysWhenTheDeviceIsWithoutPowerOrInEmergencyStopOrLea
     controller.state.inputs |= wire::kInputBrake;
     runUntil([&, n = 0]() mutable { return ++n == 5; });
     EXPECT_FALSE(reading.status & kStatusPowered);
-    controller.state.inputs = wire::kInputHomed | wire::kInputReset | wire::kInputLeaving;
+    controller.state.inputs =
+        wire::kInputHomed | wire::kInputReset | wire::kInputLeaving | wire::kInputScriptEnded;
     ASSERT_TRUE(runUntil([&] { return bool(reading.status & kStatusLeaving); }));
     EXPECT_EQ(reading.status, kStatusPowered | kStatusCalibrated | kStatusEmergencyStop |
-                                  kStatusResetPressed | kStatusLeaving);
+                                  kStatusResetPressed | kStatusLeaving | kStatusScriptEnded);
 }
 
 }  // namespace

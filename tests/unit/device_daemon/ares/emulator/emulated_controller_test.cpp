@@ -201,6 +201,31 @@ TEST(EmulatedController, AnOpenChainIsAFaultThatTheHandResets) {
     EXPECT_GT(session.state.temperature_dc[0], 900);
 }
 
+TEST(EmulatedController, SaysThatItsScriptHasEndedUntilItBeginsAnew) {
+    Session session;
+    const auto has_ended = [&] { return bool(session.state.inputs & wire::kInputScriptEnded); };
+    session.run(1);
+    EXPECT_FALSE(has_ended());
+    session.run(0.5);
+    EXPECT_TRUE(has_ended());
+    session.run(1);
+    EXPECT_TRUE(has_ended()) << "it rests";
+    session.controller.beginAnew();
+    session.run(0.01);
+    EXPECT_FALSE(has_ended()) << "it draws back";
+    session.run(1);
+    EXPECT_FALSE(has_ended());
+    session.run(2);
+    EXPECT_TRUE(has_ended());
+
+    Scenario resting = lift();
+    resting.path = OperatorPath({{0, Pose{}, 0}});
+    Session still({}, true, resting);
+    still.run(1);
+    EXPECT_TRUE(still.isEngaged());
+    EXPECT_FALSE(still.state.inputs & wire::kInputScriptEnded) << "one place is no script";
+}
+
 TEST(EmulatedController, SaysThatItLeaves) {
     Session session;
     session.run(0.3);

@@ -38,6 +38,19 @@ TEST(DeviceLoop, TheSampleTellsWhatTheDeviceSays) {
     EXPECT_FALSE(rig.sample.flags & (kDeviceFlagEnabled | kDeviceFlagSimulated));
 }
 
+TEST(DeviceLoop, OnlyASimulatedHandHasAScriptThatEnds) {
+    for (const bool is_simulated : {false, true}) {
+        LoopRig rig;
+        if (is_simulated) rig.device.device.abilities |= kAbilitySimulated;
+        ++rig.device.version;
+        rig.step();
+        EXPECT_FALSE(rig.sample.flags & kDeviceFlagScriptEnded);
+        rig.device.reading.status |= kStatusScriptEnded;
+        rig.step();
+        EXPECT_EQ(bool(rig.sample.flags & kDeviceFlagScriptEnded), is_simulated);
+    }
+}
+
 TEST(DeviceLoop, GivesNoForceBeforeItIsEngaged) {
     LoopRig rig;
     for (int i = 0; i < 2000; ++i) {

@@ -34,7 +34,22 @@ struct ToolBench {
                  {&models[2], {.radius = kBurrs[2]}, 15}},
                 first),
           accuracy(settings),
-          tick(millingConfig(), {bone, &history}, {tools, accuracy}) {}
+          tunings(tuned([](TickTuning&) {})),
+          tick(millingConfig(), {bone, &history}, {tools, accuracy, &tunings}) {}
+
+    // What the bench's config says, changed by this.
+    template <class Change>
+    static TickTuning tuned(Change change) {
+        const TickConfig config = millingConfig();
+        TickTuning tuning{
+            config.coupling, config.gradient.coupling, config.gradient.contact, config.hand, {5, 10, 15}};
+        change(tuning);
+        return tuning;
+    }
+    template <class Change>
+    void tune(Change change) {
+        tunings.choose(tunings.add(tuned(change)));
+    }
 
     std::vector<TickRecord> run(const std::vector<DeviceInput>& inputs) { return lead(tick, inputs); }
     void runChanging(ScriptedIo& io) noexcept {
@@ -50,6 +65,7 @@ struct ToolBench {
     BoneHistory history;
     ToolSwitch tools;
     AccuracySwitch accuracy;
+    TuningSwitch tunings;
     HapticTick tick;
 };
 

@@ -42,6 +42,7 @@ void expectSame(const JournalTick& a, const JournalTick& b) {
     EXPECT_TRUE(isSameBytes(x.other_device, y.other_device));
     EXPECT_EQ(x.decisions.tool, y.decisions.tool);
     EXPECT_EQ(x.decisions.accuracy, y.decisions.accuracy);
+    EXPECT_EQ(x.decisions.tuning, y.decisions.tuning);
     EXPECT_EQ(x.decisions.is_milling_paused, y.decisions.is_milling_paused);
     EXPECT_EQ(x.decisions.is_write_refused, y.decisions.is_write_refused);
     EXPECT_EQ(x.decisions.is_milling_put_off, y.decisions.is_milling_put_off);
@@ -72,6 +73,21 @@ TEST(InputColumns, GiveEveryTickBackToTheBit) {
     expectSame(thereAndBack(later), later);
     const std::vector<JournalTick> one(ticks.begin() + 1, ticks.begin() + 2);
     expectSame(thereAndBack(one), one);
+}
+
+// Most sessions are not tuned, and none of before was: then the column is not there.
+TEST(InputColumns, GiveBackWhatWasTuned) {
+    auto ticks = ticksOf(test::recordedTicks(400));
+    journal::Inputs inputs;
+    encodeInputs(ticks, inputs);
+    EXPECT_FALSE(inputs.has_tuning());
+    for (size_t n = 150; n < ticks.size(); ++n) ticks[n].input.decisions.tuning = uint32_t(1 + n / 200);
+    expectSame(thereAndBack(ticks), ticks);
+    encodeInputs(ticks, inputs);
+    EXPECT_EQ(inputs.tuning().values_size(), 3);
+    inputs.mutable_tuning()->set_values(1, uint64_t(1) << 32);
+    std::vector<JournalTick> none;
+    EXPECT_FALSE(decodeInputs(inputs, none));
 }
 
 // A device may say anything; the tick refuses it, and so must its replay.

@@ -34,6 +34,35 @@ TEST(SessionCommands, AreWhatTheActionsSay) {
     EXPECT_EQ(session.ask(Action::kAccuracy4).set_accuracy(), "exact");
 }
 
+TEST(SessionCommands, AfterAScriptItBeginsAgainOrIsTakenOver) {
+    Session session;
+    EXPECT_FALSE(commandOf(Action::kAgain, session.view()).command);
+    EXPECT_NE(whyNotTakeOver(session.view()), "");
+    session.status.mutable_device()->mutable_script()->set_has_ended(true);
+    EXPECT_TRUE(session.ask(Action::kAgain).begin_again());
+    EXPECT_EQ(whyNotTakeOver(session.view()), "");
+    EXPECT_EQ(whyNotTakeOver(session.view(topics::Viewer::EXAMINER)),
+              "An examiner leaves the tool to others");
+    EXPECT_NE(whyNotTakeOver(session.view(topics::Viewer::VIEWER)), "");
+    session.status.mutable_replay();
+    EXPECT_NE(whyNotTakeOver(session.view()), "") << "a recording's hand";
+    session.status.clear_replay();
+
+    // A script does its own work again; that of who has taken over would be lost.
+    session.status.set_removed_mm3(5);
+    const Deed again{Deed::Kind::kCommand, session.ask(Action::kAgain)};
+    EXPECT_FALSE(questionBefore(again, session.view()));
+    session.status.mutable_device()->mutable_script()->set_has_ended(false);
+    session.status.mutable_device()->mutable_script()->set_taken_over_by(7);
+    EXPECT_TRUE(isTakenOver(session.view()));
+    EXPECT_TRUE(session.ask(Action::kAgain).begin_again());
+    EXPECT_NE(whyNotTakeOver(session.view()), "");
+    const auto question = questionBefore(again, session.view());
+    ASSERT_TRUE(question);
+    EXPECT_EQ(question->yes, "Put back");
+    EXPECT_TRUE(question->offers_checkpoint);
+}
+
 TEST(SessionCommands, PauseFollowsTheServersState) {
     Session session;
     EXPECT_EQ(session.ask(Action::kPauseMilling).action_case(), topics::Command::kPauseMilling);

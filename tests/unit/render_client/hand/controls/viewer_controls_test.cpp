@@ -295,6 +295,26 @@ TEST_F(Controls, CommandsAreWishesAndRefusalsNotices) {
     EXPECT_TRUE(wishes_.notice);
 }
 
+TEST_F(Controls, AfterAScriptKeysBeginAgainAndTakeOver) {
+    topics::Status status;
+    session_.status = &status;
+    type('C', true);
+    EXPECT_TRUE(wishes_.commands.empty());
+    EXPECT_TRUE(wishes_.notice);
+    status.mutable_device()->set_name("ARES emulator");
+    status.mutable_device()->mutable_script()->set_has_ended(true);
+    type('C', true);
+    ASSERT_EQ(wishes_.commands.size(), 1u);
+    EXPECT_TRUE(wishes_.commands[0].begin_again());
+    type('G');
+    ASSERT_EQ(wishes_.commands.size(), 2u);
+    EXPECT_TRUE(wishes_.commands[1].take_over());
+    EXPECT_FALSE(wishes_.hold_tool) << "the tool comes when the mouse is the hand";
+    session_.role = topics::Viewer::EXAMINER;
+    type('G');
+    EXPECT_EQ(wishes_.commands.size(), 2u);
+}
+
 TEST_F(Controls, TheRestIsForTheOwner) {
     type('R');
     EXPECT_TRUE(wishes_.reset_view);

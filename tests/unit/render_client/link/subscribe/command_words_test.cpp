@@ -28,6 +28,8 @@ TEST_F(CommandWords, EachWordIsItsCommand) {
     EXPECT_FALSE(of("resume").pause_milling());
     EXPECT_TRUE(of(" checkpoint ").save_checkpoint());
     EXPECT_TRUE(of("reset-device").reset_device());
+    EXPECT_TRUE(of("again").begin_again());
+    EXPECT_TRUE(of("take-over").take_over());
     EXPECT_TRUE(of("shutdown").shut_down());
     EXPECT_EQ(of("scene tooth_cavity").choose_scene(), "tooth_cavity");
     EXPECT_EQ(of("start Ann Lee").start_attempt(), "Ann Lee");
@@ -38,6 +40,16 @@ TEST_F(CommandWords, EachWordIsItsCommand) {
     EXPECT_EQ(of("erase all").action_case(), topics::Command::kEraseRemark);
     EXPECT_EQ(of("erase all").erase_remark(), 0u);
     EXPECT_EQ(of("export after lunch").export_(), "after lunch");
+}
+
+TEST_F(CommandWords, WhatIsTunedIsWordedAsInASceneFile) {
+    const topics::Command command = of("tune coupling { damping_time_ms: 2 max_force_n: 6 }");
+    EXPECT_EQ(command.tune().coupling().damping_time_ms(), 2);
+    EXPECT_EQ(command.tune().coupling().max_force_n(), 6);
+    EXPECT_EQ(of("tune scene").action_case(), topics::Command::kTune);
+    EXPECT_EQ(of("tune scene").tune().ByteSizeLong(), 0u);
+    for (const char* text : {"tune", "tune 3", "tune loop { rate_hz: 500 }", "tune coupling { softness: 1 }"})
+        EXPECT_NE(commandProblem(text), "") << text;
 }
 
 TEST_F(CommandWords, AReplayIsLedByWords) {

@@ -121,6 +121,27 @@ TEST(Conditions, AStopIsAFaultAndAWaitIsNone) {
     EXPECT_EQ(makeHud(input).state_tone, HudTone::kAlarm);
 }
 
+TEST(Conditions, TheEndOfAScriptIsNoFault) {
+    HudInput input = runningSession();
+    input.status->mutable_device()->set_state(uint32_t(SafetyState::kEngaged));
+    EXPECT_TRUE(conditionsOf(input).empty());
+    input.status->mutable_device()->mutable_script()->set_has_ended(true);
+    const auto conditions = conditionsOf(input);
+    ASSERT_EQ(conditions.size(), 1u);
+    EXPECT_FALSE(conditions[0].is_fault);
+    EXPECT_EQ(conditions[0].tone, HudTone::kPlain);
+}
+
+TEST(Conditions, AHandThatMakesWayWaitsForNothing) {
+    HudInput input = runningSession();
+    topics::Device& device = *input.status->mutable_device();
+    device.set_state(uint32_t(SafetyState::kPaused));
+    device.set_abilities(kAbilityEnablingSwitch);
+    EXPECT_TRUE(findCondition(conditionsOf(input), "wait"));
+    device.mutable_script()->set_taken_over_by(7);
+    EXPECT_FALSE(findCondition(conditionsOf(input), "wait"));
+}
+
 TEST(FaultWords, EveryFaultOfTheServerHasWords) {
     std::string all;
     for (uint32_t fault = 1; fault <= kLastFault; fault <<= 1) {

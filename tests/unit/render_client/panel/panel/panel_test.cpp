@@ -7,50 +7,14 @@
 #include <limits>
 
 #include "common/device_messages/device_messages.h"
-#include "tests/support/controlled_panel.h"
+#include "tests/unit/render_client/panel/panel/panel_clicks.h"
 
 namespace bonemill {
 namespace {
 
-constexpr int kWidth = 900, kHeight = 1200;
-
-class PanelClicks : public testing::Test, protected test::ControlledPanel {
-  protected:
-    PanelClicks() {
-        session_.role = topics::Viewer::INSTRUCTOR;
-        session_.name = "me";
-        info_.add_tool_names("6 mm");
-        info_.add_tool_names("3 mm");
-        status_.set_preset("balanced");
-        for (const uint32_t id : {3u, 5u}) status_.add_checkpoints()->set_id(id);
-        switchPanel();
-        layOut();
-    }
-
-    void layOut() { ControlledPanel::layOut(kWidth, height_); }
-    PixelPoint at(const std::string& label) {
-        layOut();
-        const auto place = panel_.find(label);
-        EXPECT_TRUE(place) << "no control '" << label << "' can be seen";
-        return place.value_or(PixelPoint{});
-    }
-    // Press and release come before any picture, as from a quick hand on a slow computer.
-    void click(const std::string& label) { click(at(label)); }
-    void click(const PixelPoint& place) {
-        send(MouseMoveEvent{place});
-        EXPECT_TRUE(send(MouseButtonEvent{MouseButton::kLeft, true, place, {}, 0}));
-        EXPECT_TRUE(send(MouseButtonEvent{MouseButton::kLeft, false, place, {}, 0}));
-        layOut();
-    }
-    topics::Command clickForCommand(const std::string& label) {
-        wishes_ = {};
-        click(label);
-        EXPECT_EQ(wishes_.commands.size(), 1u) << label;
-        return wishes_.commands.empty() ? topics::Command() : wishes_.commands[0];
-    }
-
-    int height_ = kHeight;
-};
+using test::kPanelHeight;
+using test::kPanelWidth;
+using test::PanelClicks;
 
 // Below it everything still works, and nothing is there without it.
 TEST_F(PanelClicks, TrainingTakesItsPlaceOnlyWhereTheSceneTeachesCare) {
@@ -151,7 +115,7 @@ TEST_F(PanelClicks, SlidersSetHowMuch) {
     click(PixelPoint{middle.x + 60, middle.y});
     EXPECT_NE(settings_.cuts[0].position, 0.5);
     EXPECT_TRUE(settings_.cuts[0].is_on) << "whoever moves a plane wants to see it";
-    click(PixelPoint{kWidth - 30.0, opacity.y});
+    click(PixelPoint{kPanelWidth - 30.0, opacity.y});
     EXPECT_GT(settings_.opacity, 0.85);
     EXPECT_TRUE(settings_.is_transparent);
 }
@@ -362,7 +326,7 @@ TEST_F(PanelClicks, InALowPictureItScrolls) {
 TEST_F(PanelClicks, ItGrowsWithTheDisplaysScale) {
     const double before = at("Cut Z").y - at("Cut X").y;
     const int version = panel_.fontPixels().version;
-    for (int n = 0; n < 2; ++n) ControlledPanel::layOut(2 * kWidth, 2 * kHeight, 2);
+    for (int n = 0; n < 2; ++n) ControlledPanel::layOut(2 * kPanelWidth, 2 * kPanelHeight, 2);
     EXPECT_NEAR(panel_.find("Cut Z")->y - panel_.find("Cut X")->y, 2 * before, 3);
     EXPECT_NE(panel_.fontPixels().version, version);
 }
