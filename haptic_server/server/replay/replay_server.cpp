@@ -14,6 +14,8 @@
 #include "common/text/foreign_text.h"
 #include "haptic_server/recording/rerun/verify_journal.h"
 #include "haptic_server/server/publish/other_server.h"
+#include "haptic_server/server/replay/comparison.h"
+#include "haptic_server/server/replay/led_replay.h"
 #include "haptic_server/server/replay/player.h"
 #include "haptic_server/server/session/show_session.h"
 #include "haptic_server/server/session/shown_shades.h"
@@ -45,6 +47,9 @@ class ReplayServer {
           cuts_(kRingCuts),
           player_(recording_, rerun_, keyframes_, events_, survey_,
                   simulation_.bone->volume.geometry().X_WV.inverse(), ring_, cuts_),
+          comparison_({recording_, simulation_, scene_, rerun_.history().scanned(), player_},
+                      options.folders),
+          led_(player_, comparison_),
           recorder_(ring_, int64_t(std::llround(double(kNsPerSecond) / scene_.scene.loop().rate_hz())),
                     recordedEffectsOf(scene_.scene.effects())),
           bone_export_(rerun_.history(), *simulation_.bone, ""),
@@ -55,7 +60,7 @@ class ReplayServer {
                     scene_.scene),
           commands_(scene_.scene, *simulation_.bone, recorder_,
                     {rerun_.history(), rerun_.accuracies(), rerun_.tools(), stop_requested_, bone_export_,
-                     reset_orders_, lesson_, attempts_, limits_, keeper_, &player_},
+                     reset_orders_, lesson_, attempts_, limits_, keeper_, &led_},
                     options.instructor_only),
           publisher_(soleServerOf(options.domain, options.session, options.network)),
           show_(
@@ -69,6 +74,7 @@ class ReplayServer {
         order.set_seek_s(options.at_s);
         player_.carryOut(order);
         if (options.is_paused) player_.play(false);
+        if (!options.against.file.empty()) comparison_.compareWith(options.against);
     }
 
     int run() {
@@ -117,6 +123,8 @@ class ReplayServer {
         threads_[3] = std::jthread([this](const std::stop_token& stop) {
             loop(stop, ShowSession::kPause, [this] { publishRound(); });
         });
+        threads_[4] = std::jthread(
+            [this](const std::stop_token& stop) { endOnFailure([&] { comparison_.run(stop); }); });
     }
 
     void publishRound() {
@@ -128,8 +136,12 @@ class ReplayServer {
         ShownBone shown(scene_.scene, simulation_, rerun_.history().scanned());
         MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_, shown.look(),
                           simulation_.surroundings ? &simulation_.surroundings->rim : nullptr);
+        std::shared_ptr<const VertexPaint> paint;
         const auto put = [this](NodeGroup&& group) { outbox_.put(std::move(group), monotonicNowNs()); };
         loop(stop, MeshRounds::kPeriod, [&] {
+            std::shared_ptr<const VertexPaint> now = comparison_.paint();
+            rounds.setPaint(now.get());
+            paint = std::move(now);
             for (bool is_more = true; is_more && !stop.stop_requested();) {
                 is_more = rounds.round(put);
                 if (rounds.hasMeshedAll()) outbox_.markWhole(monotonicNowNs());
@@ -169,6 +181,8 @@ class ReplayServer {
     SpscRing<TickRecord> ring_;
     SpscRing<Cut> cuts_;
     Player player_;
+    Comparison comparison_;
+    LedReplay led_;
     Recorder recorder_;
     MeshOutbox outbox_;
     SessionExport bone_export_;
@@ -182,7 +196,7 @@ class ReplayServer {
     SessionCommands commands_;
     Publisher publisher_;
     ShowSession show_;
-    std::array<std::jthread, 4> threads_;
+    std::array<std::jthread, 5> threads_;
 };
 
 }  // namespace

@@ -32,6 +32,10 @@ class ReplayOrders {
     virtual Answer carryOut(const topics::ReplayOrder& order) = 0;
     // Fills in how the replay stands.
     virtual void describe(topics::Replay& replay) const = 0;
+    // Adds, behind those that are there, materials of its own. Once, before any other member.
+    virtual void addMaterials(topics::SceneInfo& info) = 0;
+    // Where the tool of another attempt is, with which the recording is compared; nothing: it is not shown.
+    virtual std::optional<Pose> otherTool() const = 0;
 };
 
 // The commands act on this; the tick takes each up by itself.
@@ -65,6 +69,8 @@ class SessionCommands {
     Checkpoints& checkpoints() noexcept { return checkpoints_; }
     AttemptController& attempts() noexcept { return controls_.attempts; }
     RemarkList& remarks() noexcept { return remarks_; }
+    // Null in a live session.
+    ReplayOrders* replay() noexcept { return controls_.replay; }
     // Fills in the session clock, the pause, the checkpoints and what the bone has lost.
     void describe(topics::Status& status) const;
     const ToolSwitch& tools() const noexcept { return controls_.tools; }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/haptic_server/core/bone/milled_ball.h"
+#include "tests/unit/haptic_server/server/session/fake_replay.h"
 
 namespace bonemill {
 namespace {
@@ -346,17 +347,6 @@ TEST_F(SessionCommandsTest, OfAnUnknownNameOnly32PrintableCharactersAreRepeated)
     EXPECT_EQ(setAccuracy("gr\xc3\xbcn"), std::string("refused: no preset is called 'gr??n'") + kPresets);
 }
 
-class FakeReplay final : public ReplayOrders {
-  public:
-    void play(bool goes_on) override { said_ += goes_on ? "play " : "hold "; }
-    Answer carryOut(const topics::ReplayOrder& order) override {
-        said_ += "seek " + std::to_string(int(order.seek_s())) + " ";
-        return Answer::done();
-    }
-    void describe(topics::Replay& replay) const override { replay.set_length_s(60); }
-    std::string said_;
-};
-
 TEST_F(SessionCommandsTest, ALiveSessionIsNoReplay) {
     topics::Command command;
     command.mutable_replay()->set_seek_s(3);
@@ -365,7 +355,7 @@ TEST_F(SessionCommandsTest, ALiveSessionIsNoReplay) {
 }
 
 TEST_F(SessionCommandsTest, AReplayIsLedAndItsBoneStaysAsItWas) {
-    FakeReplay replay;
+    test::FakeReplay replay;
     SessionControls in_replay = controls();
     in_replay.replay = &replay;
     SessionCommands commands(sceneOf(), ball_.bone, recorder_, in_replay, false);
