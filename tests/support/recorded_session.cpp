@@ -160,8 +160,7 @@ RecordedSession recordSession(const std::filesystem::path& folder, const Recorde
         if (attempts_begun > 0) {
             topics::Attempt& ended = *event.mutable_attempt_ended();
             ended.set_number(uint32_t(attempts_begun));
-            ended.set_start_stamp_ns(kRecordedStartNs +
-                                     int64_t(options.attempts[attempts_begun - 1]) * kPeriodNs);
+            ended.set_time_s(double(at - options.attempts[attempts_begun - 1]) * 1e-3);
             journal.put(JournalTopic::kEvent, event);
         }
         event.set_attempt_began("P" + std::to_string(++attempts_begun));

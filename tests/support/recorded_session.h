@@ -26,10 +26,6 @@ struct RecordedSessionOptions {
     std::vector<uint64_t> attempts = {};
 };
 
-// Attempts that have ended tell that they began so long after this, by CLOCK_REALTIME, as their tick after
-// the first one.
-inline constexpr int64_t kRecordedStartNs = 1'795'000'000'000'000'000;
-
 // Ticks at which something happens, where there are orders.
 inline constexpr uint64_t kTickOfSilence = 400, kTickOfOtherTool = 1400, kTickOfCheckpoint = 1000,
                           kTickOfReset = 1800, kTickOfPause = 2400, kTickOfRestore = 2700;

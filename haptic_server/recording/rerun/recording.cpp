@@ -107,10 +107,9 @@ std::vector<RecordedAttempt> recordedAttempts(const JournalContent& content) {
         if (is_running && event.has_attempt_ended()) {
             attempts.back().end = event.tick();
             attempts.back().time_s = event.attempt_ended().time_s();
-            attempts.back().start_unix_ns = event.attempt_ended().start_stamp_ns();
         }
         if (begins)
-            attempts.push_back({event.attempt_began(), event.bone_order(), event.tick(), UINT64_MAX, {}, 0});
+            attempts.push_back({event.attempt_began(), event.bone_order(), event.tick(), UINT64_MAX, {}});
         is_running = begins || (is_running && !event.has_attempt_ended() && !event.has_attempt_dropped());
     }
     return attempts;

@@ -33,7 +33,6 @@ struct RecordedAttempt {
     uint64_t begin = 0;            // tick
     uint64_t end = UINT64_MAX;     // tick; UINT64_MAX: the recording ends before
     std::optional<double> time_s;  // without pauses, if it has ended
-    int64_t start_unix_ns = 0;     // CLOCK_REALTIME, if it has ended
 };
 
 // The attempts of a session in their order, which is their number from 1 on. One that was dropped counts as

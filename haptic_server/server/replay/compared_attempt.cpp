@@ -1,7 +1,7 @@
 #include "haptic_server/server/replay/compared_attempt.h"
 
 #include <algorithm>
-#include <cstdlib>
+#include <cmath>
 #include <ctime>
 #include <utility>
 #include <vector>
@@ -15,12 +15,6 @@ namespace bonemill {
 namespace {
 
 namespace fs = std::filesystem;
-
-// From the journal's beginning on, by the server's CLOCK_REALTIME, as a result of `session assess` has it.
-int64_t startOf(const Recording& recording, const RecordedAttempt& attempt) {
-    const double begin_s = recording.secondsOf(std::min(attempt.begin, recording.ticks() - 1));
-    return recording.manifest().start_stamp_ns() + int64_t(begin_s * double(kNsPerSecond));
-}
 
 void requireSameScene(const Recording& other, const Recording& shown) {
     const journal::Manifest &its = other.manifest(), &wanted = shown.manifest();
@@ -52,14 +46,23 @@ RecordedAttempt attemptOfNumber(const Recording& recording, uint32_t number) {
     return std::move(number == 0 ? attempts.back() : attempts[number - 1]);
 }
 
+// A recording says no time of day of its attempts. Two of one person that took the same time to the
+// millisecond are not told apart.
+bool isOf(const AttemptResult& result, const RecordedAttempt& attempt) {
+    constexpr double kSameS = 1e-3;
+    return attempt.trainee == result.pseudonym &&
+           (!attempt.time_s || std::abs(*attempt.time_s - result.duration_s) < kSameS);
+}
+
 RecordedAttempt attemptOfResult(const Recording& recording, const AttemptResult& result,
                                 const fs::path& file) {
-    for (RecordedAttempt& attempt : recordedAttempts(recording.content()))
-        if (attempt.start_unix_ns == result.start_unix_ns ||
-            startOf(recording, attempt) == result.start_unix_ns)
-            return std::move(attempt);
-    throw UserError(file.string() + ": its attempt is not in " + recording.path().string() +
-                    ": the recording is another one, or not whole");
+    std::vector<RecordedAttempt> attempts = recordedAttempts(recording.content());
+    const auto found =
+        std::ranges::find_if(attempts, [&](const RecordedAttempt& attempt) { return isOf(result, attempt); });
+    if (found == attempts.end())
+        throw UserError(file.string() + ": its attempt is not in " + recording.path().string() +
+                        ": the recording is another one, or not whole");
+    return std::move(*found);
 }
 
 fs::path recordingOf(const AttemptResult& result, const fs::path& file, const fs::path& recordings) {
@@ -73,14 +76,16 @@ fs::path recordingOf(const AttemptResult& result, const fs::path& file, const fs
     return recording;
 }
 
+// By the server's CLOCK_REALTIME, from when the journal was begun on.
 std::string textOf(const ComparedAttempt& compared) {
-    const std::time_t start = std::time_t(startOf(*compared.recording, compared.attempt) / kNsPerSecond);
+    const Recording& recording = *compared.recording;
+    const double begin_s = recording.secondsOf(std::min(compared.attempt.begin, recording.ticks() - 1));
+    const std::time_t start = recording.manifest().start_stamp_ns() / kNsPerSecond + std::time_t(begin_s);
     std::tm parts{};
     char when[32] = "";
-    if (start > 0 && localtime_r(&start, &parts))
-        std::strftime(when, sizeof when, ", %Y-%m-%d %H:%M", &parts);
-    const std::string who = compared.attempt.trainee.empty() ? compared.recording->path().filename().string()
-                                                             : compared.attempt.trainee;
+    if (localtime_r(&start, &parts)) std::strftime(when, sizeof when, ", %Y-%m-%d %H:%M", &parts);
+    const std::string who =
+        compared.attempt.trainee.empty() ? recording.path().filename().string() : compared.attempt.trainee;
     return printableLine(who) + when;
 }
 

@@ -17,7 +17,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kFollowEvery = 2ms;
-constexpr auto kMostAtOnce = 20ms;  // then orders are looked at
+constexpr auto kMostAtOnce = 20ms;    // then orders are looked at
+constexpr size_t kMostProblem = 400;  // bytes, with the paths of two files
 // Recorded time by which the other tool may lag and still be seen as going along.
 constexpr double kNearS = 0.1;
 
@@ -42,7 +43,7 @@ void Comparison::run(const std::stop_token& stop) {
             if (wish) open(*wish);
             is_arrived = !companion_ || follow(stop);
         } catch (const std::exception& error) {
-            giveUp(printableLine(error.what()));
+            giveUp(printableLine(error.what(), kMostProblem));
             is_arrived = true;
         }
     }

@@ -121,11 +121,9 @@ HudRow volumeRow(double removed_mm3) {
 }
 
 HudRow comparisonRow(const topics::Comparison& comparison) {
-    if (!comparison.problem().empty())
-        return {"Other", "cannot be compared, the panel says why", HudTone::kWarning};
-    const std::string where =
-        comparison.is_on_its_way() ? ", on its way" : ", " + clockText(comparison.attempt_s());
-    return {"Other", comparison.attempt() + where, HudTone::kPlain};
+    if (!comparison.problem().empty()) return {"Other", "none, see panel", HudTone::kWarning};
+    return {"Other", comparison.is_on_its_way() ? "on its way" : clockText(comparison.attempt_s()),
+            HudTone::kPlain};
 }
 
 std::vector<HudRow> taskRows(const HudInput& input) {

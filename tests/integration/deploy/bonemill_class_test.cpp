@@ -124,9 +124,9 @@ TEST_F(BonemillClass, ReplaysAnAttemptBesideAnother) {
         << by_name;
     EXPECT_TRUE(has(eventsOf({"replay", "1_a.mcap", "--against", result}), " --against " + result + "\n"));
     Process alone(rig_.words({"replay", "1_a.mcap", "--against", "none.mcap", "--no-viewer"}));
-    EXPECT_TRUE(test::waitFor([&] { return has(alone.outSoFar(), "none.mcap to compare with"); }))
-        << alone.outSoFar();
-    alone.signal(SIGINT);
+    EXPECT_TRUE(test::waitFor([&] { return has(alone.outSoFar(), "Ctrl-C ends it"); })) << alone.outSoFar();
+    EXPECT_TRUE(has(alone.outSoFar(), "none.mcap to compare with")) << alone.outSoFar();
+    alone.signal(SIGTERM);
     EXPECT_EQ(alone.wait().exit_code, 0) << "the replay goes on";
 }
 

@@ -33,15 +33,12 @@ class ComparisonTest : public testing::Test {
           recording_(shown_.journal),
           other_recording_(other_.journal) {}
 
-    // As `session assess` says when what begins with this tick of the other recording began.
-    int64_t startOf(uint64_t tick) const {
-        return other_recording_.manifest().start_stamp_ns() + int64_t(other_recording_.secondsOf(tick) * 1e9);
-    }
-    void writeResult(const std::string& name, const std::string& journal, int64_t start_unix_ns) {
+    void writeResult(const std::string& name, const std::string& journal, const std::string& who,
+                     double duration_s) {
         AttemptResult result;
-        result.pseudonym = "P1";
+        result.pseudonym = who;
         result.scene_hash = "0123456789abcdef";
-        result.start_unix_ns = start_unix_ns;
+        result.duration_s = duration_s;
         result.journal = journal;
         std::filesystem::create_directories(folder_ / "classes/group/results");
         std::ofstream(folder_ / ("classes/group/results/" + name + ".json")) << resultJson(result);
@@ -62,7 +59,7 @@ class ComparisonTest : public testing::Test {
 };
 
 TEST_F(ComparisonTest, InBothTheSameTimeHasPassedSinceTheBeginning) {
-    const AttemptClock clock(recording_, other_recording_, {"P2", 0, 500, UINT64_MAX, {}, 0});
+    const AttemptClock clock(recording_, other_recording_, {"P2", 0, 500, UINT64_MAX, {}});
     for (const uint64_t tick : {200u, 201u, 700u, 1500u}) {
         const uint64_t other = clock.otherTickAt(tick);
         EXPECT_NEAR(clock.attemptS(other), recording_.secondsOf(tick) - recording_.secondsOf(200), 1.1e-3)
@@ -72,7 +69,7 @@ TEST_F(ComparisonTest, InBothTheSameTimeHasPassedSinceTheBeginning) {
     EXPECT_EQ(clock.otherTickAt(0), 500u) << "before the attempt";
     EXPECT_EQ(clock.otherTickAt(2999), 1999u) << "when the other one has ended";
     EXPECT_NEAR(clock.lengthS(), 1.499, 1e-4);
-    const AttemptClock ended(recording_, other_recording_, {"P1", 0, 100, 500, 0.4, 0});
+    const AttemptClock ended(recording_, other_recording_, {"P1", 0, 100, 500, 0.4});
     EXPECT_EQ(ended.otherTickAt(2999), 500u) << "what comes after the attempt is none of it";
     const AttemptClock whole(other_recording_, recording_, {});
     EXPECT_NEAR(double(whole.otherTickAt(499)), 399, 1) << "the first attempt";
@@ -85,12 +82,11 @@ TEST_F(ComparisonTest, AnAttemptIsFoundByItsNumberOrItsResult) {
     EXPECT_EQ(first.attempt.begin, 100u);
     EXPECT_EQ(first.attempt.end, 500u);
     EXPECT_EQ(first.text.substr(0, 4), "P1, ");
-    writeResult("told", "b.mcap", test::kRecordedStartNs + 100'000'000);
-    const auto told = resultOfName(folders(), "told");
-    EXPECT_EQ(openCompared({told, 0}, folders(), recording_).attempt.begin, 100u);
-    writeResult("judged_anew", "b.mcap", startOf(500));
-    EXPECT_EQ(openCompared({resultOfName(folders(), "judged_anew"), 0}, folders(), recording_).attempt.begin,
-              500u);
+    writeResult("first", "b.mcap", "P1", 0.4);
+    EXPECT_EQ(openCompared({resultOfName(folders(), "first"), 0}, folders(), recording_).attempt.begin, 100u);
+    writeResult("second", "b.mcap", "P2", 1.5);
+    EXPECT_EQ(openCompared({resultOfName(folders(), "second"), 0}, folders(), recording_).attempt.begin, 500u)
+        << "the recording ended before it";
 }
 
 TEST_F(ComparisonTest, WhatCannotBeComparedIsSaidInOneLine) {
@@ -104,13 +100,15 @@ TEST_F(ComparisonTest, WhatCannotBeComparedIsSaidInOneLine) {
     std::ofstream(folder_ / "broken.json") << "{";
     expect(problemOf({folder_ / "broken.json", 0}), "broken.json");
     expect(problemOf({other_.journal, 7}), "has 2 attempts, not 7");
-    writeResult("gone", "gone.mcap", startOf(100));
+    writeResult("gone", "gone.mcap", "P1", 0.4);
     expect(problemOf({resultOfName(folders(), "gone"), 0}), "gone.mcap is not there");
-    writeResult("unrecorded", "", startOf(100));
+    writeResult("unrecorded", "", "P1", 0.4);
     expect(problemOf({resultOfName(folders(), "unrecorded"), 0}), "was not recorded");
-    writeResult("foreign", "b.mcap", startOf(101));
+    writeResult("foreign", "b.mcap", "P3", 0.4);
     expect(problemOf({resultOfName(folders(), "foreign"), 0}), "is not in");
-    writeResult("escaping", "../b.mcap", startOf(100));
+    writeResult("longer", "b.mcap", "P1", 0.5);
+    expect(problemOf({resultOfName(folders(), "longer"), 0}), "is not in");
+    writeResult("escaping", "../b.mcap", "P1", 0.4);
     EXPECT_EQ(problemOf({resultOfName(folders(), "escaping"), 0}), "") << "only the file's name counts";
     EXPECT_THROW(resultOfName(folders(), "nobody"), UserError);
 }
@@ -204,7 +202,7 @@ class ComparedReplay : public ComparisonTest {
 
 TEST_F(ComparedReplay, TheOtherToolGoesAlongWhereverTheReplayIsLed) {
     comparison_.compareWith({other_.journal, 0});
-    const AttemptClock clock(recording_, other_recording_, {"P2", 0, 500, UINT64_MAX, {}, 0});
+    const AttemptClock clock(recording_, other_recording_, {"P2", 0, 500, UINT64_MAX, {}});
     for (const uint64_t tick : {1500u, 250u, 2999u, 700u, 0u}) {
         seek(tick);
         // After a jump the tool settles as that of the replay does.
@@ -236,7 +234,7 @@ TEST_F(ComparedReplay, WhatGoesWrongIsSaidAndTheReplayGoesOn) {
     EXPECT_EQ(comparison_.compareWithResult("nobody").outcome, topics::DONE);
     EXPECT_TRUE(waitFor([&] { return now().problem().find("'nobody'") != std::string::npos; }));
     EXPECT_EQ(comparison_.compareWithResult("../b").outcome, topics::REFUSED);
-    writeResult("told", "b.mcap", startOf(500));
+    writeResult("told", "b.mcap", "P2", 1.5);
     EXPECT_EQ(comparison_.compareWithResult("told").outcome, topics::DONE);
     EXPECT_TRUE(goesAlongAt(1200, 1500, 50e-6));
     EXPECT_EQ(comparison_.showDifference(true).outcome, topics::DONE);
