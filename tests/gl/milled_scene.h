@@ -2,6 +2,7 @@
 // the cavity.
 #pragma once
 
+#include "haptic_server/surface/mesh/zone_paint.h"
 #include "render_client/look/render_scene/render_scene.h"
 #include "tests/gl/synthetic_scene.h"
 

@@ -17,7 +17,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kFollowEvery = 2ms;
-constexpr auto kMostAtOnce = 20ms;    // then orders are looked at
+constexpr auto kMostAtOnce = 20ms;  // then orders are looked at
+constexpr const char* kNothingCompared = "no other attempt is compared: choose one first";
 constexpr size_t kMostProblem = 400;  // bytes, with the paths of two files
 // Recorded time by which the other tool may lag and still be seen as going along.
 constexpr double kNearS = 0.1;
@@ -35,7 +36,7 @@ constexpr Part kShownParts[DifferencePaint::kParts] = {{"removed here alone", 0,
 }  // namespace
 
 void Comparison::run(const std::stop_token& stop) {
-    takeLowPriority();
+    takeLowPriority(kNiceBeside);
     bool is_arrived = true;
     while (!stop.stop_requested()) {
         const std::optional<Wish> wish = awaitWish(stop, is_arrived);
@@ -61,21 +62,22 @@ std::optional<Comparison::Wish> Comparison::awaitWish(const std::stop_token& sto
 }
 
 void Comparison::open(const Wish& wish) {
-    {
-        const std::lock_guard lock(mutex_);
-        paint_.reset();
-        X_WT_.reset();
-    }
-    companion_.reset();
+    takeAway();
     if (!wish.isNone()) begin(wish);
+}
+
+void Comparison::takeAway() {
+    companion_.reset();
+    const std::lock_guard lock(mutex_);
+    paint_.reset();
+    bone_.reset();
+    X_WT_.reset();
 }
 
 void Comparison::giveUp(const std::string& problem) {
     spdlog::warn("the replay goes on without another attempt: {}", problem);
-    companion_.reset();
+    takeAway();
     const std::lock_guard lock(mutex_);
-    paint_.reset();
-    X_WT_.reset();
     if (wish_ || !state_) return;  // another one is to be compared by now
     state_->set_problem(problem);
     state_->set_is_on_its_way(false);
@@ -88,6 +90,7 @@ void Comparison::begin(const Wish& wish) {
                                              shown_.simulation, shown_.scene, shown_.scanned);
     spdlog::info("compared with {}: {:.1f} s", companion_->text(), companion_->lengthS());
     const std::lock_guard lock(mutex_);
+    bone_ = companion_->bone();
     if (first_material_ != 0)
         paint_ = std::make_shared<const DifferencePaint>(shown_.scanned, shown_.simulation.bone->volume,
                                                          companion_->bone(), first_material_);
@@ -146,9 +149,15 @@ Answer Comparison::showDifference(bool is_shown) {
     if (first_material_ == 0)
         return Answer::refused(
             "the scene's materials and zones leave no numbers for the difference's colours");
-    if (is_shown && (!state_ || !state_->problem().empty()))
-        return Answer::refused("no other attempt is compared: choose one first");
+    if (is_shown && !isCompared()) return Answer::refused(kNothingCompared);
     shows_difference_ = is_shown;
+    return Answer::done();
+}
+
+Answer Comparison::showBeside(bool is_shown) {
+    const std::lock_guard lock(mutex_);
+    if (is_shown && !isCompared()) return Answer::refused(kNothingCompared);
+    shows_beside_ = is_shown;
     return Answer::done();
 }
 
@@ -160,6 +169,7 @@ void Comparison::describe(topics::Replay& replay) const {
     comparison = *state_;
     comparison.set_shows_difference(shows_difference_);
     comparison.set_first_material(first_material_);
+    comparison.set_shows_beside(shows_beside_);
 }
 
 std::optional<Pose> Comparison::otherTool() const {
@@ -167,7 +177,10 @@ std::optional<Pose> Comparison::otherTool() const {
     return X_WT_;
 }
 
-void Comparison::addMaterials(topics::SceneInfo& info) {
+void Comparison::extend(topics::SceneInfo& info) {
+    first_leaf_ = info.leaf_count();
+    info.set_other_first_leaf(first_leaf_);
+    info.set_leaf_count(first_leaf_ + shown_.simulation.bone->lattice.leafCount());
     if (info.materials_size() + DifferencePaint::kParts > kMaxVertexMaterials) return;
     first_material_ = uint8_t(info.materials_size() + 1);
     for (const Part& part : kShownParts) {
@@ -182,6 +195,11 @@ void Comparison::addMaterials(topics::SceneInfo& info) {
 std::shared_ptr<const VertexPaint> Comparison::paint() const {
     const std::lock_guard lock(mutex_);
     return shows_difference_ ? paint_ : nullptr;
+}
+
+std::shared_ptr<const BoneModel> Comparison::boneBeside() const {
+    const std::lock_guard lock(mutex_);
+    return shows_beside_ ? bone_ : nullptr;
 }
 
 }  // namespace bonemill

@@ -41,14 +41,20 @@ class Comparison {
     Answer compareWithResult(const std::string& name);
     Answer compareWithNone();
     Answer showDifference(bool is_shown);
+    Answer showBeside(bool is_shown);
     void describe(topics::Replay& replay) const;
     // Of the other attempt, while it stands where the replay does. Any thread.
     std::optional<Pose> otherTool() const;
 
-    // Adds the three colours of a difference, if numbers are left for them. Once, before run().
-    void addMaterials(topics::SceneInfo& info);
+    // Adds the three colours of a difference, if numbers are left for them, and as many leaves as the bone
+    // has for the other one. Once, before run().
+    void extend(topics::SceneInfo& info);
     // What the bone is to show; null: nothing. The mesher's thread.
     std::shared_ptr<const VertexPaint> paint() const;
+    // The other bone, while it is to be seen; null: it is not. Any thread; its leaves are numbered from here
+    // on.
+    std::shared_ptr<const BoneModel> boneBeside() const;
+    uint32_t firstLeafBeside() const noexcept { return first_leaf_; }
 
   private:
     struct Wish {
@@ -60,12 +66,15 @@ class Comparison {
     std::optional<Wish> awaitWish(const std::stop_token& stop, bool is_arrived);
     void open(const Wish& wish);
     void giveUp(const std::string& problem);
+    void takeAway();
+    bool isCompared() const { return state_ && state_->problem().empty(); }
     void begin(const Wish& wish);
     bool follow(const std::stop_token& stop);
 
     const Shown shown_;
     const AttemptFolders folders_;
     uint8_t first_material_ = 0;
+    uint32_t first_leaf_ = 0;
     std::unique_ptr<Companion> companion_;  // the comparison's thread has it
 
     mutable std::mutex mutex_;  // guards what is below
@@ -74,7 +83,8 @@ class Comparison {
     std::optional<topics::Comparison> state_;
     std::optional<Pose> X_WT_;
     std::shared_ptr<const DifferencePaint> paint_;  // there while there is a companion
-    bool shows_difference_ = false;
+    std::shared_ptr<const BoneModel> bone_;         // likewise
+    bool shows_difference_ = false, shows_beside_ = false;
 };
 
 }  // namespace bonemill

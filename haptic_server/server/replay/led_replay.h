@@ -15,6 +15,7 @@ class LedReplay final : public ReplayOrders {
     void play(bool goes_on) override { player_.play(goes_on); }
     Answer carryOut(const topics::ReplayOrder& order) override {
         if (order.has_shows_difference()) return comparison_.showDifference(order.shows_difference());
+        if (order.has_shows_beside()) return comparison_.showBeside(order.shows_beside());
         if (!order.has_compare_with()) return player_.carryOut(order);
         return order.compare_with().empty() ? comparison_.compareWithNone()
                                             : comparison_.compareWithResult(order.compare_with());
@@ -23,7 +24,7 @@ class LedReplay final : public ReplayOrders {
         player_.describe(replay);
         comparison_.describe(replay);
     }
-    void addMaterials(topics::SceneInfo& info) override { comparison_.addMaterials(info); }
+    void extend(topics::SceneInfo& info) override { comparison_.extend(info); }
     std::optional<Pose> otherTool() const override { return comparison_.otherTool(); }
 
   private:

@@ -14,8 +14,10 @@
 #include "common/text/foreign_text.h"
 #include "haptic_server/recording/rerun/verify_journal.h"
 #include "haptic_server/server/publish/other_server.h"
+#include "haptic_server/server/replay/bone_beside.h"
 #include "haptic_server/server/replay/comparison.h"
 #include "haptic_server/server/replay/led_replay.h"
+#include "haptic_server/server/replay/low_priority.h"
 #include "haptic_server/server/replay/player.h"
 #include "haptic_server/server/session/show_session.h"
 #include "haptic_server/server/session/shown_shades.h"
@@ -27,7 +29,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr size_t kRingRecords = 8192, kRingCuts = 8192;
-constexpr auto kRecordPeriod = 4ms;
+constexpr auto kRecordPeriod = 4ms, kLookBeside = 4ms;
 constexpr int64_t kLookEveryNs = 20 * kNsPerMillisecond;
 
 // The recorded scene, with the bone as its files have it now. Its threads stand around the player as those of
@@ -125,6 +127,7 @@ class ReplayServer {
         });
         threads_[4] = std::jthread(
             [this](const std::stop_token& stop) { endOnFailure([&] { comparison_.run(stop); }); });
+        threads_[5] = std::jthread([this](const std::stop_token& stop) { meshBesideUntil(stop); });
     }
 
     void publishRound() {
@@ -134,8 +137,7 @@ class ReplayServer {
 
     void meshUntil(const std::stop_token& stop) {
         ShownBone shown(scene_.scene, simulation_, rerun_.history().scanned());
-        MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_, shown.look(),
-                          simulation_.surroundings ? &simulation_.surroundings->rim : nullptr);
+        MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_, shown.look(), rim());
         std::shared_ptr<const VertexPaint> paint;
         const auto put = [this](NodeGroup&& group) { outbox_.put(std::move(group), monotonicNowNs()); };
         loop(stop, MeshRounds::kPeriod, [&] {
@@ -147,6 +149,21 @@ class ReplayServer {
                 if (rounds.hasMeshedAll()) outbox_.markWhole(monotonicNowNs());
             }
         });
+    }
+
+    void meshBesideUntil(const std::stop_token& stop) {
+        takeLowPriority(kNiceBeside);
+        ShownBone shown(scene_.scene, simulation_, rerun_.history().scanned());
+        BoneBeside beside(comparison_.firstLeafBeside(), shown.look(), rim(), outbox_);
+        loop(stop, kLookBeside, [&] {
+            for (bool is_more = true; is_more && !stop.stop_requested();) {
+                beside.show(comparison_.boneBeside());
+                is_more = beside.round();
+            }
+        });
+    }
+    const RegionRim* rim() const {
+        return simulation_.surroundings ? &simulation_.surroundings->rim : nullptr;
     }
 
     template <class Work>
@@ -196,7 +213,7 @@ class ReplayServer {
     SessionCommands commands_;
     Publisher publisher_;
     ShowSession show_;
-    std::array<std::jthread, 5> threads_;
+    std::array<std::jthread, 6> threads_;
 };
 
 }  // namespace

@@ -37,7 +37,7 @@ void Survey::start() {
 }
 
 void Survey::run(const std::stop_token& stop) {
-    takeLowPriority();
+    takeLowPriority(kNiceInBackground);
     const int64_t start_ns = monotonicNowNs();
     while (!rerun_.isAtEnd() && !stop.stop_requested()) {
         const uint64_t tick = rerun_.next();

@@ -32,8 +32,8 @@ class ReplayOrders {
     virtual Answer carryOut(const topics::ReplayOrder& order) = 0;
     // Fills in how the replay stands.
     virtual void describe(topics::Replay& replay) const = 0;
-    // Adds, behind those that are there, materials of its own. Once, before any other member.
-    virtual void addMaterials(topics::SceneInfo& info) = 0;
+    // Adds materials and leaves of its own, behind those that are there. Once, before any other member.
+    virtual void extend(topics::SceneInfo& info) = 0;
     // Where the tool of another attempt is, with which the recording is compared; nothing: it is not shown.
     virtual std::optional<Pose> otherTool() const = 0;
 };

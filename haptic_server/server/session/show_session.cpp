@@ -154,7 +154,7 @@ ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const 
                     shadesOf(shownSceneOf(scene, simulation.segment_colors), simulation.mapping).scale,
                     outbox) {
     *scene_info_.mutable_densities() = densityGridOf(density_source_, density_scale_);
-    if (commands_.replay()) commands_.replay()->addMaterials(scene_info_);
+    if (commands_.replay()) commands_.replay()->extend(scene_info_);
 }
 
 void ShowSession::begin() {

@@ -72,9 +72,20 @@ class Watcher {
     }
     const topics::Status& status() const { return *subscriber_.status(); }
     uint64_t digest() const { return subscriber_.digest().value(); }
+    const topics::SceneInfo& info() const { return *subscriber_.sceneInfo(); }
     const std::map<uint32_t, NodeMesh>& nodes() const { return nodes_; }
+    // Those with a surface of the leaves below, and of this one and those behind, which count from it on.
+    std::map<uint32_t, NodeMesh> nodesUntil(uint32_t leaf) const { return shown(0, leaf); }
+    std::map<uint32_t, NodeMesh> nodesFrom(uint32_t leaf) const { return shown(leaf, UINT32_MAX); }
 
   private:
+    std::map<uint32_t, NodeMesh> shown(uint32_t from, uint32_t to) const {
+        std::map<uint32_t, NodeMesh> shown;
+        for (auto node = nodes_.lower_bound(from); node != nodes_.lower_bound(to); ++node)
+            if (!node->second.isEmpty()) shown.emplace(node->first - from, node->second);
+        return shown;
+    }
+
     std::map<uint32_t, NodeMesh> nodes_;  // by leaf
     SceneSubscriber subscriber_{
         SubscriberOptions{.domain = testDomain(), .session = testSession(), .name = "w"}};
@@ -188,6 +199,38 @@ TEST_F(ComparedReplay, TheOtherToolIsAGhostAndColoursTellTheDifference) {
         return !s.status()->replay().has_comparison() && s.toolState()->p_wt_expert_m().empty();
     }));
     EXPECT_EQ(command("compare b").substr(0, 1), "1") << "it was not told where attempts are";
+}
+
+// At the beginning both bones are as scanned, later each as its own attempt has left it.
+TEST_F(ComparedReplay, TheOtherBoneComesBesideTheFirstWhereItIsWished) {
+    Process server(this->server({"--paused", "--against", other_.journal}));
+    Watcher watcher;
+    ASSERT_TRUE(watcher.sees([](const SceneSubscriber& s) {
+        return s.isComplete() && !s.status()->is_model_partial() && s.toolState()->p_wt_expert_m_size() == 3;
+    })) << server.errSoFar();
+    const uint32_t first = watcher.info().other_first_leaf();
+    ASSERT_GT(first, 0u);
+    EXPECT_TRUE(watcher.nodesFrom(first).empty());
+    EXPECT_EQ(command("side-by-side"), "0 show both bones: done\n");
+    const auto areBoth = [&](bool are_same) {
+        return watcher.sees([&](const SceneSubscriber& s) {
+            return s.isComplete() && !watcher.nodesFrom(first).empty() &&
+                   areTheSame(watcher.nodesFrom(first), watcher.nodesUntil(first)) == are_same;
+        });
+    };
+    EXPECT_TRUE(areBoth(true));
+    EXPECT_EQ(command("seek 1").substr(0, 1), "0");
+    EXPECT_TRUE(areBoth(false));
+    EXPECT_EQ(command("seek 0").substr(0, 1), "0");
+    EXPECT_TRUE(areBoth(true));
+    EXPECT_EQ(command("one-view"), "0 show one bone: done\n");
+    EXPECT_TRUE(watcher.sees(
+        [&](const SceneSubscriber& s) { return s.isComplete() && watcher.nodesFrom(first).empty(); }));
+    EXPECT_EQ(command("side-by-side").substr(0, 1), "0");
+    EXPECT_TRUE(areBoth(true)) << "and comes again";
+    EXPECT_EQ(command("alone").substr(0, 1), "0");
+    EXPECT_TRUE(watcher.sees(
+        [&](const SceneSubscriber& s) { return s.isComplete() && watcher.nodesFrom(first).empty(); }));
 }
 
 TEST_F(ComparedReplay, WhatCannotBeComparedIsSaidAndTheReplayGoesOn) {

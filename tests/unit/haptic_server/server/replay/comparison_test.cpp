@@ -144,7 +144,7 @@ class ComparedReplay : public ComparisonTest {
                   simulation_.bone->volume.geometry().X_WV.inverse(), ring_, cuts_),
           comparison_({recording_, simulation_, scene_, rerun_.history().scanned(), player_}, folders()) {
         topics::SceneInfo info;
-        comparison_.addMaterials(info);
+        comparison_.extend(info);
         EXPECT_EQ(info.materials_size(), 3);
         player_.play(false);
         threads_[0] = std::jthread([this](const std::stop_token& stop) { player_.run(stop); });

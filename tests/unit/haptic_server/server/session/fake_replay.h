@@ -15,7 +15,7 @@ class FakeReplay final : public ReplayOrders {
         return Answer::done();
     }
     void describe(topics::Replay& replay) const override { replay.set_length_s(60); }
-    void addMaterials(topics::SceneInfo&) override {}
+    void extend(topics::SceneInfo&) override {}
     std::optional<Pose> otherTool() const override { return std::nullopt; }
 
     std::string said_;

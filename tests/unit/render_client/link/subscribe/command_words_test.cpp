@@ -51,6 +51,8 @@ TEST_F(CommandWords, AReplayIsLedByWords) {
     EXPECT_TRUE(of("difference").replay().shows_difference());
     EXPECT_TRUE(of("no-difference").replay().has_shows_difference());
     EXPECT_FALSE(of("no-difference").replay().shows_difference());
+    EXPECT_TRUE(of("side-by-side").replay().shows_beside());
+    EXPECT_FALSE(of("one-view").replay().shows_beside());
     const topics::Place place = of("when 1 -2.5  30").replay().removal_at();
     ASSERT_EQ(place.p_m_size(), 3);
     EXPECT_DOUBLE_EQ(place.p_m(0), 1e-3);

@@ -68,6 +68,8 @@ TEST_F(PanelReplay, SwitchesTheDifference) {
     click("Difference");
     EXPECT_TRUE(ordered().has_shows_difference());
     EXPECT_FALSE(ordered().shows_difference());
+    click("Both bones");
+    EXPECT_TRUE(ordered().shows_beside());
     click("Alone");
     EXPECT_TRUE(ordered().has_compare_with());
     EXPECT_EQ(ordered().compare_with(), "");
@@ -79,6 +81,7 @@ TEST_F(PanelReplay, WhatCannotBeComparedShowsNoDifference) {
     comparison.set_first_material(1);
     show();
     EXPECT_FALSE(panel_.find("Difference"));
+    EXPECT_FALSE(panel_.find("Both bones"));
     EXPECT_TRUE(panel_.find("Alone"));
 }
 
