@@ -106,8 +106,8 @@ void PanelContent::buildCompared(const topics::Comparison& comparison) {
         }
         if (comparison.shows_difference()) buildLegend(comparison.first_material());
     }
-    if (comparison.problem().empty() &&
-        box("Both bones", comparison.shows_beside(), "The other attempt's bone is seen at the right of this one")) {
+    if (comparison.problem().empty() && box("Both bones", comparison.shows_beside(),
+                                            "The other attempt's bone is seen at the right of this one")) {
         topics::Command command;
         command.mutable_replay()->set_shows_beside(!comparison.shows_beside());
         send(command);
