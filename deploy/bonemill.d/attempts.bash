@@ -4,14 +4,15 @@
 
 readonly attempts_listed=12
 
-# A result that cannot be read is passed over. An examination tells no score.
+classes_folder() { printf '%s/bonemill/classes\n' "$(home_folder XDG_DATA_HOME .local/share)"; }
+
+# A result that cannot be read is passed over. An examination tells no score. Of one scene experts' attempts count, too.
 list_attempts() {
-    local classes
-    classes=$(home_folder XDG_DATA_HOME .local/share)/bonemill/classes
-    python3 - "$classes" "$(recordings_folder)" "$attempts_listed" "$flags" <<'PY'
+    python3 - "$(classes_folder)" "$(recordings_folder)" "$attempts_listed" "$flags" "${option[scene]:-}" <<'PY'
 import json, os, pathlib, sys, time
 
 classes, recordings, count = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), int(sys.argv[3])
+scene_hash = sys.argv[5]
 
 
 def one_line(text):
@@ -29,6 +30,8 @@ def score_of(result):
 def fields_of(file):
     with open(file, encoding="utf-8") as text:
         result = json.load(text)
+    if scene_hash and result["scene"]["hash"] != scene_hash:
+        raise ValueError("of another scene")
     start = time.strftime("%Y-%m-%d %H:%M", time.localtime(result["start_unix_ns"] / 1e9))
     journal = result["journal"] and recordings / os.path.basename(result["journal"])
     recording = journal if journal and journal.is_file() else ""
@@ -37,8 +40,10 @@ def fields_of(file):
 
 
 listed = []
+parts = ["results", "experts"] if scene_hash else ["results"]
+files = [file for part in parts for file in classes.glob(f"*/{part}/*.json")]
 # A result's name begins with its time.
-for file in sorted(classes.glob("*/results/*.json"), key=lambda file: file.name, reverse=True):
+for file in sorted(files, key=lambda file: file.name, reverse=True):
     try:
         listed.append(fields_of(file))
     except (OSError, ValueError, KeyError, TypeError, AttributeError):

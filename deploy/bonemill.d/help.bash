@@ -81,6 +81,8 @@ usage_of() {  # COMMAND
             echo "  FILE              a recording (default: the last session's; bonemill list shows the last ones), or an"
             echo "                    attempt's result (results/*.json): its recording, from 3 s before the worst moment on"
             echo "  --at S            begin at this second of the session"
+            echo "  --against OTHER   compare with another attempt at the same scene, a recording (its last attempt) or a result:"
+            echo "                    its tool goes along as a ghost, and colours tell who has removed what (docs/teach/replay.md)"
             echo "  --clip FILE.mp4   no window: write the seconds around --at (of a result: around its worst moment) as a video"
             echo "  --seconds T       so many of them (default 10)"
             echo "  --view A,E,D,X,Y,Z  the clip's camera: azimuth, elevation (degrees), distance, target (mm); default: the scene's"
@@ -89,9 +91,10 @@ usage_of() {  # COMMAND
             echo "  --window-size WxH size of the window"
             network_options ;;
         sessions)
-            echo "Usage: bonemill sessions [--tab-separated]"
+            echo "Usage: bonemill sessions [--scene HASH] [--tab-separated]"
             echo "The last attempts of all classes of this user, the newest first: start, scene, trainee, score, and the result,"
             echo "as bonemill replay takes it; (no recording) where it was not recorded, or that is gone."
+            echo "  --scene HASH      only attempts at this scene (its hash, as in a result), and experts' attempts at it, too"
             echo "  --tab-separated   for programs: result, recording, start, scene, trainee, score, a line each" ;;
         stop)
             echo "Usage: bonemill stop [N|all]"

@@ -138,6 +138,13 @@ read_result() {
     [[ -z ${fields[1]:-} || -n ${option[at]:-} ]] || option[at]=$([[ -n ${option[clip]:-} ]] && echo "${fields[1]}" || before "${fields[1]}" 3)
 }
 
+# path_of_recording NAME: a file, or the name of one of the user's own recordings.
+path_of_recording() {
+    local file=$1
+    [[ -f $file || $file == */* ]] || file=$(recordings_folder)/$file
+    realpath -m -- "$file"
+}
+
 # find_recording [FILE]: a file, the name of one of the user's own, an attempt's result, or the newest one.
 find_recording() {
     local all
@@ -145,7 +152,13 @@ find_recording() {
     recording=${1:-${all[0]:-}}
     [[ -n $recording ]] || fail "no session has been recorded in $(recordings_folder): name a file, as: bonemill replay session.mcap"
     if [[ $recording == *.json ]]; then read_result "$recording"; fi
-    [[ -f $recording || $recording == */* ]] || recording=$(recordings_folder)/$recording
+    recording=$(path_of_recording "$recording")
     [[ -f $recording ]] || fail "there is no recording $(basename -- "$recording") (bonemill list shows the last ones)"
-    recording=$(realpath -- "$recording")
+}
+
+# find_against: the other attempt, as a whole path. Without it the replay goes on alone.
+find_against() {
+    [[ -n ${option[against]:-} ]] || return 0
+    option[against]=$(path_of_recording "${option[against]}")
+    [[ -f ${option[against]} ]] || say "there is no file ${option[against]} to compare with (bonemill sessions lists attempts): the replay goes on alone"
 }

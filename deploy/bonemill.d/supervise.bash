@@ -26,6 +26,7 @@ run_session() {
 # A recorded session is shown as a live one, with its own server and without a hand.
 run_replay() {
     find_recording "$operand"
+    find_against
     scene_name=replay class_folder="" title[server]=bonemill_lab option[device]=none
     open_state
     take_number "${option[session]:-}"
@@ -79,7 +80,7 @@ make_log_folder() {
 make_class_folder() {
     class_folder=""
     [[ " ${extra[*]} " != *" --export-dir"* && " ${extra[*]} " != *" --class-table"* ]] || return 0
-    class_folder=$(home_folder XDG_DATA_HOME .local/share)/bonemill/classes/${option[class]:-$(date +%F)}
+    class_folder=$(classes_folder)/${option[class]:-$(date +%F)}
     (umask 077; mkdir -p -- "$class_folder") || fail "the class' folder $class_folder cannot be made"
 }
 
@@ -128,6 +129,8 @@ replay_words() {
     words=("$bin/bonemill_lab" replay "$recording" --session "$number")
     mapfile -t -O "${#words[@]}" words < <(network_words)
     [[ -z ${option[at]:-} ]] || words+=(--at "${option[at]}")
+    words+=(--classes "$(classes_folder)" --recordings "$(recordings_folder)")
+    [[ -z ${option[against]:-} ]] || words+=(--against "${option[against]}")
     words+=("${extra[@]}")
 }
 

@@ -2,6 +2,7 @@
 // the cavity.
 #pragma once
 
+#include "haptic_server/surface/mesh/zone_paint.h"
 #include "render_client/look/render_scene/render_scene.h"
 #include "tests/gl/synthetic_scene.h"
 
@@ -64,8 +65,9 @@ inline const std::vector<NodeMesh>& zonedBlock() {
             const double off_axis = std::hypot(p.x(), p.z());
             zones.push_back(off_axis < 0.0013 ? 1 : off_axis < 0.0018 ? 2 : 3);
         });
-        ZonePaint paint{.zones = std::make_shared<const VoxelIds>(scanned.dims(), zones),
-                        .scanned = &scanned};
+        ZonePaint paint;
+        paint.zones = std::make_shared<const VoxelIds>(scanned.dims(), zones);
+        paint.scanned = &scanned;
         paint.when_left[1] = 1;
         paint.when_gone[2] = 2;
         paint.when_gone[3] = 3;

@@ -32,7 +32,8 @@ inline VoxelVolume bodyVolumeOf(int voxels, double spacing, const DistanceFuncti
 
 // Makes the iso-surface of distance = 0, cut into leaves of 16 cells.
 inline std::vector<NodeMesh> meshBody(int voxels, double spacing, const DistanceFunction& distance,
-                                      const MaterialFunction& material = {}, const ZonePaint* paint = nullptr,
+                                      const MaterialFunction& material = {},
+                                      const VertexPaint* paint = nullptr,
                                       const VoxelVolume* scanned = nullptr) {
     const VoxelVolume volume = bodyVolumeOf(voxels, spacing, distance);
     const LeafLattice lattice(volume, Eigen::Vector3i::Constant(16));

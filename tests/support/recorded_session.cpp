@@ -1,5 +1,6 @@
 #include "tests/support/recorded_session.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -24,14 +25,16 @@ constexpr int kVoxels = 64;
 constexpr double kSpacing = 0.25e-3, kTop = 10e-3;  // m
 constexpr int64_t kPeriodNs = 1'000'000;
 
-void writeScene(const std::filesystem::path& folder) {
+void writeScene(const std::filesystem::path& folder, const RecordedSessionOptions& options) {
+    const Eigen::Vector3d top(0, 0, options.top);
     writeNrrd(folder / "slab.nrrd",
-              bodyVolume(cubeGeometry(kVoxels, kSpacing), halfSpace({0, 0, kTop}, Eigen::Vector3d::UnitZ())));
+              bodyVolume(cubeGeometry(kVoxels, kSpacing), halfSpace(top, Eigen::Vector3d::UnitZ())));
     std::ofstream(folder / "slab.textproto")
         << "name: \"slab\" volume { path: \"slab.nrrd\" window_low: 0 window_high: 65535 iso_value: 32768 }\n"
            "tool { name: \"ball\" shape { sphere { center_mm { x: 0 y: 0 z: 0 } radius_mm: 1 } } }\n"
            "tool { name: \"small\" shape { sphere { center_mm { x: 0 y: 0 z: 0 } radius_mm: 0.6 } } }\n"
-           "effects { time_removal {} }\n";
+           "effects { time_removal {} }\n"
+        << options.scene_text << '\n';
 }
 
 DeviceCapabilities testDevice() {
@@ -66,6 +69,7 @@ class LiveIo final : public TickIo {
         const bool is_silent = has_orders && tick_ >= kTickOfSilence && tick_ < kTickOfSilence + 60;
         input.is_repeated = is_silent || tick_ % 97 == 96;
         if (!input.is_repeated) newest_ = poseAt(t);
+        if (!input.is_repeated) newest_.position.y() += shift;
         input.X_WT_device = newest_;
         input.buttons = kButtonRemove;
         input.other_device = tick_ == 0 ? &device_ : nullptr;
@@ -79,6 +83,7 @@ class LiveIo final : public TickIo {
     int64_t now() noexcept override { return int64_t(tick_) * kPeriodNs; }
 
     bool has_orders = true;
+    double shift = 0;
 
   private:
     uint64_t tick_ = 0, next_ = 0;
@@ -109,11 +114,12 @@ journal::Manifest manifestOf(const LoadedScene& loaded, const Simulation& simula
 }  // namespace
 
 RecordedSession recordSession(const std::filesystem::path& folder, const RecordedSessionOptions& options) {
-    writeScene(folder);
-    RecordedSession session{.journal = folder / "session.mcap",
+    writeScene(folder, options);
+    RecordedSession session{.journal = folder / options.file,
                             .scene = folder / "slab.textproto",
                             .missing_voxels = {},
-                            .x_m = {}};
+                            .x_m = {},
+                            .y_m = {}};
     const LoadedScene loaded = loadScene(session.scene);
     Simulation simulation = makeSimulation(loaded);
     BoneModel& bone = *simulation.bone;
@@ -146,7 +152,23 @@ RecordedSession recordSession(const std::filesystem::path& folder, const Recorde
     StateHash hash;
     LiveIo io;
     io.has_orders = options.has_orders;
+    io.shift = options.shift;
+    size_t attempts_begun = 0;
+    const auto beginAttempt = [&](uint64_t at) {
+        journal::Event event;
+        event.set_tick(at);
+        if (attempts_begun > 0) {
+            topics::Attempt& ended = *event.mutable_attempt_ended();
+            ended.set_number(uint32_t(attempts_begun));
+            ended.set_time_s(double(at - options.attempts[attempts_begun - 1]) * 1e-3);
+            journal.put(JournalTopic::kEvent, event);
+        }
+        event.set_attempt_began("P" + std::to_string(++attempts_begun));
+        event.set_bone_order(history.newestOrder());
+        journal.put(JournalTopic::kEvent, event);
+    };
     for (uint64_t n = 0; n < options.ticks; ++n) {
+        if (std::ranges::count(options.attempts, n) > 0) beginAttempt(n);
         if (options.has_orders) {
             topics::Command command;
             if (n == kTickOfOtherTool) tools.choose(1), command.set_select_tool(1), tell(n, command);
@@ -173,6 +195,7 @@ RecordedSession recordSession(const std::filesystem::path& folder, const Recorde
         hash.addRecord(record, recorded);
         session.missing_voxels.push_back(history.missingVoxels());
         session.x_m.push_back(record.p_WT[0]);
+        session.y_m.push_back(record.p_WT[1]);
     }
     hash.addVolume(bone.volume);
     session.state_hash = hash.value();

@@ -56,6 +56,17 @@ void addReplayOptions(CLI::App& app, ReplayOptions& replay) {
         ->check(within(0.1, 10000))
         ->capture_default_str();
     app.add_flag("--instructor-only", replay.instructor_only, "only instructors lead the replay");
+    app.add_option("--against", replay.against.file,
+                   "compare with another attempt at the same scene: a recording (.mcap), or a result (.json)")
+        ->type_name("FILE");
+    app.add_option("--against-attempt", replay.against.number,
+                   "of a recording --against: its attempt's number, from 1; 0: the last one")
+        ->check(within(0, 100000));
+    app.add_option("--classes", replay.folders.classes,
+                   "folder of the classes' folders: viewers may choose a result in it to compare with")
+        ->type_name("DIR");
+    app.add_option("--recordings", replay.folders.recordings, "folder of the recordings that results name")
+        ->type_name("DIR");
 }
 
 void addExportOptions(CLI::App& app, ExportOptions& files) {

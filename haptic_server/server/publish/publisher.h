@@ -84,7 +84,7 @@ class Publisher {
     bool publishStructure(const NodeMesh& mesh, double warning_distance_m);
     // Tool states are best effort, for 60 to 100 calls per second; the time stamp is that of the call.
     // `effects` are the scene's, if it has such that say something.
-    // `X_WT_expert` is where an expert's tool was, if there is one to show.
+    // `X_WT_expert` is where an expert's tool was, or another attempt's, if there is one to show.
     bool publishToolState(const TickRecord& record, std::optional<topics::EffectState> effects = {},
                           const std::optional<Pose>& X_WT_expert = {});
     // Epoch, node count, node digest and last command are filled in. Clients take a server for lost that

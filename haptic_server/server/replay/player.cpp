@@ -151,7 +151,7 @@ Answer Player::carryOut(const topics::ReplayOrder& order) {
             return jump(order.jump());
         case topics::ReplayOrder::kRemovalAt:
             return goToRemoval(order.removal_at());
-        case topics::ReplayOrder::ORDER_NOT_SET:
+        default:
             break;
     }
     return Answer::refused("this replay does not know the order");

@@ -1,5 +1,6 @@
 // Plays a recording: its ticks run on the player's thread when their time has come, at any speed, and what
-// they tell goes where a live session's tick would put it. Orders come from the publisher thread.
+// they tell goes where a live session's tick would put it. Orders come from the publisher thread, which does
+// not wait.
 #pragma once
 
 #include <condition_variable>
@@ -9,13 +10,14 @@
 #include <string>
 
 #include "common/commands/answer.h"
+#include "common/geometry/pose.h"
 #include "common/rt/spsc_ring.h"
 #include "haptic_server/server/replay/survey.h"
-#include "haptic_server/server/session/session_commands.h"
+#include "proto/topics.pb.h"
 
 namespace bonemill {
 
-class Player final : public ReplayOrders {
+class Player {
   public:
     static constexpr double kSlowest = 0.1, kFastest = 16;
     // Bone within this distance of a place counts as there, m.
@@ -28,9 +30,11 @@ class Player final : public ReplayOrders {
     // The player's thread: plays and does as ordered, until told to stop.
     void run(const std::stop_token& stop);
 
-    void play(bool goes_on) override;
-    Answer carryOut(const topics::ReplayOrder& order) override;
-    void describe(topics::Replay& replay) const override;
+    // Lets the recording go on, or holds it.
+    void play(bool goes_on);
+    // To go to a moment, and the speed.
+    Answer carryOut(const topics::ReplayOrder& order);
+    void describe(topics::Replay& replay) const;
 
     // The tick that was shown last. Any thread.
     uint64_t shown() const;

@@ -14,6 +14,10 @@
 #include "common/text/foreign_text.h"
 #include "haptic_server/recording/rerun/verify_journal.h"
 #include "haptic_server/server/publish/other_server.h"
+#include "haptic_server/server/replay/bone_beside.h"
+#include "haptic_server/server/replay/comparison.h"
+#include "haptic_server/server/replay/led_replay.h"
+#include "haptic_server/server/replay/low_priority.h"
 #include "haptic_server/server/replay/player.h"
 #include "haptic_server/server/session/show_session.h"
 #include "haptic_server/server/session/shown_shades.h"
@@ -25,7 +29,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr size_t kRingRecords = 8192, kRingCuts = 8192;
-constexpr auto kRecordPeriod = 4ms;
+constexpr auto kRecordPeriod = 4ms, kLookBeside = 4ms;
 constexpr int64_t kLookEveryNs = 20 * kNsPerMillisecond;
 
 // The recorded scene, with the bone as its files have it now. Its threads stand around the player as those of
@@ -45,6 +49,9 @@ class ReplayServer {
           cuts_(kRingCuts),
           player_(recording_, rerun_, keyframes_, events_, survey_,
                   simulation_.bone->volume.geometry().X_WV.inverse(), ring_, cuts_),
+          comparison_({recording_, simulation_, scene_, rerun_.history().scanned(), player_},
+                      options.folders),
+          led_(player_, comparison_),
           recorder_(ring_, int64_t(std::llround(double(kNsPerSecond) / scene_.scene.loop().rate_hz())),
                     recordedEffectsOf(scene_.scene.effects())),
           bone_export_(rerun_.history(), *simulation_.bone, ""),
@@ -54,7 +61,7 @@ class ReplayServer {
           attempts_(lesson_, recorder_, rerun_.history(), keeper_, *simulation_.bone, scene_.scene),
           commands_(scene_.scene, *simulation_.bone, recorder_,
                     {rerun_.history(), rerun_.accuracies(), rerun_.tools(), stop_requested_, bone_export_,
-                     reset_orders_, lesson_, attempts_, limits_, keeper_, hand_, &player_},
+                     reset_orders_, lesson_, attempts_, limits_, keeper_, hand_, &led_},
                     options.instructor_only),
           publisher_(soleServerOf(options.domain, options.session, options.network)),
           show_(
@@ -68,6 +75,7 @@ class ReplayServer {
         order.set_seek_s(options.at_s);
         player_.carryOut(order);
         if (options.is_paused) player_.play(false);
+        if (!options.against.file.empty()) comparison_.compareWith(options.against);
     }
 
     int run() {
@@ -116,6 +124,9 @@ class ReplayServer {
         threads_[3] = std::jthread([this](const std::stop_token& stop) {
             loop(stop, ShowSession::kPause, [this] { publishRound(); });
         });
+        threads_[4] = std::jthread(
+            [this](const std::stop_token& stop) { endOnFailure([&] { comparison_.run(stop); }); });
+        threads_[5] = std::jthread([this](const std::stop_token& stop) { meshBesideUntil(stop); });
     }
 
     void publishRound() {
@@ -125,15 +136,33 @@ class ReplayServer {
 
     void meshUntil(const std::stop_token& stop) {
         ShownBone shown(scene_.scene, simulation_, rerun_.history().scanned());
-        MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_, shown.look(),
-                          simulation_.surroundings ? &simulation_.surroundings->rim : nullptr);
+        MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_, shown.look(), rim());
+        std::shared_ptr<const VertexPaint> paint;
         const auto put = [this](NodeGroup&& group) { outbox_.put(std::move(group), monotonicNowNs()); };
         loop(stop, MeshRounds::kPeriod, [&] {
+            std::shared_ptr<const VertexPaint> now = comparison_.paint();
+            rounds.setPaint(now.get());
+            paint = std::move(now);
             for (bool is_more = true; is_more && !stop.stop_requested();) {
                 is_more = rounds.round(put);
                 if (rounds.hasMeshedAll()) outbox_.markWhole(monotonicNowNs());
             }
         });
+    }
+
+    void meshBesideUntil(const std::stop_token& stop) {
+        takeLowPriority(kNiceBeside);
+        ShownBone shown(scene_.scene, simulation_, rerun_.history().scanned());
+        BoneBeside beside(comparison_.firstLeafBeside(), shown.look(), rim(), outbox_);
+        loop(stop, kLookBeside, [&] {
+            for (bool is_more = true; is_more && !stop.stop_requested();) {
+                beside.show(comparison_.boneBeside());
+                is_more = beside.round();
+            }
+        });
+    }
+    const RegionRim* rim() const {
+        return simulation_.surroundings ? &simulation_.surroundings->rim : nullptr;
     }
 
     template <class Work>
@@ -168,6 +197,8 @@ class ReplayServer {
     SpscRing<TickRecord> ring_;
     SpscRing<Cut> cuts_;
     Player player_;
+    Comparison comparison_;
+    LedReplay led_;
     Recorder recorder_;
     MeshOutbox outbox_;
     SessionExport bone_export_;
@@ -182,7 +213,7 @@ class ReplayServer {
     SessionCommands commands_;
     Publisher publisher_;
     ShowSession show_;
-    std::array<std::jthread, 4> threads_;
+    std::array<std::jthread, 6> threads_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/dds/network.h"
+#include "haptic_server/server/replay/compared_attempt.h"
 
 namespace bonemill {
 
@@ -19,7 +20,9 @@ struct ReplayOptions {
     bool is_paused = false;  // until a viewer lets it go on
     double stream_mbit_per_s = 200;
     bool instructor_only = false;
-    std::string version;  // that --version prints
+    AttemptName against;     // to compare with; an empty file: none
+    AttemptFolders folders;  // in which viewers may choose one
+    std::string version;     // that --version prints
 };
 
 // Runs until told to stop; returns the process' exit code. Throws UserError at start-up.

@@ -1,22 +1,13 @@
 #include "haptic_server/server/replay/survey.h"
 
 #include <spdlog/spdlog.h>
-#include <sys/resource.h>
-#include <unistd.h>
-
-#include <cmath>
 
 #include "common/base/units.h"
 #include "common/rt/clock.h"
+#include "haptic_server/server/replay/low_priority.h"
 
 namespace bonemill {
 namespace {
-
-// A replay that goes to a moment runs the ticks after the keyframe before it: so much of them takes a
-// fraction of a second.
-constexpr double kKeyframeEveryS = 1;
-constexpr uint64_t kLookEveryTicks = 64;  // for whether a keyframe is due
-constexpr int kNice = 10;
 
 VoxelVolume startOf(const Rerun& rerun, const BoneModel& bone, const Keyframe& first) {
     return first.bone ? rerun.history().volumeOf(*first.bone, bone.lattice)
@@ -46,16 +37,13 @@ void Survey::start() {
 }
 
 void Survey::run(const std::stop_token& stop) {
-    setpriority(PRIO_PROCESS, id_t(gettid()), kNice);
-    const auto every = uint64_t(std::ceil(kKeyframeEveryS * recording_.manifest().rate_hz()));
+    takeLowPriority(kNiceInBackground);
     const int64_t start_ns = monotonicNowNs();
     while (!rerun_.isAtEnd() && !stop.stop_requested()) {
         const uint64_t tick = rerun_.next();
         look(rerun_.step(), tick);
         known_.store(tick + 1, std::memory_order_release);
-        if ((tick + 1) % kLookEveryTicks != 0 || rerun_.history().isRestoring()) continue;
-        if (keyframes_.before(tick + 1).tick + every <= tick + 1)
-            keyframes_.add({tick + 1, rerun_.history().snapshot(bone_)});
+        keyframes_.leave(rerun_, bone_, recording_.manifest().rate_hz());
     }
     if (rerun_.isAtEnd())
         spdlog::info("the recording of {:.1f} s was looked through in {:.1f} s", recording_.lengthS(),

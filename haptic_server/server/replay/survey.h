@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -164,6 +165,8 @@ class RemovalMap {
 // takes a mutex.
 class Keyframes {
   public:
+    // So far apart whoever runs ticks leaves new ones, s: as many ticks take a fraction of a second.
+    static constexpr double kEveryS = 1;
     // What bones share they have once. Of those that were added each second one goes whenever together they
     // have more than this in their own leaves.
     static constexpr size_t kMaxBytes = size_t(1) << 30;
@@ -180,6 +183,14 @@ class Keyframes {
         if (kept_.size() >= look_at_) thinOut();
     }
 
+    // Whoever has run ticks of these leaves the bone here, now and then, where there is none near before it.
+    void leave(Rerun& rerun, const BoneModel& bone, double rate_hz) {
+        const uint64_t next = rerun.next();
+        if (next % kLookEveryTicks != 0 || rerun.history().isRestoring()) return;
+        if (before(next).tick + uint64_t(std::ceil(kEveryS * rate_hz)) <= next)
+            add({next, rerun.history().snapshot(bone)});
+    }
+
     // The last one that is not behind this tick, or the first one.
     Keyframe before(uint64_t tick) const {
         const std::lock_guard lock(mutex_);
@@ -193,7 +204,8 @@ class Keyframes {
     }
 
   private:
-    static constexpr size_t kLookEvery = 64;
+    static constexpr size_t kLookEvery = 64;         // keyframes, for how much they take
+    static constexpr uint64_t kLookEveryTicks = 64;  // for whether one is due
 
     size_t bytes() const {
         std::vector<const LeafCopy*> leaves;

@@ -34,6 +34,10 @@ class ReplayOrders {
     virtual Answer carryOut(const topics::ReplayOrder& order) = 0;
     // Fills in how the replay stands.
     virtual void describe(topics::Replay& replay) const = 0;
+    // Adds materials and leaves of its own, behind those that are there. Once, before any other member.
+    virtual void extend(topics::SceneInfo& info) = 0;
+    // Where the tool of another attempt is, with which the recording is compared; nothing: it is not shown.
+    virtual std::optional<Pose> otherTool() const = 0;
 };
 
 // The commands act on this; the tick takes each up by itself.
@@ -69,6 +73,8 @@ class SessionCommands {
     Checkpoints& checkpoints() noexcept { return checkpoints_; }
     AttemptController& attempts() noexcept { return controls_.attempts; }
     RemarkList& remarks() noexcept { return remarks_; }
+    // Null in a live session.
+    ReplayOrders* replay() noexcept { return controls_.replay; }
     // Fills in the session clock, the pause, the checkpoints, what the bone has lost and, where the device is
     // described, how its script stands.
     void describe(topics::Status& status) const;

@@ -161,6 +161,7 @@ ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const 
                     shadesOf(shownSceneOf(scene, simulation.segment_colors), simulation.mapping).scale,
                     outbox) {
     *scene_info_.mutable_densities() = densityGridOf(density_source_, density_scale_);
+    if (commands_.replay()) commands_.replay()->extend(scene_info_);
 }
 
 void ShowSession::begin() {
@@ -260,8 +261,9 @@ void ShowSession::publishToolState(int64_t now_ns) {
     last_tool_state_ns_ = now_ns;
 }
 
-// During an attempt, where the expert was at that time of it.
+// During an attempt, where the expert was at that time of it; in a replay, the tool that it is compared with.
 std::optional<Pose> ShowSession::expertNow() const {
+    if (commands_.replay()) return commands_.replay()->otherTool();
     const JudgedTask* const task = task_.task();
     if (!task || !task->expert || !commands_.attempts().isRunning()) return std::nullopt;
     return task->expert->at(commands_.attempts().timeS());

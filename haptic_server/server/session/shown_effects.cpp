@@ -122,7 +122,9 @@ void describeZones(const scene::Scene& scene, topics::SceneInfo& info) {
 std::optional<ZonePaint> zonePaintOf(const scene::Scene& scene, const JudgedTask* task,
                                      const VoxelVolume& scanned) {
     if (task == nullptr || task->zones.empty() || !areEverShown(scene.assessment())) return std::nullopt;
-    ZonePaint paint{.zones = task->map, .scanned = &scanned};
+    ZonePaint paint;
+    paint.zones = task->map;
+    paint.scanned = &scanned;
     for (int n = 0; n < scene.assessment().zone_size(); ++n) {
         const scene::Task::Zone& zone = scene.assessment().zone(n);
         if (!hasColour(zone)) continue;

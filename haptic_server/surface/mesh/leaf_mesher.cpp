@@ -159,7 +159,8 @@ uint8_t LeafMesher::shownAt(bool is_low_inside, const Eigen::Vector3i& low_voxel
     const Eigen::Vector3i inside =
         (is_low_inside ? low_voxel : high_voxel).array().max(0).min(volume_.dims().array() - 1);
     if (paint_)
-        if (const uint8_t zone = paint_->between(inside, is_low_inside ? high_voxel : low_voxel)) return zone;
+        if (const uint8_t shown = paint_->between(inside, is_low_inside ? high_voxel : low_voxel))
+            return shown;
     const MaterialId material = look_.properties
                                     ? materialUnder(inside, is_low_inside ? low : low + stride_[axis], normal)
                                     : kNoMaterial;

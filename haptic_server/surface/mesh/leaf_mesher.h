@@ -10,9 +10,8 @@
 //
 // With `properties` a vertex also says what the bone under it is made of: as the inside voxel of its edge, or
 // as the next one below the surface if that is bone, too, and was denser: a voxel that bone fills only partly
-// looks like something less dense. A task's zones take its place where they have something to show
-// (zone_paint.h). With `scanned` it says, where no zone has something to show, whether milling opened the
-// bone there.
+// looks like something less dense. A paint takes its place where it has something to show (vertex_paint.h).
+// With `scanned` it says, where no paint has something to show, whether milling opened the bone there.
 //
 // Beyond the volume there is air, or, with a `rim`, the bone around it, which is shown as far as the first
 // layer of it: what the tick took away at a face leaves a wall there, and the surface ends where
@@ -30,7 +29,7 @@
 #include "haptic_server/core/volume/region_rim.h"
 #include "haptic_server/surface/mesh/mesh_grid.h"
 #include "haptic_server/surface/mesh/scan_shade.h"
-#include "haptic_server/surface/mesh/zone_paint.h"
+#include "haptic_server/surface/mesh/vertex_paint.h"
 
 namespace bonemill {
 
@@ -51,8 +50,8 @@ class LeafMesher {
                int most_steps_per_cell = MeshGrid::kMaxStepsPerCell, const VertexLook& look = {},
                const RegionRim* rim = nullptr);
 
-    // From now on vertices show these zones; null: none. It must outlive this object.
-    void setPaint(const ZonePaint* paint) noexcept { paint_ = paint; }
+    // From now on vertices show this; null: none. It must outlive this object.
+    void setPaint(const VertexPaint* paint) noexcept { paint_ = paint; }
 
     // From now on these cells make no surface.
     void leaveOut(const IndexBox& cells) noexcept { left_out_ = cells; }
@@ -88,7 +87,7 @@ class LeafMesher {
     const RegionRim* rim_;
     IndexBox readable_;  // voxels; others have no density
     IndexBox left_out_;  // cells
-    const ZonePaint* paint_ = nullptr;
+    const VertexPaint* paint_ = nullptr;
     MeshGrid grid_;
     const std::array<CubeTriangles, 256>& triangles_;
     CrossedCells crossed_;
@@ -99,7 +98,7 @@ class LeafMesher {
     std::vector<Density> density_;  // cells_ + 3 voxels per axis from local (-1, -1, -1) on, x fastest
     std::vector<PackedVertex> vertices_;
     std::vector<uint32_t> indices_;
-    std::vector<uint8_t> materials_;     // per vertex, with a look or zones
+    std::vector<uint8_t> materials_;     // per vertex, with a look or a paint
     std::vector<uint32_t> edge_vertex_;  // per corner and axis: vertex on the edge that starts there
 };
 

@@ -27,9 +27,11 @@ Mesher::Mesher(const VoxelVolume& volume, const LeafLattice& lattice, int most_s
     : lattice_(lattice),
       leaf_mesher_(volume, lattice, most_steps_per_cell, look, rim),
       meshed_version_(lattice.leafCount(), kNeverMeshed),
-      has_mesh_(lattice.leafCount(), false) {}
+      has_mesh_(lattice.leafCount(), false),
+      painted_version_(lattice.leafCount(), 0) {}
 
 Mesher::PassResult Mesher::pass(const Sink& sink, uint32_t max_leaves) {
+    lookAtPaint();
     PassResult result;
     const uint32_t count = lattice_.leafCount();
     const LeafId start = next_leaf_;
@@ -65,20 +67,39 @@ bool Mesher::catchUp(LeafId leaf, const Sink& sink) {
     return false;
 }
 
-void Mesher::setPaint(const ZonePaint* paint) {
+void Mesher::setPaint(const VertexPaint* paint) {
     if (paint == paint_) return;
     ++repaints_;
     leaf_mesher_.setPaint(paint);
-    const auto changes = [](const ZonePaint* painted, const IndexBox& voxels) {
+    const auto changes = [](const VertexPaint* painted, const IndexBox& voxels) {
         return painted != nullptr && painted->mayPaint(voxels);
     };
     for (LeafId leaf = 0; leaf < lattice_.leafCount(); ++leaf) {
+        const bool is_behind = paint_ && paint_->version(leaf) != painted_version_[leaf];
+        // An odd one is no version at rest: what is written meanwhile is looked at once more.
+        painted_version_[leaf] = paint ? paint->version(leaf) : 0;
         if (meshed_version_[leaf] == kNeverMeshed || !has_mesh_[leaf]) continue;
         const IndexBox cells = lattice_.cellsOf(leaf);
         const IndexBox voxels{cells.min, cells.max.array() + 1};
-        if (changes(paint, voxels) || changes(paint_, voxels)) meshed_version_[leaf] = kPaintedAnew;
+        if (is_behind || changes(paint, voxels) || changes(paint_, voxels))
+            meshed_version_[leaf] = kPaintedAnew;
     }
     paint_ = paint;
+}
+
+// A leaf that is meshed while its paint is written gets a newer version of it, and is due again.
+void Mesher::lookAtPaint() {
+    if (!paint_) return;
+    bool is_any_due = false;
+    for (LeafId leaf = 0; leaf < lattice_.leafCount(); ++leaf) {
+        const uint32_t version = paint_->version(leaf);
+        if (isBeingWritten(version) || version == painted_version_[leaf]) continue;
+        painted_version_[leaf] = version;
+        if (meshed_version_[leaf] == kNeverMeshed || !has_mesh_[leaf]) continue;
+        meshed_version_[leaf] = kPaintedAnew;
+        is_any_due = true;
+    }
+    if (is_any_due) ++repaints_;
 }
 
 // False means that a write got in between: the leaf stays due.

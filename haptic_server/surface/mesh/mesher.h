@@ -45,9 +45,10 @@ class Mesher {
     // tick wrote them meanwhile and some are still due.
     bool catchUp(const IndexBox& leaves, const Sink& sink);
 
-    // Vertices show these zones from now on; null: none. It must outlive the mesher. Leaves that it may
-    // change are due again, with a newer revision. It looks at every voxel's zone.
-    void setPaint(const ZonePaint* paint);
+    // Vertices show this from now on; null: none. It must outlive the mesher, or the next call. Leaves that
+    // it may change are due again, with a newer revision, and so are those whose paint changes later. It
+    // looks at every voxel.
+    void setPaint(const VertexPaint* paint);
 
     // Every leaf has been meshed at least once: the sink has seen the whole bone.
     bool hasMeshedAll() const noexcept { return meshed_leaves_ == meshed_version_.size(); }
@@ -55,15 +56,17 @@ class Mesher {
   private:
     bool catchUp(LeafId leaf, const Sink& sink);
     bool tryMesh(LeafId leaf, const Sink& sink);
+    void lookAtPaint();
 
     const LeafLattice& lattice_;
     LeafMesher leaf_mesher_;
     std::vector<uint32_t> meshed_version_;
     size_t meshed_leaves_ = 0;    // leaves meshed at least once
     std::vector<bool> has_mesh_;  // what the sink was told last
-    const ZonePaint* paint_ = nullptr;
-    uint32_t repaints_ = 0;  // each one makes revisions newer
-    LeafId next_leaf_ = 0;   // where the next pass starts, so that busy leaves do not starve the others
+    const VertexPaint* paint_ = nullptr;
+    std::vector<uint32_t> painted_version_;  // of the paint, as looked at last
+    uint32_t repaints_ = 0;                  // each one makes revisions newer
+    LeafId next_leaf_ = 0;  // where the next pass starts, so that busy leaves do not starve the others
 };
 
 // The mesher thread works like this: after each cut it meshes the leaves that it changed, at once; beside
@@ -90,7 +93,7 @@ class MeshRounds {
     void finish(const Sink& sink, int64_t until_ns);
 
     // As Mesher::setPaint(): what it changes comes with the rounds that follow.
-    void setPaint(const ZonePaint* paint) { mesher_.setPaint(paint); }
+    void setPaint(const VertexPaint* paint) { mesher_.setPaint(paint); }
 
     bool hasMeshedAll() const noexcept { return mesher_.hasMeshedAll(); }
 

@@ -1,5 +1,4 @@
-// Colours the zones of a task on the bone: vertices show what was taken away there, or what still shall be,
-// instead of their material.
+// Colours the zones of a task on the bone: vertices show what was taken away there, or what still shall be.
 #pragma once
 
 #include <array>
@@ -7,25 +6,24 @@
 
 #include "haptic_server/core/volume/voxel_ids.h"
 #include "haptic_server/core/volume/voxel_volume.h"
+#include "haptic_server/surface/mesh/vertex_paint.h"
 
 namespace bonemill {
 
-struct ZonePaint {
+struct ZonePaint final : VertexPaint {
     std::shared_ptr<const VoxelIds> zones;
     const VoxelVolume* scanned = nullptr;  // never changes; outlives this
-    // By zone, the number that a vertex gets in NodeMesh::materials; 0: none.
+    // By zone, the number that a vertex gets; 0: none.
     std::array<uint8_t, 256> when_gone{};  // where a voxel of it was bone and is gone
     std::array<uint8_t, 256> when_left{};  // else, where bone of it is left
 
-    // A vertex lies between these voxels. The edge alone decides, so that leaves agree.
-    uint8_t between(const Eigen::Vector3i& bone, const Eigen::Vector3i& air) const noexcept {
+    uint8_t between(const Eigen::Vector3i& bone, const Eigen::Vector3i& air) const noexcept override {
         const bool is_in = (air.array() >= 0).all() && (air.array() < scanned->dims().array()).all();
         const bool is_gone = is_in && scanned->at(air.x(), air.y(), air.z()) >= scanned->iso();
         if (const uint8_t gone = is_gone ? when_gone[zones->at(air)] : uint8_t(0)) return gone;
         return when_left[zones->at(bone)];
     }
-    // Can vertices between these voxels show anything of it?
-    bool mayPaint(const IndexBox& voxels) const noexcept {
+    bool mayPaint(const IndexBox& voxels) const noexcept override {
         bool may = false;
         forEachIndex(voxels.clamped(Eigen::Vector3i::Zero(), zones->dims().array() - 1),
                      [&](const Eigen::Vector3i& v) {

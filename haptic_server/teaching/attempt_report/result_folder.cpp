@@ -58,7 +58,7 @@ void eachResult(const fs::path& class_folder,
         std::ranges::sort(files);
         for (const fs::path& file : files) {
             try {
-                see(file, parseResult(readBounded(file, kMaxResult), file.string()));
+                see(file, readResultFile(file));
             } catch (const UserError&) {
                 continue;  // no person's result
             }
@@ -138,6 +138,10 @@ void requireNoLink(const fs::path& path) {
 
 }  // namespace
 
+AttemptResult readResultFile(const fs::path& file) {
+    return parseResult(readBounded(file, kMaxResult), file.string());
+}
+
 Forgotten forgetResults(const fs::path& class_folder, const std::string& pseudonym) {
     Forgotten forgotten;
     eachResult(class_folder, [&](const fs::path& file, const AttemptResult& result) {
@@ -198,7 +202,7 @@ std::vector<AttemptResult> ResultFolder::read(const fs::path& folder, const std:
     std::vector<AttemptResult> results;
     for (const fs::path& file : files) {
         try {
-            AttemptResult result = parseResult(readBounded(file, kMaxResult), file.string());
+            AttemptResult result = readResultFile(file);
             if ((scene_hash.empty() || result.scene_hash == scene_hash) &&
                 (pseudonym.empty() || result.pseudonym == pseudonym))
                 results.push_back(std::move(result));

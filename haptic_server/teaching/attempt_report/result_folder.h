@@ -22,6 +22,9 @@ struct Forgotten {
 // of a class' folder, whatever the files' names are.
 Forgotten forgetResults(const std::filesystem::path& class_folder, const std::string& pseudonym);
 
+// Throws UserError, which names the file, if it is no result that can be read.
+AttemptResult readResultFile(const std::filesystem::path& file);
+
 class ResultFolder {
   public:
     // `class_folder` is the class table's. The folder `results` in it is made with the first result; experts'

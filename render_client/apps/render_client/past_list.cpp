@@ -18,16 +18,24 @@ void PastList::follow(const std::string& launcher, bool is_open, const SessionVi
     const topics::Lesson* const lesson = session.lesson;
     const bool has_attempts = lesson && !lesson->attempts().empty();
     const std::string newest = has_attempts ? lesson->attempts().rbegin()->verdict().results() : "";
-    const std::string now = std::to_string(is_open) + newest + ' ' + std::to_string(kept_);
+    const std::string scene_hash = isReplay(session) ? session.status->replay().scene_hash() : "";
+    const std::string now = std::to_string(is_open) + newest + ' ' + std::to_string(kept_) + ' ' + scene_hash;
     if (std::exchange(seen_, now) == now || !is_open) return;
-    made_ = std::async(std::launch::async, [launcher] {
-        return pastAttemptsOf(runCaptured({launcher, "sessions", "--tab-separated"}).out);
-    });
+    made_ = std::async(std::launch::async, [launcher, scene_hash] { return listsOf(launcher, scene_hash); });
+}
+
+PastList::Lists PastList::listsOf(const std::string& launcher, const std::string& scene_hash) {
+    Lists lists;
+    lists.all = pastAttemptsOf(runCaptured({launcher, "sessions", "--tab-separated"}).out);
+    if (!scene_hash.empty())
+        lists.same_scene =
+            pastAttemptsOf(runCaptured({launcher, "sessions", "--tab-separated", "--scene", scene_hash}).out);
+    return lists;
 }
 
 void PastList::take() {
     try {
-        if (isReady(made_)) list_ = made_.get();
+        if (isReady(made_)) lists_ = made_.get();
         if (!isReady(keeping_)) return;
         keeping_.get();
         ++kept_;

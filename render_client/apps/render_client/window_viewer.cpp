@@ -163,7 +163,8 @@ class WindowViewer {
         session.has_launcher = !options_.launcher.empty();
         session.invitation = inviter_.invitation();
         session.past = &past_.list();
-        session.has_clips = !options_.recording.empty();
+        session.same_scene = &past_.sameScene();
+        session.recording = options_.recording;
         session.time_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
         session.realtime_ns =
             std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();

@@ -37,13 +37,26 @@ std::vector<PastAttempt> pastAttemptsOf(const std::string& lines) {
         if (ending == std::string::npos || ending == 0) continue;
         PastAttempt& attempt = attempts.emplace_back();
         attempt.stem = fields[0].substr(0, ending);
-        attempt.is_recorded = !fields[1].empty();
+        attempt.recording = std::move(fields[1]);
         attempt.start = std::move(fields[2]);
         attempt.scene = std::move(fields[3]);
         attempt.trainee = std::move(fields[4]);
         attempt.score = std::move(fields[5]);
         attempt.picture = pictureAt(attempt.stem + ".png");
     }
+    return attempts;
+}
+
+std::vector<const PastAttempt*> comparableAttempts(const SessionView& session) {
+    std::vector<const PastAttempt*> attempts;
+    if (!session.same_scene) return attempts;
+    const auto isOwn = [own =
+                            std::filesystem::path(session.recording).filename()](const PastAttempt& attempt) {
+        return std::filesystem::path(attempt.recording).filename() == own;
+    };
+    const bool has_several = std::ranges::count_if(*session.same_scene, isOwn) > 1;
+    for (const PastAttempt& attempt : *session.same_scene)
+        if (!attempt.recording.empty() && (has_several || !isOwn(attempt))) attempts.push_back(&attempt);
     return attempts;
 }
 

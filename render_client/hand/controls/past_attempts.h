@@ -13,6 +13,10 @@ namespace bonemill {
 // that is none of its is passed over. It waits for the disk. Never throws.
 std::vector<PastAttempt> pastAttemptsOf(const std::string& lines);
 
+// Those of the same scene that a replay of this recording can be compared with: recorded ones, and of the
+// recording itself only where it holds several.
+std::vector<const PastAttempt*> comparableAttempts(const SessionView& session);
+
 // Where the attempt's result and what belongs to it lie, without the ending: STEM.json, STEM.html, STEM.png.
 // Empty where they are not on this PC, or not there yet.
 std::string resultStemOf(const topics::Attempt& attempt, const SessionView& session);

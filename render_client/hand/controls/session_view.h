@@ -33,7 +33,7 @@ struct Invitation {
 // An attempt of this PC that has left a result.
 struct PastAttempt {
     std::string stem;                          // of its files, in its class' folder
-    bool is_recorded = true;                   // and can be seen again
+    std::string recording;                     // where it can be seen again; empty: nowhere
     std::string start, scene, trainee, score;  // for people
     std::string picture;                       // PNG of the bone that it left; empty: none
 };
@@ -55,8 +55,9 @@ struct SessionView {
     const std::map<uint32_t, topics::Remark>* remarks = nullptr;  // by place
     std::vector<FaultEntry> faults = {};                          // of the session, the first one first
     const std::vector<PastAttempt>* past = nullptr;               // the newest one first
+    const std::vector<PastAttempt>* same_scene = nullptr;         // as what is replayed, the newest one first
     bool has_launcher = false;      // bonemill can be asked for replays and invitations
-    bool has_clips = false;         // and for a clip of this replay
+    std::string recording = {};     // that is replayed, of which it can be asked for a clip; empty: not known
     Invitation invitation = {};     // the last one that was asked for
     std::string class_folder = {};  // of this PC, with the class' table, page and reports; empty: not known
 };

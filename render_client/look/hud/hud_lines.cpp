@@ -120,6 +120,12 @@ HudRow volumeRow(double removed_mm3) {
     return {removed_mm3 < 0 ? "Added" : "Removed", readableText(std::abs(removed_mm3), " mm\u00b3")};
 }
 
+HudRow comparisonRow(const topics::Comparison& comparison) {
+    if (!comparison.problem().empty()) return {"Other", "none, see panel", HudTone::kWarning};
+    return {"Other", comparison.is_on_its_way() ? "on its way" : clockText(comparison.attempt_s()),
+            HudTone::kPlain};
+}
+
 std::vector<HudRow> taskRows(const HudInput& input) {
     std::vector<HudRow> rows;
     const topics::SceneInfo* const info = input.info ? &*input.info : nullptr;
@@ -139,6 +145,8 @@ std::vector<HudRow> taskRows(const HudInput& input) {
         rows.push_back(volumeRow(input.status->removed_mm3()));
     if (input.status && !input.status->replay().event().empty())
         rows.push_back({"Moment", input.status->replay().event(), HudTone::kGood});
+    if (input.status && input.status->replay().has_comparison())
+        rows.push_back(comparisonRow(input.status->replay().comparison()));
     if (input.tool && input.tool->has_effects())
         append(effectTaskRows(input.tool->effects(), info, input.events), rows);
     if (task && !is_summary) append(taskStateRows(*task), rows);

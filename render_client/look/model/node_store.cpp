@@ -216,6 +216,14 @@ void NodeStore::clear() {
     nodes_.clear();
 }
 
+void NodeStore::giveFrom(uint32_t first_leaf, NodeStore& other) {
+    for (auto node = nodes_.lower_bound(first_leaf); node != nodes_.end();) {
+        changed_.extend(node->second.box);
+        other.remove(node->first);
+        other.nodes_.insert(nodes_.extract(node++));
+    }
+}
+
 size_t NodeStore::triangleCount() const {
     size_t count = 0;
     for (const auto& [leaf, node] : nodes_) count += size_t(node.index_count) / 3;

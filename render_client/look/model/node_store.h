@@ -59,6 +59,9 @@ class NodeStore {
     void set(const NodeMesh& mesh);
     void clear();
 
+    // Gives the nodes of the leaves from this one on to another store of the same context.
+    void giveFrom(uint32_t first_leaf, NodeStore& other);
+
     size_t nodeCount() const { return nodes_.size(); }
     size_t triangleCount() const;
     const UploadCount& uploads() const { return uploads_; }

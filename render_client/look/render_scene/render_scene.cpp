@@ -41,6 +41,7 @@ ViewWish wishOf(const topics::Camera& camera) {
 RenderScene::RenderScene(const GlApi& gl, bool has_effects)
     : has_effects_(has_effects),
       nodes_(gl),
+      other_nodes_(gl),
       tool_(gl),
       renderer_(gl),
       anaglyph_(gl),
@@ -63,6 +64,7 @@ void RenderScene::setSceneInfo(const topics::SceneInfo& info) {
     hud_input_.info = info;
     structures_.setInfo(info);
     awaits_info_ = false;
+    if (info.other_first_leaf() > 0) nodes_.giveFrom(info.other_first_leaf(), other_nodes_);
     std::vector<Eigen::Vector4f> colours = vertexColoursOf(info);
     if (colours != vertex_colours_) {
         renderer_.setPalette(colours);
@@ -85,11 +87,12 @@ void RenderScene::makeEffects(const topics::SceneInfo& info) {
                        wish.has_burr_spin()});
     effect_picture_ = {};
     for (const auto& [leaf, mesh] : std::exchange(early_nodes_, {}))
-        if (effects_) effects_->setNode(mesh);
+        if (effects_ && !isOfOther(leaf)) effects_->setNode(mesh);
     takeEffectInput();
 }
 
 void RenderScene::setNode(const NodeMesh& mesh) {
+    if (isOfOther(mesh.leaf)) return other_nodes_.set(mesh);
     nodes_.trackChanges(settings_.quality == Quality::kQuick);
     nodes_.set(mesh);  // throws when it contradicts itself: then no other part gets it
     if (effects_) effects_->setNode(mesh);
@@ -119,6 +122,7 @@ void RenderScene::clearNodes() {
     early_nodes_.clear();
     awaits_info_ = true;
     nodes_.clear();
+    other_nodes_.clear();
     hud_input_.tool.reset();
     hud_input_.status.reset();
     faults_.clear();
@@ -263,9 +267,9 @@ void RenderScene::showTool(FrameView& view) const {
 
 void RenderScene::draw(int full_width, int height, float ui_scale, GLuint target) {
     const int width = viewWidth(full_width, height);
-    const bool is_divided = settings_.stereo == StereoMode::kSideBySide;
+    const bool is_divided = settings_.stereo == StereoMode::kSideBySide || showsBeside();
     if (view_pending_) applyFirstView(double(is_divided ? width / 2 : width) / height);
-    hud_input_.node_count = nodes_.nodeCount();
+    hud_input_.node_count = nodeCount();
     hud_input_.events = events_.show(EventLatch::Clock::now());
     lookForFaults();
     can_pick_ = settings_.stereo == StereoMode::kOff;
@@ -279,6 +283,10 @@ void RenderScene::draw(int full_width, int height, float ui_scale, GLuint target
     switch (settings_.stereo) {
         case StereoMode::kOff:
             last_view_ = view;
+            if (showsBeside()) {
+                drawBeside(view, width, height, ui_scale, target);
+                break;
+            }
             drawEye(view, view.camera, whole, ui_scale, target);
             paintHud(view.camera, whole, ui_scale);
             break;

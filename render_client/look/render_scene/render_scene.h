@@ -133,8 +133,9 @@ class RenderScene {
     // it.
     int viewWidth(int width, int height) const { return width - paneColumns(settings_, width, height); }
 
-    size_t nodeCount() const { return nodes_.nodeCount(); }
-    size_t triangleCount() const { return nodes_.triangleCount(); }
+    // With those of a bone beside the first.
+    size_t nodeCount() const { return nodes_.nodeCount() + other_nodes_.nodeCount(); }
+    size_t triangleCount() const { return nodes_.triangleCount() + other_nodes_.triangleCount(); }
     size_t trianglesDrawn() const { return renderer_.trianglesDrawn(); }
     const UploadCount& uploads() const { return nodes_.uploads(); }
     // Returns the faults of the session that pictures have shown.
@@ -161,6 +162,11 @@ class RenderScene {
     void drawEye(FrameView view, const Camera& camera, const PictureArea& area, float ui_scale,
                  GLuint target);
     void drawSideBySide(const FrameView& view, int width, int height, float ui_scale, GLuint target);
+    // A replay is compared with another attempt, whose bone is at the right.
+    bool showsBeside() const;
+    bool isOfOther(uint32_t leaf) const;
+    FrameView otherView(FrameView view);
+    void drawBeside(const FrameView& view, int width, int height, float ui_scale, GLuint target);
     void drawAnaglyph(const FrameView& view, int width, int height, float ui_scale, GLuint target);
     // W is the patient's LPS, as far as is known.
     bool hasPatientAxes() const { return !hud_input_.info || !hud_input_.info->lacks_patient_axes(); }
@@ -171,7 +177,7 @@ class RenderScene {
     void paintNames(const FrameView& view, const PictureArea& area, float ui_scale);
 
     const bool has_effects_;
-    NodeStore nodes_;
+    NodeStore nodes_, other_nodes_;  // the latter of SceneInfo.other_first_leaf on
     ToolMesh tool_;
     SceneRenderer renderer_;
     Anaglyph anaglyph_;
@@ -183,6 +189,7 @@ class RenderScene {
     std::map<uint32_t, NodeMesh> early_nodes_;
     std::unique_ptr<VisualEffects> effects_;
     EffectPicture effect_picture_;
+    EffectPicture no_effects_;                   // as a scene that lists some shows where there are none
     std::string effects_text_;                   // the message they were made from
     std::pair<uint64_t, uint64_t> taken_state_;  // epoch and tick of the tool state that effects took last
     Pose X_WV_;

@@ -1,7 +1,8 @@
 // The parts of RenderScene that write names, figures and notes beside what they belong to, and that draw a
-// picture for each eye.
+// picture for each eye, or for each of two attempts.
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "common/base/units.h"
 #include "render_client/look/hud/figure_text.h"
@@ -74,6 +75,53 @@ void RenderScene::drawSideBySide(const FrameView& view, int width, int height, f
         paintHud(camera, area, ui_scale);
     }
     gl_.Viewport(0, 0, width, height);
+}
+
+bool RenderScene::showsBeside() const {
+    const auto& status = hud_input_.status;
+    return settings_.stereo == StereoMode::kOff && other_nodes_.nodeCount() > 0 && status &&
+           status->replay().comparison().shows_beside();
+}
+
+bool RenderScene::isOfOther(uint32_t leaf) const {
+    const uint32_t first = !awaits_info_ && hud_input_.info ? hud_input_.info->other_first_leaf() : 0;
+    return first > 0 && leaf >= first;
+}
+
+// From the same place, or on the other tool; what is told of the hand and its effects is the first one's.
+FrameView RenderScene::otherView(FrameView view) {
+    view.X_WT = std::exchange(view.X_WT_expert, {});
+    view.X_WT_device.reset();
+    view.f_T_W.reset();
+    view.pull.reset();
+    view.gap.reset();
+    view.clearance.reset();
+    view.burr_work = BurrWork::kIdle;
+    view.burr_load = 0;
+    if (view.effects) {
+        no_effects_.film = view.effects->film;
+        view.effects = &no_effects_;
+    }
+    if (followsTool() && view.X_WT) view.camera = endoscopeCamera(*view.X_WT, view.burr_radius);
+    return view;
+}
+
+// The renderer keeps the picture that was drawn last: the first bone's, in which one can pick.
+void RenderScene::drawBeside(const FrameView& view, int width, int height, float ui_scale, GLuint target) {
+    const int half = width / 2;
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
+    gl_.ClearColor(0, 0, 0, 1);
+    gl_.Clear(GL_COLOR_BUFFER_BIT);  // the last column of an odd width belongs to neither
+    const PictureArea right{half, half, height};
+    renderer_.drawWholeNext();
+    renderer_.draw(otherView(view), other_nodes_, tool_, right, target);
+    const std::string& whose = hud_input_.status->replay().comparison().attempt();
+    constexpr float kFromAbove = 24;  // pixels at scale 1
+    hud_painter_.paintLabels({{float(half) / 2, kFromAbove * ui_scale, whose}}, {half, height}, ui_scale);
+    renderer_.drawWholeNext();
+    drawEye(view, view.camera, {0, half, height}, ui_scale, target);
+    gl_.Viewport(0, 0, width, height);
+    paintHud(view.camera, {0, width, height}, ui_scale);
 }
 
 void RenderScene::drawAnaglyph(const FrameView& view, int width, int height, float ui_scale, GLuint target) {

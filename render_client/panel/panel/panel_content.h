@@ -78,8 +78,11 @@ class PanelContent {
     void buildPast();
     void buildPastAttempt(const PastAttempt& attempt, const std::string& number);
     void showPicture(const std::string& name, float size);
-    // This leads a replay (panel_session.cpp).
+    // These lead a replay, and compare it (panel_replay.cpp).
     void buildReplay();
+    void buildComparison();
+    void buildCompared(const topics::Comparison& comparison);
+    void buildLegend(uint32_t first);
     // These say how the session goes (panel_session.cpp).
     void buildSession();
     void buildCheckpoints();

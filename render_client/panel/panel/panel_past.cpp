@@ -26,7 +26,7 @@ void PanelContent::buildPastAttempt(const PastAttempt& attempt, const std::strin
     ImGui::PopTextWrapPos();
     if (button("Report##past " + number, "Opens the attempt's report"))
         wishes_.open_file = attempt.stem + ".html";
-    if (attempt.is_recorded) {
+    if (!attempt.recording.empty()) {
         ImGui::SameLine();
         if (button("Replay##past " + number,
                    "Shows it again in a window of its own, just before its worst moment"))

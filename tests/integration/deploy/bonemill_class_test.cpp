@@ -68,6 +68,9 @@ TEST_F(BonemillClass, ANameIsNoPath) {
     }
 }
 
+// In which viewers may choose another attempt to compare with.
+const std::string kFolders = "--classes [^ ]+/data/bonemill/classes --recordings [^ ]+/bonemill/recordings";
+
 TEST_F(BonemillClass, ReplaysTheLastSessionWithoutAHand) {
     const std::string recordings = rig_.folder() / "logs/bonemill/recordings";
     EXPECT_TRUE(has(rig_.call({"replay"}).err, "no session has been recorded"));
@@ -77,8 +80,9 @@ TEST_F(BonemillClass, ReplaysTheLastSessionWithoutAHand) {
     std::filesystem::last_write_time(recordings + "/1_old.mcap",
                                      std::filesystem::file_time_type::clock::now() - std::chrono::hours(2));
     const std::string events = eventsOf({"replay", "--at", "41.5", "--", "--speed", "2"});
-    EXPECT_TRUE(std::regex_search(events, std::regex("start bonemill_lab [0-9]+ replay " + recordings +
-                                                     "/2_new.mcap --session [0-9]+ --at 41.5 --speed 2\n")))
+    EXPECT_TRUE(std::regex_search(
+        events, std::regex("start bonemill_lab [0-9]+ replay " + recordings +
+                           "/2_new.mcap --session [0-9]+ --at 41.5 " + kFolders + " --speed 2\n")))
         << events;
     EXPECT_FALSE(has(events, "device_daemon")) << events;
     EXPECT_FALSE(has(events, "haptic_server")) << events;
@@ -97,7 +101,7 @@ TEST_F(BonemillClass, ReplaysTheWorstMomentOfAnAttempt) {
         {"t_s": 40.5, "severity": 10}, {"t_s": 50, "severity": 1}]})");
     const std::string events = eventsOf({"replay", result});
     EXPECT_TRUE(has(events, " replay " + recordings + "/1_a.mcap ")) << events;
-    EXPECT_TRUE(has(events, " --at 37.5\n")) << events;
+    EXPECT_TRUE(has(events, " --at 37.5 ")) << events;
     for (const char* text :
          {"{}", "[1]", "no JSON", R"({"journal": ""})", R"({"journal": "../../etc/passwd"})"}) {
         test::writeFile(result, text);
@@ -105,6 +109,25 @@ TEST_F(BonemillClass, ReplaysTheWorstMomentOfAnAttempt) {
         EXPECT_EQ(finished.exit_code, 2) << text;
         EXPECT_EQ(test::linesOf(finished.err), 1) << finished.err;
     }
+}
+
+TEST_F(BonemillClass, ReplaysAnAttemptBesideAnother) {
+    const std::string recordings = rig_.folder() / "logs/bonemill/recordings",
+                      result = rig_.folder() / "r.json";
+    std::filesystem::create_directories(recordings);
+    test::writeFile(recordings + "/1_a.mcap", "a");
+    test::writeFile(recordings + "/2_b.mcap", "b");
+    test::writeFile(result, "{}");
+    const std::string by_name = eventsOf({"replay", "1_a.mcap", "--against", "2_b.mcap"});
+    EXPECT_TRUE(std::regex_search(by_name, std::regex("/1_a.mcap --session [0-9]+ " + kFolders +
+                                                      " --against " + recordings + "/2_b.mcap\n")))
+        << by_name;
+    EXPECT_TRUE(has(eventsOf({"replay", "1_a.mcap", "--against", result}), " --against " + result + "\n"));
+    Process alone(rig_.words({"replay", "1_a.mcap", "--against", "none.mcap", "--no-viewer"}));
+    EXPECT_TRUE(test::waitFor([&] { return has(alone.outSoFar(), "Ctrl-C ends it"); })) << alone.outSoFar();
+    EXPECT_TRUE(has(alone.outSoFar(), "none.mcap to compare with")) << alone.outSoFar();
+    alone.signal(SIGTERM);
+    EXPECT_EQ(alone.wait().exit_code, 0) << "the replay goes on";
 }
 
 // The words' ends are the stand-ins' to say: the viewer leaves when the clip is written.
@@ -122,7 +145,8 @@ TEST_F(BonemillClass, AClipIsAVideoOfAReplayThatWaitsForIt) {
     const std::string events = rig_.events();
     EXPECT_TRUE(std::regex_search(events, std::regex(" replay " + recordings +
                                                      "/1_a.mcap --session [0-9]+ "
-                                                     "--at 37.5 --paused\n")))
+                                                     "--at 37.5 " +
+                                                     kFolders + " --paused\n")))
         << events;
     EXPECT_TRUE(has(events, " --offscreen --video " + clip +
                                 " --seconds 6 --wait-complete --lead-replay 37.5"
@@ -134,7 +158,8 @@ TEST_F(BonemillClass, AClipIsAVideoOfAReplayThatWaitsForIt) {
     rig_.letLeave("render_client", 1);
     EXPECT_NE(rig_.call({"replay", result, "--clip", clip, "--at", "2"}).exit_code, 0);
     EXPECT_EQ(rig_.pidsOf("render_client").size(), 2u) << "it is not begun anew";
-    EXPECT_TRUE(has(rig_.events(), " --at 0 --paused")) << rig_.events();
+    EXPECT_TRUE(std::regex_search(rig_.events(), std::regex(" --at 0 " + kFolders + " --paused")))
+        << rig_.events();
 }
 
 // Classes lie side by side; the newest attempt is the first one, whatever its class.
@@ -167,6 +192,25 @@ TEST_F(BonemillClass, ListsTheLastAttemptsOfAllClasses) {
     const std::string last =
         classes + "Group 3/results/20261118T100000Z_P07_1.json\t" + recordings + "/7_a.mcap\t";
     EXPECT_TRUE(has(rig_.call({"sessions", "--tab-separated"}).out, last)) << out;
+}
+
+TEST_F(BonemillClass, ListsTheAttemptsAtOneScene) {
+    const std::string of_class = rig_.folder() / "data/bonemill/classes/2026-11-19/";
+    const auto leave = [&](const std::string& place, const std::string& who, const std::string& hash) {
+        std::filesystem::create_directories(std::filesystem::path(of_class + place).parent_path());
+        test::writeFile(of_class + place, R"({"pseudonym": ")" + who +
+                                              R"(", "scene": {"id": "s", "title": "S", "hash": ")" + hash +
+                                              R"("}, "start_unix_ns": 1795000000000000000, "exam": false,)" +
+                                              R"("journal": ""})");
+    };
+    leave("results/20261118T100000Z_P07_1.json", "P07", "0123456789abcdef");
+    leave("results/20261119T100000Z_P08_1.json", "P08", "fedcba9876543210");
+    leave("experts/20261001T100000Z_E1_1.json", "E1", "0123456789abcdef");
+    const std::string out = rig_.call({"sessions", "--scene", "0123456789abcdef"}).out;
+    EXPECT_EQ(test::linesOf(out), 2) << out;
+    EXPECT_TRUE(has(out, "P07") && has(out, "E1")) << out;
+    EXPECT_FALSE(has(rig_.call({"sessions"}).out, "E1")) << "experts are no class";
+    EXPECT_TRUE(has(rig_.call({"sessions", "--scene", "tooth"}).err, "--scene tooth: give the hash"));
 }
 
 TEST_F(BonemillClass, InvitesAGuestToTheSessionThatRuns) {

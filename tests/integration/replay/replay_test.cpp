@@ -72,9 +72,20 @@ class Watcher {
     }
     const topics::Status& status() const { return *subscriber_.status(); }
     uint64_t digest() const { return subscriber_.digest().value(); }
+    const topics::SceneInfo& info() const { return *subscriber_.sceneInfo(); }
     const std::map<uint32_t, NodeMesh>& nodes() const { return nodes_; }
+    // Those with a surface of the leaves below, and of this one and those behind, which count from it on.
+    std::map<uint32_t, NodeMesh> nodesUntil(uint32_t leaf) const { return shown(0, leaf); }
+    std::map<uint32_t, NodeMesh> nodesFrom(uint32_t leaf) const { return shown(leaf, UINT32_MAX); }
 
   private:
+    std::map<uint32_t, NodeMesh> shown(uint32_t from, uint32_t to) const {
+        std::map<uint32_t, NodeMesh> shown;
+        for (auto node = nodes_.lower_bound(from); node != nodes_.lower_bound(to); ++node)
+            if (!node->second.isEmpty()) shown.emplace(node->first - from, node->second);
+        return shown;
+    }
+
     std::map<uint32_t, NodeMesh> nodes_;  // by leaf
     SceneSubscriber subscriber_{
         SubscriberOptions{.domain = testDomain(), .session = testSession(), .name = "w"}};
@@ -117,6 +128,134 @@ TEST_F(Replay, IsALiveSessionToItsViewersAndGoesWhereItIsLed) {
     EXPECT_EQ(command("tool 2").substr(0, 1), "1");
     server.signal(SIGTERM);
     EXPECT_EQ(server.wait().exit_code, 0) << server.errSoFar();
+}
+
+// Two attempts at one scene, side by side: the other way is shorter, and shifted along y.
+class ComparedReplay : public Replay {
+  protected:
+    static constexpr double kShift = 0.8e-3;
+    static test::RecordedSessionOptions shown() { return {.has_orders = false, .file = "a.mcap"}; }
+    static test::RecordedSessionOptions shorter() {
+        return {.ticks = 1200, .has_orders = false, .file = "b.mcap", .shift = kShift};
+    }
+    ComparedReplay() : other_(test::recordSession(folder_.path(), shorter())) {
+        session_ = test::recordSession(folder_.path(), shown());
+    }
+
+    test::RecordedSession other_;
+};
+
+bool isGhostAt(const SceneSubscriber& subscriber, double x, double y) {
+    const auto& tool = subscriber.toolState();
+    return tool && tool->p_wt_expert_m_size() == 3 && std::abs(tool->p_wt_expert_m(0) - x) < 50e-6 &&
+           std::abs(tool->p_wt_expert_m(1) - y) < 50e-6;
+}
+
+// The places (V, m) along y of the vertices that show this number.
+std::vector<double> placesOf(uint8_t number, const std::map<uint32_t, NodeMesh>& nodes) {
+    std::vector<double> places;
+    for (const auto& [leaf, mesh] : nodes)
+        for (size_t n = 0; n < mesh.materials.size(); ++n)
+            if (mesh.materials[n] == number)
+                places.push_back(double(mesh.origin.y() + mesh.step.y() * float(mesh.vertices[n].y)));
+    return places;
+}
+
+TEST_F(ComparedReplay, TheOtherToolIsAGhostAndColoursTellTheDifference) {
+    Process server(this->server({"--paused", "--against", other_.journal}));
+    Watcher watcher;
+    for (const uint64_t tick : {700u, 300u, 1100u}) {
+        EXPECT_EQ(command("seek " + std::to_string(double(tick) * 1e-3 + 30e-6)).substr(0, 1), "0");
+        EXPECT_TRUE(watcher.sees([&](const SceneSubscriber& s) {
+            return std::abs(s.toolState() ? s.toolState()->session_s() - double(tick) * 1e-3 : 1) < 2e-3 &&
+                   isGhostAt(s, other_.x_m[tick], other_.y_m[tick]);
+        })) << tick
+            << server.errSoFar();
+    }
+    const topics::Comparison comparison = watcher.status().replay().comparison();
+    EXPECT_EQ(comparison.problem(), "");
+    EXPECT_NEAR(comparison.length_s(), 1.199, 1e-3);
+    const auto first = uint8_t(comparison.first_material());
+    ASSERT_GT(first, 0);
+    const auto numbered = [&](int part) { return placesOf(uint8_t(first + part), watcher.nodes()); };
+    EXPECT_TRUE(numbered(0).empty() && numbered(1).empty() && numbered(2).empty()) << "it is not switched on";
+    EXPECT_EQ(command("difference"), "0 show the difference: done\n");
+    ASSERT_TRUE(watcher.sees([&](const SceneSubscriber& s) {
+        return s.isComplete() && numbered(0).size() > 50 && numbered(1).size() > 50 &&
+               numbered(2).size() > 50;
+    }));
+    constexpr double kBall = 1.05e-3;  // m, the burr's radius and a little more
+    const double last_here = std::ranges::max(session_.y_m) + kBall,
+                 first_there = std::ranges::min(other_.y_m) - kBall;
+    for (const double y : numbered(0)) EXPECT_LT(y, last_here);
+    for (const double y : numbered(1)) EXPECT_GT(y, first_there);
+    for (const double y : numbered(2)) EXPECT_TRUE(y > first_there && y < last_here) << y;
+    EXPECT_EQ(command("no-difference"), "0 hide the difference: done\n");
+    EXPECT_TRUE(watcher.sees([&](const SceneSubscriber& s) {
+        return s.isComplete() && numbered(0).empty() && numbered(1).empty() && numbered(2).empty();
+    }));
+    EXPECT_EQ(command("alone"), "0 compare with no other attempt: done\n");
+    EXPECT_TRUE(watcher.sees([](const SceneSubscriber& s) {
+        return !s.status()->replay().has_comparison() && s.toolState()->p_wt_expert_m().empty();
+    }));
+    EXPECT_EQ(command("compare b").substr(0, 1), "1") << "it was not told where attempts are";
+}
+
+// At the beginning both bones are as scanned, later each as its own attempt has left it.
+TEST_F(ComparedReplay, TheOtherBoneComesBesideTheFirstWhereItIsWished) {
+    Process server(this->server({"--paused", "--against", other_.journal}));
+    Watcher watcher;
+    ASSERT_TRUE(watcher.sees([](const SceneSubscriber& s) {
+        return s.isComplete() && !s.status()->is_model_partial() && s.toolState()->p_wt_expert_m_size() == 3;
+    })) << server.errSoFar();
+    const uint32_t first = watcher.info().other_first_leaf();
+    ASSERT_GT(first, 0u);
+    EXPECT_TRUE(watcher.nodesFrom(first).empty());
+    EXPECT_EQ(command("side-by-side"), "0 show both bones: done\n");
+    const auto areBoth = [&](bool are_same) {
+        return watcher.sees([&](const SceneSubscriber& s) {
+            return s.isComplete() && !watcher.nodesFrom(first).empty() &&
+                   areTheSame(watcher.nodesFrom(first), watcher.nodesUntil(first)) == are_same;
+        });
+    };
+    EXPECT_TRUE(areBoth(true));
+    EXPECT_EQ(command("seek 1").substr(0, 1), "0");
+    EXPECT_TRUE(areBoth(false));
+    EXPECT_EQ(command("seek 0").substr(0, 1), "0");
+    EXPECT_TRUE(areBoth(true));
+    EXPECT_EQ(command("one-view"), "0 show one bone: done\n");
+    EXPECT_TRUE(watcher.sees(
+        [&](const SceneSubscriber& s) { return s.isComplete() && watcher.nodesFrom(first).empty(); }));
+    EXPECT_EQ(command("side-by-side").substr(0, 1), "0");
+    EXPECT_TRUE(areBoth(true)) << "and comes again";
+    EXPECT_EQ(command("alone").substr(0, 1), "0");
+    EXPECT_TRUE(watcher.sees(
+        [&](const SceneSubscriber& s) { return s.isComplete() && watcher.nodesFrom(first).empty(); }));
+}
+
+TEST_F(ComparedReplay, WhatCannotBeComparedIsSaidAndTheReplayGoesOn) {
+    std::filesystem::create_directories(folder_ / "other");
+    const test::RecordedSession foreign = test::recordSession(
+        folder_ / "other", {.ticks = 100, .has_orders = false, .scene_text = "loop { rate_hz: 500 }"});
+    test::writeFile(folder_ / "broken.mcap", "no recording");
+    for (const auto& [file, part] :
+         {std::pair<std::string, std::string>{folder_ / "none.mcap", "none.mcap"},
+          {folder_ / "broken.mcap", "broken.mcap"},
+          {foreign.journal,
+           "in another version than what is replayed: compare attempts of the same scene"}}) {
+        Process server(this->server({"--against", file, "--speed", "0.5"}));
+        Watcher watcher;
+        EXPECT_TRUE(watcher.sees([&, part = part](const SceneSubscriber& s) {
+            return s.status() && s.status()->replay().comparison().problem().find(part) != std::string::npos;
+        })) << file
+            << server.errSoFar();
+        EXPECT_TRUE(watcher.sees([](const SceneSubscriber& s) {
+            return s.toolState() && s.toolState()->session_s() > 0.5 &&
+                   s.toolState()->p_wt_expert_m().empty();
+        }));
+        server.signal(SIGTERM);
+        EXPECT_EQ(server.wait().exit_code, 0);
+    }
 }
 
 TEST_F(Replay, AViewerOnlyLooksAndAVideoIsMadeOfIt) {

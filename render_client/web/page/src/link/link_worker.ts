@@ -24,6 +24,7 @@ const outbox = new CommandOutbox();
 const keys = new Map<string, Set<string>>();
 let sender = '';
 let placement: Placement | undefined;
+let otherFirstLeaf = Infinity;
 const early = new Map<number, DecodedNode>();  // by leaf, before the scene info
 let malformed = 0;
 
@@ -84,17 +85,19 @@ function takeNode(sample: Sample, placed: PlacedNode[], gone: number[]): void {
   beginIfNew(node.epoch);
   if (!book.isNews(leaf, node.epoch, node.revision)) return;
   book.hold(leaf, node.revision, node.indices.length / 3);
-  if (placement) placed.push(placement.place(leaf, node));
-  else early.set(leaf, node);
+  if (placement && leaf < otherFirstLeaf) placed.push(placement.place(leaf, node));
+  else if (!placement) early.set(leaf, node);
 }
 
 function takeScene(scene: SceneView): void {
   beginIfNew(BigInt(scene.epoch));
   if (BigInt(scene.epoch) !== book.epoch) return;
   placement = new Placement(scene.boneLow, scene.boneHigh);
+  otherFirstLeaf = scene.otherFirstLeaf;
   post({ kind: 'scene', scene });
   if (early.size === 0) return;
-  const placed = [...early].map(([leaf, node]) => placement!.place(leaf, node));
+  const shown = [...early].filter(([leaf]) => leaf < otherFirstLeaf);
+  const placed = shown.map(([leaf, node]) => placement!.place(leaf, node));
   early.clear();
   post({ kind: 'nodes', placed, gone: [] });
 }

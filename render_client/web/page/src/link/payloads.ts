@@ -65,6 +65,7 @@ export function sceneOf(payload: Uint8Array): SceneView {
     boneLow: vector(info.boneMinM),
     boneHigh: vector(info.boneMaxM),
     burrRadius: info.burrRadiusM,
+    otherFirstLeaf: info.otherFirstLeaf || Infinity,
     tool: toolMeshOf(info.tool),
     camera: info.camera && cameraOf(info.camera),
     toolNames: info.toolNames,

@@ -34,6 +34,7 @@ export interface ToolMesh {
 }
 
 export interface SceneView {
+  otherFirstLeaf: number;  // from here on leaves are of another bone, which this page does not show
   epoch: string;
   revision: number;
   name: string;

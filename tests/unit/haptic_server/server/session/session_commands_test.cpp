@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "tests/unit/haptic_server/server/session/fake_replay.h"
 #include "tests/unit/haptic_server/server/session/session_commands_rig.h"
 
 namespace bonemill {
@@ -271,17 +272,6 @@ TEST_F(SessionCommandsTest, OfAnUnknownNameOnly32PrintableCharactersAreRepeated)
     EXPECT_EQ(setAccuracy("gr\xc3\xbcn"), std::string("refused: no preset is called 'gr??n'") + kPresets);
 }
 
-class FakeReplay final : public ReplayOrders {
-  public:
-    void play(bool goes_on) override { said_ += goes_on ? "play " : "hold "; }
-    Answer carryOut(const topics::ReplayOrder& order) override {
-        said_ += "seek " + std::to_string(int(order.seek_s())) + " ";
-        return Answer::done();
-    }
-    void describe(topics::Replay& replay) const override { replay.set_length_s(60); }
-    std::string said_;
-};
-
 TEST_F(SessionCommandsTest, ALiveSessionIsNoReplay) {
     topics::Command command;
     command.mutable_replay()->set_seek_s(3);
@@ -290,7 +280,7 @@ TEST_F(SessionCommandsTest, ALiveSessionIsNoReplay) {
 }
 
 TEST_F(SessionCommandsTest, AReplayIsLedAndItsBoneStaysAsItWas) {
-    FakeReplay replay;
+    test::FakeReplay replay;
     SessionControls in_replay = controls();
     in_replay.replay = &replay;
     SessionCommands commands(sceneOf(), ball_.bone, recorder_, in_replay, false);

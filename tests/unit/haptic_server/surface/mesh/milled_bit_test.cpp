@@ -3,6 +3,7 @@
 #include <map>
 
 #include "haptic_server/surface/mesh/mesher.h"
+#include "haptic_server/surface/mesh/zone_paint.h"
 #include "tests/support/voxel_fields.h"
 
 namespace bonemill {
@@ -104,7 +105,9 @@ TEST_F(MilledBit, GoesWithTheMaterialUnlessAZoneHasSomethingToShow) {
     const BoneProperties properties(scanned, [](const Vector3i&) { return MaterialId(5); });
     std::vector<uint8_t> ids;
     forEachIndex(test::wholeBox(now), [&](const Vector3i& v) { ids.push_back(v.x() < 21 ? 1 : 2); });
-    ZonePaint paint{.zones = std::make_shared<const VoxelIds>(now.dims(), ids), .scanned = &scanned};
+    ZonePaint paint;
+    paint.zones = std::make_shared<const VoxelIds>(now.dims(), ids);
+    paint.scanned = &scanned;
     paint.when_gone[1] = 9;
     Mesher mesher(now, lattice, MeshGrid::kStreamedStepsPerCell, {&properties, nullptr, &scanned});
     mesher.setPaint(&paint);

@@ -1,3 +1,5 @@
+#include "haptic_server/surface/mesh/zone_paint.h"
+
 #include <gtest/gtest.h>
 
 #include <map>

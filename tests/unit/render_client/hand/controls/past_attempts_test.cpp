@@ -17,16 +17,33 @@ TEST(PastAttempts, AreReadFromTheLaunchersLines) {
                                          "no fields\n\t\t\t\t\t\n.json\t\t\t\t\t\n");
     ASSERT_EQ(attempts.size(), 2u);
     EXPECT_EQ(attempts[0].stem, "/a");
-    EXPECT_FALSE(attempts[0].is_recorded);
+    EXPECT_EQ(attempts[0].recording, "");
     EXPECT_EQ(attempts[0].score, "examination");
     EXPECT_EQ(attempts[0].picture, "");
     EXPECT_EQ(attempts[1].stem, stem);
-    EXPECT_TRUE(attempts[1].is_recorded);
+    EXPECT_EQ(attempts[1].recording, "/r.mcap");
     EXPECT_EQ(attempts[1].start, "2026-11-19 10:00");
     EXPECT_EQ(attempts[1].scene, "Tooth");
     EXPECT_EQ(attempts[1].trainee, "P08");
     EXPECT_EQ(attempts[1].picture, "picture");
     EXPECT_TRUE(pastAttemptsOf("").empty());
+}
+
+TEST(PastAttempts, CanBeComparedWhereTheyAreOthers) {
+    const auto attempt = [](const std::string& recording) {
+        PastAttempt made;
+        made.recording = recording;
+        return made;
+    };
+    std::vector<PastAttempt> listed{attempt("/r/b.mcap"), attempt(""), attempt("/r/a.mcap")};
+    SessionView session;
+    EXPECT_TRUE(comparableAttempts(session).empty());
+    session.same_scene = &listed;
+    session.recording = "/linked/a.mcap";
+    ASSERT_EQ(comparableAttempts(session).size(), 1u);
+    EXPECT_EQ(comparableAttempts(session)[0], &listed[0]);
+    listed.push_back(attempt("/r/a.mcap"));
+    EXPECT_EQ(comparableAttempts(session).size(), 3u) << "the recording holds two";
 }
 
 class AttemptEnding : public testing::Test {

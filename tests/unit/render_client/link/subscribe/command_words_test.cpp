@@ -57,6 +57,14 @@ TEST_F(CommandWords, AReplayIsLedByWords) {
     EXPECT_EQ(of("speed 0.25").replay().speed(), 0.25);
     EXPECT_EQ(of("next").replay().jump(), 1);
     EXPECT_EQ(of("previous").replay().jump(), -1);
+    EXPECT_EQ(of("compare 20261118T100000Z_P07_1").replay().compare_with(), "20261118T100000Z_P07_1");
+    EXPECT_TRUE(of("alone").replay().has_compare_with());
+    EXPECT_EQ(of("alone").replay().compare_with(), "");
+    EXPECT_TRUE(of("difference").replay().shows_difference());
+    EXPECT_TRUE(of("no-difference").replay().has_shows_difference());
+    EXPECT_FALSE(of("no-difference").replay().shows_difference());
+    EXPECT_TRUE(of("side-by-side").replay().shows_beside());
+    EXPECT_FALSE(of("one-view").replay().shows_beside());
     const topics::Place place = of("when 1 -2.5  30").replay().removal_at();
     ASSERT_EQ(place.p_m_size(), 3);
     EXPECT_DOUBLE_EQ(place.p_m(0), 1e-3);

@@ -92,6 +92,17 @@ TEST(Hud, MoreThanWasThereIsCalledAdded) {
     EXPECT_FALSE(find(makeHud(input), "Removed"));
 }
 
+TEST(Hud, SaysHowTheOtherAttemptStands) {
+    HudInput input = liveInput();
+    topics::Comparison& comparison = *input.status->mutable_replay()->mutable_comparison();
+    comparison.set_attempt_s(75);
+    EXPECT_EQ(find(makeHud(input), "Other")->value, "0:01:15");
+    comparison.set_is_on_its_way(true);
+    EXPECT_EQ(find(makeHud(input), "Other")->value, "on its way");
+    comparison.set_problem("b.mcap: is of another scene");
+    EXPECT_EQ(find(makeHud(input), "Other")->tone, HudTone::kWarning);
+}
+
 TEST(Hud, OnlyWhatMattersToTheTaskIsThereUntilTheRestIsAskedFor) {
     HudInput input = liveInput();
     input.tool->mutable_effects()->set_spin_speed(1);

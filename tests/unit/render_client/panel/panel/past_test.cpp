@@ -27,11 +27,11 @@ class PanelPast : public testing::Test, protected test::ControlledPanel {
         show();
     }
 
-    static PastAttempt attempt(const std::string& stem, bool is_recorded) {
-        return {stem, is_recorded, "2026-11-20 11:36", "Pedicle", "P07", "score 81 of 100", ""};
+    static PastAttempt attempt(const std::string& stem, const std::string& recording) {
+        return {stem, recording, "2026-11-20 11:36", "Pedicle", "P07", "score 81 of 100", ""};
     }
 
-    std::vector<PastAttempt> past_{attempt("/class/results/b", true), attempt("/class/results/a", false)};
+    std::vector<PastAttempt> past_{attempt("/class/results/b", "/r/b.mcap"), attempt("/class/results/a", "")};
 };
 
 TEST_F(PanelPast, ReportAndReplayAreAClickAway) {
@@ -46,7 +46,7 @@ TEST_F(PanelPast, AClipIsMadeOfTheReplayThatIsShown) {
     status_.mutable_replay()->set_length_s(100);
     show();
     EXPECT_FALSE(panel_.find("Clip")) << "nobody knows the recording";
-    session_.has_clips = true;
+    session_.recording = "/r/a.mcap";
     show();
     click("Clip");
     EXPECT_TRUE(wishes_.make_clip);
