@@ -34,7 +34,7 @@ std::string whyNotOrder(Viewer::Role role, CommandAction action, OpenTo open_to)
     if (role == Viewer::EXAMINER)
         return "an examiner leaves bone, tool and device to operator and instructor (docs/lab/security.md)";
     if (role == Viewer::OPERATOR) return "only an instructor may that (docs/lab/security.md)";
-    return "a viewer only looks; an operator may that (docs/lab/security.md)";
+    return "a viewer only looks; to do this, join again as operator (docs/lab/security.md)";
 }
 
 bool mayOrderAnything(Viewer::Role role) {
@@ -53,8 +53,8 @@ OrderLimits::OrderLimits() {
 std::string OrderLimits::whyNotNow(CommandAction action, int64_t now_ns) {
     const auto limit = limits_.find(countedAs(action));
     if (limit == limits_.end() || limit->second.ask(now_ns) >= 0) return "";
-    return "too many orders of this kind; one in " + std::to_string(rowOf(limit->first).limit().every_s()) +
-           " s is carried out";
+    return "that was too often: it works once in " + std::to_string(rowOf(limit->first).limit().every_s()) +
+           " s; wait, then try again";
 }
 
 }  // namespace bonemill

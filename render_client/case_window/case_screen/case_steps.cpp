@@ -345,7 +345,7 @@ void CaseScreen::buildCase() {
     if (button("Make the case", desk_.takesMake())) desk_.make();
     ImGui::PopStyleColor(2);
     if (desk_.waitsToMake())
-        say("The case is made after this: " + desk_.busyWith());
+        say("Now: " + desk_.busyWith() + "; then the case is made.");
     else if (!why_not.empty())
         say(why_not);
     if (!desk_.madeScene().empty()) {

@@ -10,40 +10,54 @@
 namespace bonemill {
 namespace {
 
+constexpr char kLessDetail[] = "A little less detail is felt: the computer is busy. You can go on.";
+
 constexpr struct {
     const char* name;
     const char* text;
     HudTone tone;
 } kWords[] = {
     {"overrun",
-     "The session's PC was too slow for a moment: the force may have been rough. Close other programs there; "
-     "bonemill doctor says what else helps.",
+     "The session's computer, which has the handle, was too slow for a moment: the force may have been "
+     "rough. Close other programs on it.",
      HudTone::kWarning},
     {"stale_device",
-     "The hand was not heard of for a moment: the device sent nothing, and the force went to zero.",
+     "The handle was not heard of for a moment, and its force went off. If it happens again, check its "
+     "cable.",
      HudTone::kAlarm},
-    {"bad_device_pose", "The hand was not heard of for a moment: the device sent a pose that is none.",
+    {"bad_device_pose",
+     "The handle reported an impossible place, which was ignored. If it happens again, tell your instructor.",
      HudTone::kAlarm},
-    {"solve", "The force faded for a moment: no balance of forces was found.", HudTone::kAlarm},
+    {"solve", "The force faded for a moment: the computer could not calculate it. It comes back by itself.",
+     HudTone::kAlarm},
     {"motion_clamped", "The tool moved no faster than its limit.", HudTone::kPlain},
     {"force_clamped", "The force was kept within the hand's limit.", HudTone::kPlain},
-    {"shell_overflow", "Some milled surface is not felt: there is no room for its contact points.",
+    {"shell_overflow",
+     "A part of the milled surface cannot be felt: the memory for it is full. Trust the picture there.",
      HudTone::kWarning},
-    {"milling_cut_short", "Milling came a moment late: there was more to mill than a tick has time for.",
+    {"milling_cut_short", "Bone was removed a moment late: it was much at once. You can go on.",
      HudTone::kPlain},
-    {"coarser_shell", "A little less detail is felt: a tick has no time for more contact points.",
+    {"coarser_shell", kLessDetail, HudTone::kPlain},
+    {"volume_full",
+     "The computer's memory is full: some bone was not removed. End the attempt and tell your instructor.",
+     HudTone::kAlarm},
+    {"stalled", "The force was a little off, and corrects itself. You can go on.", HudTone::kPlain},
+    {"implausible_device",
+     "The handle sent impossible data, which were ignored. If it happens again, tell your instructor.",
+     HudTone::kAlarm},
+    {"early_samples", "The computer cannot keep up with the handle's signals. You can go on.",
      HudTone::kPlain},
-    {"volume_full", "There is no memory for more milled bone: some was not milled.", HudTone::kAlarm},
-    {"stalled", "Nothing to worry about: forces were out of balance for a tick.", HudTone::kPlain},
-    {"implausible_device", "The device said what cannot be: it was refused.", HudTone::kAlarm},
-    {"early_samples", "The device is faster than the loop: a tick was held back.", HudTone::kPlain},
-    {"fewer_samples", "A little less detail is felt: there was no time to sample the contact more finely.",
+    {"fewer_samples", kLessDetail, HudTone::kPlain},
+    {"as_balanced",
+     "The computer is too slow for the chosen accuracy, and takes \'balanced\': a little less detail is "
+     "felt. You can go on.",
      HudTone::kPlain},
-    {"as_balanced", "A little less detail is felt: there is no time for this accuracy, felt is balanced.",
+    {"as_fast",
+     "The computer is too slow for the chosen accuracy, and takes \'fast\': a little less detail is felt. "
+     "You can go on.",
      HudTone::kPlain},
-    {"as_fast", "A little less detail is felt: there is no time for this accuracy, felt is fast.",
-     HudTone::kPlain},
-    {"not_recorded", "Not all of the session is recorded: the server's disk is full or slow.",
+    {"not_recorded",
+     "Not all of the session is recorded: the disk is full or slow. Tell your instructor before you go on.",
      HudTone::kAlarm},
 };
 
@@ -60,8 +74,8 @@ constexpr char kStaleDevice[] = "stale_device";
 void addConnection(Connection connection, std::vector<Condition>& conditions) {
     if (connection == Connection::kServerLost)
         conditions.push_back({"server",
-                              "The server is silent: has it crashed, or is the network down? The picture is "
-                              "the last that came.",
+                              "No connection to the session's computer: the picture stands still. Wait, or "
+                              "tell your instructor.",
                               HudTone::kAlarm, true});
     if (connection == Connection::kServerEnded)
         conditions.push_back({"end", "The session has ended. The next one is shown as soon as it begins."});
@@ -71,8 +85,9 @@ void addConnection(Connection connection, std::vector<Condition>& conditions) {
 void addTickFaults(const topics::Status& status, std::vector<Condition>& conditions) {
     const bool is_stale = status.device_stale() && status.ticks() > 0;
     if (is_stale)
-        conditions.push_back(
-            {kStaleDevice, "The device sends nothing: there is no force.", HudTone::kAlarm, true});
+        conditions.push_back({kStaleDevice,
+                              "The handle sends nothing: there is no force. Check its cable and switch.",
+                              HudTone::kAlarm, true});
     if (status.faults() == 0) return;
     for (const Condition& fault : faultWords(status.fault_text()))
         if (!is_stale || fault.id != kStaleDevice) conditions.push_back(fault);
@@ -90,18 +105,18 @@ void addDevice(const HudInput& input, std::vector<Condition>& conditions) {
     if (const auto wait = deviceWait(device, tool); wait && !makes_way)
         conditions.push_back({"wait", wait->text, wait->tone});
     if (device.script().has_ended() && !input.status->has_replay())
-        conditions.push_back({"script", "The scripted hand has done all of its script, and rests."});
+        conditions.push_back({"script", "The demonstration by the scripted hand has ended."});
 }
 
 // Who presses the pedal wonders.
 void addPause(const HudInput& input, std::vector<Condition>& conditions) {
     const bool is_asked = input.tool && input.tool->buttons() != 0;
     if (is_asked && input.status->is_milling_paused())
-        conditions.push_back(
-            {"paused", "Milling is paused: P goes on, Start begins the next attempt.", HudTone::kWarning});
+        conditions.push_back({"paused",
+                              "Milling is paused. Press P to go on, or Start to begin the next attempt.",
+                              HudTone::kWarning});
     else if (is_asked && input.tool->waits_for_release())
-        conditions.push_back({"release",
-                              "The bone was put back: release the pedal, then the burr cuts again.",
+        conditions.push_back({"release", "The bone is whole again. Release the pedal: pressed anew, it cuts.",
                               HudTone::kWarning});
 }
 
@@ -196,8 +211,9 @@ std::vector<Condition> conditionsOf(const HudInput& input) {
     addConnection(input.connection, conditions);
     if (input.other_server)
         conditions.push_back({"other_server",
-                              "Another server gives this session, with the scene '" + *input.other_server +
-                                  "'. The picture stays with the first: end one of the two.",
+                              "Two computers run this session, the other with the scene '" +
+                                  *input.other_server +
+                                  "'. You see the first; ask your instructor to end one.",
                               HudTone::kWarning});
     const bool is_there = input.connection == Connection::kReceiving || input.connection == Connection::kLive;
     if (!input.status || !is_there) return conditions;  // what a server said last is no news of it

@@ -30,7 +30,7 @@ TEST(OrderLimits, OrdersThatCostTheSameShareALimit) {
     constexpr int64_t kStart = 1000 * kNsPerSecond;
     EXPECT_EQ(takenOf(limits, Command::kRestoreCheckpoint, kStart), 8);
     EXPECT_EQ(limits.whyNotNow(Command::kResetVolume, kStart),
-              "too many orders of this kind; one in 1 s is carried out");
+              "that was too often: it works once in 1 s; wait, then try again");
     EXPECT_EQ(takenOf(limits, Command::kPauseMilling, kStart), 1000) << "it costs nothing";
 }
 

@@ -33,16 +33,16 @@ const kCauses: [string, string][] = [
 ];
 const kStopped = [0, 6, 7, 8];
 
-const kTooSlow = "The session's PC was too slow for a moment: the force may have been rough.";
+const kTooSlow = "The session's computer, which has the handle, was too slow for a moment: the force may have been rough.";
 const kFaults: Record<string, [string, Tone]> = {
   overrun: [kTooSlow, 'warning'],
-  stale_device: ['The device sent nothing for a while: the force went to zero.', 'alarm'],
-  bad_device_pose: ['The device sent a pose that is none: the last good one was kept.', 'alarm'],
-  solve: ['No balance of forces was found: the force faded.', 'alarm'],
-  shell_overflow: ['Some milled surface is not felt: there is no room for its contact points.', 'warning'],
+  stale_device: ['The handle was not heard of for a moment, and its force went off. If it happens again, check its cable.', 'alarm'],
+  bad_device_pose: ['The handle reported an impossible place, which was ignored. If it happens again, tell your instructor.', 'alarm'],
+  solve: ['The force faded for a moment: the computer could not calculate it. It comes back by itself.', 'alarm'],
+  shell_overflow: ['A part of the milled surface cannot be felt: the memory for it is full. Trust the picture there.', 'warning'],
   contact_overflow: [kTooSlow, 'warning'],
-  volume_full: ['There is no memory for more milled bone: some was not milled.', 'alarm'],
-  implausible_device: ['The device said what cannot be: it was refused.', 'alarm'],
+  volume_full: ["The computer's memory is full: some bone was not removed. End the attempt and tell your instructor.", 'alarm'],
+  implausible_device: ['The handle sent impossible data, which were ignored. If it happens again, tell your instructor.', 'alarm'],
 };
 
 export const Event = { Stalled: 1, Near: 2, Touched: 4, Damaged: 8, TooHot: 16 } as const;
@@ -160,7 +160,7 @@ export function conditions(session: Session): { text: string; tone: Tone }[] {
   if (session.connection.state !== 'open') return list;
   if (session.hasEnded) return [{ text: 'The session has ended. The next one is shown as soon as it begins.', tone: 'plain' }];
   if (!session.hasServer && session.scene)
-    return [{ text: 'The server is silent: has it crashed, or is the network down? The picture is the last that came.', tone: 'alarm' }];
+    return [{ text: "No connection to the session's computer: the picture stands still. Wait, or tell your instructor.", tone: 'alarm' }];
   const device = status?.device;
   if (device) {
     const state = tool ? tool.deviceState : device.state, name = device.name || 'Device';
@@ -169,10 +169,10 @@ export function conditions(session: Session): { text: string; tone: Tone }[] {
     if (kStopped.includes(state)) list.push({ text: `${name}: ${kStates[state]}${stop}. ${todo}`, tone: 'alarm' });
     if ((state === 3 || state === 5) && device.forceWaits) list.push({ text: `${name} is ${kStates[state]}: move the tool away.`, tone: 'warning' });
   }
-  if (device?.script?.hasEnded) list.push({ text: 'The scripted hand has done all of its script, and rests.', tone: 'plain' });
+  if (device?.script?.hasEnded) list.push({ text: 'The demonstration by the scripted hand has ended.', tone: 'plain' });
   if (tool?.waitsForRelease && tool.buttons !== 0 && !status?.isMillingPaused)
-    list.push({ text: 'The bone was put back: release the pedal, then the burr cuts again.', tone: 'warning' });
-  if (status?.deviceStale && status.ticks > 0) list.push({ text: 'The device sends nothing: there is no force.', tone: 'alarm' });
+    list.push({ text: 'The bone is whole again. Release the pedal: pressed anew, it cuts.', tone: 'warning' });
+  if (status?.deviceStale && status.ticks > 0) list.push({ text: 'The handle sends nothing: there is no force. Check its cable and switch.', tone: 'alarm' });
   return list;
 }
 

@@ -11,7 +11,7 @@ using test::SessionCommandsTest;
 TEST_F(SessionCommandsTest, WhoOnlyLooksChoosesNoSceneAndBeginsNoAttempt) {
     for (const topics::Command& command : {choiceOf("tooth"), startOf("Ann"), stop()})
         EXPECT_EQ(order(command, topics::Viewer::VIEWER),
-                  "refused: a viewer only looks; an operator may that (docs/lab/security.md)");
+                  "refused: a viewer only looks; to do this, join again as operator (docs/lab/security.md)");
     EXPECT_FALSE(lesson_.takeOrder());
     EXPECT_FALSE(lesson_.isAttemptRunning());
 }
@@ -154,9 +154,9 @@ TEST_F(SessionCommandsTest, AFloodOfOrdersIsRefusedAndOthersAreNot) {
     }
     EXPECT_GE(done, 12);
     EXPECT_LE(done, 14);
-    EXPECT_EQ(last, "refused: too many orders of this kind; one in 2 s is carried out");
+    EXPECT_EQ(last, "refused: that was too often: it works once in 2 s; wait, then try again");
     for (int n = 0; n < 50; ++n) order(startOf("Ann"));
-    EXPECT_EQ(order(stop()), "refused: too many orders of this kind; one in 2 s is carried out");
+    EXPECT_EQ(order(stop()), "refused: that was too often: it works once in 2 s; wait, then try again");
     topics::Command pause;
     pause.set_pause_milling(true);
     EXPECT_EQ(order(pause), "done");
@@ -176,7 +176,7 @@ TEST_F(SessionCommandsTest, NotesAreForWhoMayCommandAndNotTooOften) {
     erase.set_erase_remark(1);
     for (const topics::Command& command : {note, erase})
         EXPECT_EQ(order(command, topics::Viewer::VIEWER),
-                  "refused: a viewer only looks; an operator may that (docs/lab/security.md)");
+                  "refused: a viewer only looks; to do this, join again as operator (docs/lab/security.md)");
     EXPECT_EQ(commands_.remarks().count(), 0u);
     EXPECT_EQ(order(note, topics::Viewer::EXAMINER), "done");
     EXPECT_EQ(order(erase), "done");
@@ -185,7 +185,7 @@ TEST_F(SessionCommandsTest, NotesAreForWhoMayCommandAndNotTooOften) {
     for (int n = 0; n < 100; ++n) taken += order(note) == "done";
     EXPECT_GE(taken, 19);
     EXPECT_LT(taken, 60);
-    EXPECT_EQ(order(note), "refused: too many orders of this kind; one in 1 s is carried out");
+    EXPECT_EQ(order(note), "refused: that was too often: it works once in 1 s; wait, then try again");
     erase.set_erase_remark(0);
     EXPECT_EQ(order(erase), "done") << "a flood can be cleared away";
 }

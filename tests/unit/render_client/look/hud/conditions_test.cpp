@@ -49,7 +49,7 @@ TEST(Conditions, WhoMillsInAPauseIsToldWhatGoesOn) {
     input.tool->set_buttons(kButtonRemove);
     const auto conditions = conditionsOf(input);
     ASSERT_EQ(conditions.size(), 1u);
-    EXPECT_NE(conditions[0].text.find("P goes on"), std::string::npos);
+    EXPECT_NE(conditions[0].text.find("Press P to go on"), std::string::npos);
     EXPECT_FALSE(conditions[0].is_fault);
     input.status->set_is_milling_paused(false);
     EXPECT_TRUE(conditionsOf(input).empty());
