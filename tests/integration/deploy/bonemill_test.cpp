@@ -113,6 +113,7 @@ TEST_F(Bonemill, AHandThatHasFinishedEndsTheSession) {
 TEST_F(Bonemill, AScriptedHandRestsAtItsEndWhereThereIsAWindowToSayWhatComesNext) {
     for (const bool has_window : {true, false}) {
         BonemillRig rig;
+        rig.useStandIns();
         std::vector<std::string> words{"start", rig.scene(), "--device", "simulated"};
         if (!has_window) words.push_back("--no-viewer");
         Process session(rig.words(words));
