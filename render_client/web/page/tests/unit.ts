@@ -267,7 +267,7 @@ test('after a script it begins again, or is taken over', () => {
   assert.notEqual(whyNotTakeOver(session), '');
   device.script = { hasEnded: true, takenOverBy: '0' };
   assert.equal(whyNotTakeOver(session), '');
-  assert.match(conditions(session)[0].text, /all of its script/);
+  assert.match(conditions(session)[0].text, /scripted hand has ended/);
   assert.equal(questionBefore({ action: 'beginAgain' }, session), '', 'a script does its own work again');
   assert.notEqual(whyNotTakeOver({ ...session, role: Role.Examiner, isLive: true } as Session), '');
   device.script = { hasEnded: false, takenOverBy: '7' };
@@ -307,7 +307,7 @@ test('who holds the pedal while bone is put back is told to release it', () => {
   session.hasServer = true;
   const tool = payloads.toolOf(synthetic.toolState(1).payload);
   session.take({ kind: 'tool', tool: { ...tool, waitsForRelease: true } }, 0);
-  assert.match(conditions(session)[0].text, /release the pedal/);
+  assert.match(conditions(session)[0].text, /Release the pedal/);
   session.take({ kind: 'tool', tool: { ...tool, buttons: 0, waitsForRelease: true } }, 0);
   assert.deepEqual(conditions(session), []);
 });
