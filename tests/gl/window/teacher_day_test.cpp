@@ -125,25 +125,34 @@ class TeacherDay : public testing::Test {
         await("the lesson", [&] { return twin_->lesson() && twin_->lesson()->scenes_size() > 3; });
         await("the class' folder", [&] { return !classFolders().empty(); });
         twin_->setClassFolder(classFolder());
-        look();
+        awaitWindow();
     }
 
+    // Keys of the time before there is a window are nobody's; of those that it takes, each makes a picture.
+    void awaitWindow() {
+        constexpr auto kOften = std::chrono::milliseconds(300), kQuiet = std::chrono::milliseconds(2000);
+        await("a window", [&] {
+            display_->type({"key", "F12"});
+            std::this_thread::sleep_for(kOften);
+            return countPictures() > 0;
+        });
+        await("its last picture", [&] {
+            const size_t before = countPictures();
+            std::this_thread::sleep_for(kQuiet);
+            return countPictures() == before;
+        });
+    }
+    size_t countPictures() const { return filesIn(rig_.folder() / "desktop", ".png").size(); }
     // Returns what the window shows after all that was done and has come before: the first picture may have
     // been under way.
     Picture look() {
         fs::path file;
         for (int n = 0; n < 2; ++n) {
             char name[32];
-            std::snprintf(name, sizeof name, "bonemill_%04d.png", ++pictures_);
+            std::snprintf(name, sizeof name, "bonemill_%04zu.png", countPictures() + 1);
             file = rig_.folder() / ("desktop/" + std::string(name));
-            // Keys of the time before there is a window are nobody's.
-            await(file, [&] {
-                if (fs::exists(file)) return true;
-                display_->type({"key", "F12"});
-                std::this_thread::sleep_for(std::chrono::milliseconds(300));
-                return fs::exists(file);
-            });
-            pictures_ = int(filesIn(rig_.folder() / "desktop", ".png").size());
+            display_->type({"key", "F12"});
+            await(name, [&] { return fs::exists(file); });
         }
         return test::readPng(file);
     }
@@ -276,7 +285,7 @@ class TeacherDay : public testing::Test {
     test::BonemillRig rig_;
     std::optional<Process> session_;
     std::optional<LessonTwin> twin_;
-    int clicks_ = 0, turns_to_end_ = 0, pictures_ = 0;
+    int clicks_ = 0, turns_to_end_ = 0;
 };
 
 TEST_F(TeacherDay, TakesTheWindowAloneAndFewClicks) {
