@@ -296,7 +296,8 @@ class WindowViewer {
     void replay(const std::string& result) {
         if (std::error_code none; !std::filesystem::exists(result, none))
             notices_.show({result + " is not there yet", HudTone::kWarning});
-        else if (!startApart({options_.launcher, "replay", result}))
+        else if (!startApart({options_.launcher, "replay", result, "--domain",
+                              std::to_string(options_.subscriber.domain)}))
             notices_.show({options_.launcher + " cannot be started", HudTone::kWarning});
         else
             notices_.show(
