@@ -220,7 +220,7 @@ ScannedMaterials scannedMaterialsOf(const LoadedScene& loaded, const RawVolume& 
     std::vector<MaterialRule> rules;
     for (const scene::Material& material : loaded.scene.material()) rules.push_back(ruleOf(material));
     const std::string& label_path = loaded.scene.volume().label_path();
-    if (label_path.empty()) return {materialIds(raw, rules), {}};
+    if (label_path.empty()) return {materialIds(raw, rules), {}, 0, nullptr};
     const RawVolume file = importLabels(loaded);
     remarks.push_back(label_path + ": " + file.description);
     findSegments(loaded, file.segments, rules);
