@@ -77,7 +77,7 @@ float ScanShade::computedAt(const Eigen::Vector3i& voxel) const {
     forEachIndex(IndexBox{voxel, voxel}.grown(1), [&](const Eigen::Vector3i& v) {
         const Density density = density_at_(v);
         if (density < iso_) return;
-        const double weight = density;
+        const double weight = density * std::sqrt(double(density));
         sum += weight * density;
         weights += weight;
     });

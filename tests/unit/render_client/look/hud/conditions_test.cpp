@@ -62,7 +62,7 @@ TEST(Conditions, WhoHoldsThePedalWhileBoneIsPutBackIsToldToReleaseIt) {
     input.tool->set_buttons(kButtonRemove);
     const auto conditions = conditionsOf(input);
     ASSERT_EQ(conditions.size(), 1u);
-    EXPECT_NE(conditions[0].text.find("release the pedal"), std::string::npos);
+    EXPECT_NE(conditions[0].text.find("Release the pedal"), std::string::npos);
     EXPECT_FALSE(conditions[0].is_fault);
     const Hud hud = makeHud(input);
     const HudRow* const burr = test::findRow(hud.rows, "Burr");
