@@ -69,8 +69,8 @@ const scene::Range& LiveField::range() const {
 }
 
 const std::vector<LiveField>& liveFields() {
-    static const std::vector<LiveField> fields = findLiveFields();
-    return fields;
+    static const std::vector<LiveField> kFields = findLiveFields();
+    return kFields;
 }
 
 std::optional<double> valueOf(const scene::Tuning& tuning, const LiveField& field) {
