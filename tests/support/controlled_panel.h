@@ -1,6 +1,10 @@
 // It is a viewer's controls with the panel, as the tests that click and draw it need them.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <string>
+
 #include "render_client/panel/panel/panel.h"
 #include "tests/support/controlled_viewer.h"
 
@@ -15,6 +19,16 @@ class ControlledPanel : protected ControlledViewer {
         panel_.layOut(controls_, session_, wishes_);
     }
     bool send(const WindowEvent& event) { return panel_.handle(event, controls_, session_, wishes_); }
+    // Presses and releases the mouse on the control of this label, where it was laid out last; before any
+    // picture, as from a quick hand on a slow computer. What was wished before is forgotten.
+    void clickAt(const std::string& label) {
+        const auto place = panel_.find(label);
+        ASSERT_TRUE(place) << "no control '" << label << "' can be seen";
+        wishes_ = {};
+        send(MouseMoveEvent{*place});
+        EXPECT_TRUE(send(MouseButtonEvent{MouseButton::kLeft, true, *place, {}, 0}));
+        EXPECT_TRUE(send(MouseButtonEvent{MouseButton::kLeft, false, *place, {}, 0}));
+    }
 
     Panel panel_;
 };

@@ -9,6 +9,8 @@
 namespace bonemill {
 namespace {
 
+constexpr char kNoEndedHand[] = "no scripted hand has done all of its script";
+
 std::string milledText(const SessionView& session) {
     return readableText(session.status->removed_mm3(), " mm\u00b3") + " are milled";
 }
@@ -140,8 +142,7 @@ CommandOrReason stopAttempt(const SessionView& session) {
 }
 
 CommandOrReason beginAgain(const SessionView& session) {
-    if (!hasHandEnded(session) && !isTakenOver(session))
-        return refuse("no scripted hand has done all of its script");
+    if (!hasHandEnded(session) && !isTakenOver(session)) return refuse(kNoEndedHand);
     return order(&topics::Command::set_begin_again, true);
 }
 
@@ -234,7 +235,7 @@ bool isTakenOver(const SessionView& session) {
 std::string whyNotTakeOver(const SessionView& session) {
     if (const std::string why_not = whyNotCommand(session); !why_not.empty()) return why_not;
     if (!mayHoldTool(session.role)) return "An examiner leaves the tool to others";
-    return hasHandEnded(session) ? "" : "no scripted hand has done all of its script";
+    return hasHandEnded(session) ? "" : kNoEndedHand;
 }
 
 std::string whyNotHold(const SessionView& session) {

@@ -49,11 +49,11 @@ constexpr struct {
      HudTone::kPlain},
     {"fewer_samples", kLessDetail, HudTone::kPlain},
     {"as_balanced",
-     "The computer is too slow for the chosen accuracy, and takes \'balanced\': a little less detail is "
+     "The computer is too slow for the chosen accuracy, and takes 'balanced': a little less detail is "
      "felt. You can go on.",
      HudTone::kPlain},
     {"as_fast",
-     "The computer is too slow for the chosen accuracy, and takes \'fast\': a little less detail is felt. "
+     "The computer is too slow for the chosen accuracy, and takes 'fast': a little less detail is felt. "
      "You can go on.",
      HudTone::kPlain},
     {"not_recorded",

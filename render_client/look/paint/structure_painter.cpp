@@ -105,9 +105,9 @@ Eigen::AlignedBox3f StructurePainter::takeChanged(const std::vector<StructureLoo
         const auto shape = shapes_.find(look.structure);
         if (shape == shapes_.end()) continue;
         Shape& drawn = shape->second;
-        StructureLook without_rise = look;
-        if (!isSeen(drawn)) without_rise.rise = drawn.look.rise;
-        drawn.is_whole = std::exchange(drawn.look, without_rise) != without_rise;
+        StructureLook next = look;
+        if (!isSeen(drawn)) next.rise = drawn.look.rise;
+        drawn.is_whole = std::exchange(drawn.look, next) != next;
         if (drawn.is_whole) changed_.extend(drawn.box);
     }
     return std::exchange(changed_, {});

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <map>
+#include <string>
 
 #include "render_client/link/subscribe/scene_subscriber.h"
 #include "tests/support/dds_session.h"
@@ -42,6 +43,17 @@ struct ClientProbe {
             poll();
         }
         return true;
+    }
+
+    // Orders it, and returns the answer's text; "none" if none comes.
+    std::string order(const topics::Command& command) {
+        subscriber.sendCommand(command);
+        std::string answer = "none";
+        pollUntil([&] {
+            for (const CommandOutcome& outcome : subscriber.takeOutcomes()) answer = outcome.answer.text;
+            return answer != "none";
+        });
+        return answer;
     }
 
     std::string digestLine() const {

@@ -108,14 +108,7 @@ class AttemptsAgree : public testing::Test {
     void order(const std::function<void(topics::Command&)>& fill) {
         topics::Command command;
         fill(command);
-        probe_.subscriber.sendCommand(command);
-        std::string answer = "none";
-        probe_.pollUntil([&] {
-            for (const CommandOutcome& outcome : probe_.subscriber.takeOutcomes())
-                answer = outcome.answer.text;
-            return answer != "none";
-        });
-        EXPECT_EQ(answer, "done");
+        EXPECT_EQ(probe_.order(command), "done");
     }
     const topics::Lesson& lesson() const { return *probe_.subscriber.lesson(); }
     double sessionS() const {

@@ -93,14 +93,7 @@ class Recording : public testing::Test {
     std::string order(const std::function<void(topics::Command&)>& fill) {
         topics::Command command;
         fill(command);
-        probe_->subscriber.sendCommand(command);
-        std::string answer = "none";
-        probe_->pollUntil([&] {
-            for (const CommandOutcome& outcome : probe_->subscriber.takeOutcomes())
-                answer = outcome.answer.text;
-            return answer != "none";
-        });
-        return answer;
+        return probe_->order(command);
     }
     // Only an instructor may.
     static int tune(const std::string& values) {

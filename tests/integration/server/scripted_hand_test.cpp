@@ -54,14 +54,7 @@ class AfterTheScript : public testing::Test {
     std::string order(void (topics::Command::*set)(bool)) {
         topics::Command command;
         (command.*set)(true);
-        probe_.subscriber.sendCommand(command);
-        std::string answer = "none";
-        probe_.pollUntil([&] {
-            for (const CommandOutcome& outcome : probe_.subscriber.takeOutcomes())
-                answer = outcome.answer.text;
-            return answer != "none";
-        });
-        return answer;
+        return probe_.order(command);
     }
     std::string journal() const {
         return std::filesystem::directory_iterator(folder_ / "recordings")->path().string();

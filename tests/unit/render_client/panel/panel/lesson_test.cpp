@@ -20,12 +20,7 @@ class LessonClicks : public testing::Test, protected test::ControlledPanel {
     }
     void click(const std::string& label) {
         layOut();
-        const auto place = panel_.find(label);
-        ASSERT_TRUE(place) << "no control '" << label << "' can be seen";
-        wishes_ = {};
-        send(MouseMoveEvent{*place});
-        EXPECT_TRUE(send(MouseButtonEvent{MouseButton::kLeft, true, *place, {}, 0}));
-        EXPECT_TRUE(send(MouseButtonEvent{MouseButton::kLeft, false, *place, {}, 0}));
+        clickAt(label);
         layOut();
     }
     topics::Command command() const {

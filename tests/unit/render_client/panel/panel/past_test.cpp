@@ -18,12 +18,7 @@ class PanelPast : public testing::Test, protected test::ControlledPanel {
         for (int n = 0; n < 3; ++n) layOut(900, 2400);
     }
     void click(const std::string& label) {
-        const auto place = panel_.find(label);
-        ASSERT_TRUE(place) << label;
-        wishes_ = {};
-        send(MouseMoveEvent{*place});
-        send(MouseButtonEvent{MouseButton::kLeft, true, *place, {}, 0});
-        send(MouseButtonEvent{MouseButton::kLeft, false, *place, {}, 0});
+        clickAt(label);
         show();
     }
 

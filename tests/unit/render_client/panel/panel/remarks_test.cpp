@@ -24,11 +24,7 @@ class PanelRemarks : public testing::Test, protected test::ControlledPanel {
     }
     void click(const std::string& label) {
         show();
-        const auto place = panel_.find(label);
-        ASSERT_TRUE(place) << label;
-        send(MouseMoveEvent{*place});
-        send(MouseButtonEvent{MouseButton::kLeft, true, *place, {}, 0});
-        send(MouseButtonEvent{MouseButton::kLeft, false, *place, {}, 0});
+        clickAt(label);
         show();
     }
     void writeAt(const std::optional<Eigen::Vector3d>& place) {
