@@ -66,12 +66,12 @@ MomentName momentNameOf(const std::string& text) {
     return name;
 }
 
-BoneModel scannedCopyOf(const Simulation& simulation, const LoadedScene& scene) {
+BoneModel scannedCopyOf(const SceneSetup& simulation, const LoadedScene& scene) {
     const BoneModel& bone = *simulation.bone;
     return {bone.volume.withoutSpareBricks(), bone.lattice.leafCells(), shellConfigOf(scene.scene)};
 }
 
-RecordedMoment momentOf(const Recording& recording, const Simulation& simulation, const LoadedScene& scene,
+RecordedMoment momentOf(const Recording& recording, const SceneSetup& simulation, const LoadedScene& scene,
                         double seconds) {
     requireSameScene(recording, scene);
     requireSameVolume(recording, scene);
@@ -134,7 +134,7 @@ class Rerun::Io final : public TickIo {
     const DeviceCapabilities* device_;
 };
 
-Rerun::Rerun(const Recording& recording, const Simulation& simulation, const RecordedCheckpoints& checkpoints,
+Rerun::Rerun(const Recording& recording, const SceneSetup& simulation, const RecordedCheckpoints& checkpoints,
              BoneModel& bone, const Keyframe& start)
     : recording_(recording),
       checkpoints_(checkpoints),

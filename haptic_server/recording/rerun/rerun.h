@@ -22,7 +22,7 @@ using RecordedCheckpoints = std::map<uint32_t, std::shared_ptr<const BoneSnapsho
 class Rerun {
   public:
     // All must outlive this object; `bone` is as scanned. Begins before the first tick, with `start`.
-    Rerun(const Recording& recording, const Simulation& simulation, const RecordedCheckpoints& checkpoints,
+    Rerun(const Recording& recording, const SceneSetup& simulation, const RecordedCheckpoints& checkpoints,
           BoneModel& bone, const Keyframe& start);
 
     // The bone becomes that of the keyframe, whose tick is the next one.
@@ -88,11 +88,11 @@ struct RecordedMoment {
 };
 
 // Another bone like that of a fresh simulation of the scene.
-BoneModel scannedCopyOf(const Simulation& simulation, const LoadedScene& scene);
+BoneModel scannedCopyOf(const SceneSetup& simulation, const LoadedScene& scene);
 
 // Runs the ticks up to there again, from the state of the bone before it. `simulation` is fresh, and stays
 // so. Throws UserError if the recording is of another scene, or ends before.
-RecordedMoment momentOf(const Recording& recording, const Simulation& simulation, const LoadedScene& scene,
+RecordedMoment momentOf(const Recording& recording, const SceneSetup& simulation, const LoadedScene& scene,
                         double seconds);
 
 }  // namespace bonemill

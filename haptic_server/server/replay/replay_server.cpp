@@ -39,7 +39,7 @@ class ReplayServer {
     explicit ReplayServer(const ReplayOptions& options)
         : recording_(options.journal),
           scene_(recording_.scene()),
-          simulation_(makeSimulation(scene_)),
+          simulation_(setUpScene(scene_)),
           bones_(recording_.readBones(*simulation_.bone)),
           keyframes_(bones_.keyframes),
           events_(recording_),
@@ -188,7 +188,7 @@ class ReplayServer {
     StopSignals stop_signals_;
     Recording recording_;
     LoadedScene scene_;
-    Simulation simulation_;
+    SceneSetup simulation_;
     Recording::Bones bones_;
     Keyframes keyframes_;
     ReplayEvents events_;

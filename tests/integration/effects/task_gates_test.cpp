@@ -34,7 +34,7 @@ class TaskGates : public testing::Test {
     Assessment attempt(const std::string& name,
                        const Eigen::Vector3d& astray_mm = Eigen::Vector3d::Zero()) const {
         const LoadedScene loaded = loadScene(folder_ / ("deploy/scenes/" + name + ".textproto"));
-        Simulation simulation = makeSimulation(loaded);
+        SceneSetup simulation = setUpScene(loaded);
         const VoxelVolume scanned = simulation.bone->volume.withoutSpareBricks();
         TaskRun task(loaded.scene, simulation);
         std::vector<DeviceInput> path =
@@ -121,7 +121,7 @@ TEST(SoftNerveFarFromBone, IsLostWhereTheBurrGoesThroughIt) {
     const test::TemporaryFolder folder;
     writeNerveScene(folder);
     const LoadedScene loaded = loadScene(folder / "nerve.textproto");
-    Simulation simulation = makeSimulation(loaded);
+    SceneSetup simulation = setUpScene(loaded);
     const VoxelVolume scanned = simulation.bone->volume.withoutSpareBricks();
     TaskRun task(loaded.scene, simulation);
     std::vector<Pose> path;
