@@ -35,6 +35,10 @@ class Rerun {
     // Runs the next tick, which there is. The record is good until the next call; its start_ns is now, and
     // its bone_order is the recording's.
     const TickRecord& step();
+    // Leaves the recording: runs a tick with this hand instead, held by an engaged device, and with what the
+    // switches below choose. What is in force stays so. From then on no tick of the recording is run.
+    const TickRecord& step(const Pose& X_WT_hand, uint32_t buttons);
+    bool hasLeft() const noexcept { return has_left_; }
     // An order of the recording has put the bone back, or has begun to, in the last step.
     bool isBonePutBack() const noexcept { return is_put_back_; }
 
@@ -45,7 +49,6 @@ class Rerun {
     AccuracySwitch& accuracies() noexcept { return accuracy_; }
 
   private:
-    class Io;
     void makeTick();
     void addTunings(const TunableScene& scene);
     uint32_t tuningOf(const TickDecisions& decisions) const;
@@ -68,6 +71,7 @@ class Rerun {
     uint64_t bone_order_ = 0;  // of the recording, given last
     uint64_t done_order_ = 0;  // of the recording, whose bone is there
     bool is_put_back_ = false;
+    bool has_left_ = false;
     bool is_device_told_ = false;  // to tick_
 };
 
