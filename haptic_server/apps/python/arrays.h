@@ -15,17 +15,21 @@ namespace bonemill::python {
 
 namespace py = pybind11;
 
-// The array has the vector's memory, without a copy.
-template <class Value>
-py::array arrayOf(std::vector<Value>&& values, size_t width = 1) {
-    auto owned = std::make_unique<std::vector<Value>>(std::move(values));
-    const auto rows = py::ssize_t(owned->size() / width);
-    const Value* const data = owned->data();
+// The array has the vector's memory, without a copy: one number an entry, or rows of as many as an entry has.
+template <class Value, class Entry>
+py::array rowsOf(std::vector<Entry>&& entries, size_t width = sizeof(Entry) / sizeof(Value)) {
+    auto owned = std::make_unique<std::vector<Entry>>(std::move(entries));
+    const auto rows = py::ssize_t(owned->size() * sizeof(Entry) / sizeof(Value) / width);
+    const auto* const data = reinterpret_cast<const Value*>(owned->data());
     const py::capsule owner(owned.get(),
-                            [](void* vector) { delete static_cast<std::vector<Value>*>(vector); });
+                            [](void* vector) { delete static_cast<std::vector<Entry>*>(vector); });
     owned.release();
     if (width == 1) return py::array_t<Value>(rows, data, owner);
     return py::array_t<Value>({rows, py::ssize_t(width)}, data, owner);
+}
+template <class Value>
+py::array arrayOf(std::vector<Value>&& values, size_t width = 1) {
+    return rowsOf<Value>(std::move(values), width);
 }
 
 // A view of what `owner` holds; it cannot be written.
@@ -44,7 +48,7 @@ inline std::string shapeText(const py::array& array) {
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 // One vector of so many numbers.
-inline const double* vectorOf(const Numbers& array, py::ssize_t size, const char* what) {
+inline const double* vectorIn(const Numbers& array, py::ssize_t size, const char* what) {
     if (array.ndim() != 1 || array.shape(0) != size)
         throw UserError(std::string(what) + ": expected " + std::to_string(size) +
                         " numbers, got an array of shape " + shapeText(array));
@@ -52,7 +56,7 @@ inline const double* vectorOf(const Numbers& array, py::ssize_t size, const char
 }
 
 // Rows of so many numbers; `rows` of them, or any number if that is negative.
-inline const double* rowsOf(const Numbers& array, py::ssize_t rows, py::ssize_t size, const char* what) {
+inline const double* rowsIn(const Numbers& array, py::ssize_t rows, py::ssize_t size, const char* what) {
     if (array.ndim() != 2 || array.shape(1) != size || (rows >= 0 && array.shape(0) != rows))
         throw UserError(std::string(what) + ": expected an array of shape (" +
                         (rows < 0 ? "N" : std::to_string(rows)) + ", " + std::to_string(size) + "), got " +

@@ -11,7 +11,7 @@ namespace bonemill::python {
 namespace {
 
 template <size_t n>
-py::array vectorIn(const double (&values)[n]) {
+py::array vectorOf(const double (&values)[n]) {
     return py::array_t<double>(py::ssize_t(n), values);
 }
 
@@ -56,17 +56,17 @@ void defineResults(py::module_& module) {
         .def_property_readonly("tick", number([](R r) { return r.tick; }), "Number of the tick, from 0.")
         .def_property_readonly("t_s", number([](R r) { return r.t_s; }),
                                "Time of the tick, s since the first one.")
-        .def_property_readonly("force_n", number([](R r) { return vectorIn(r.f_hand_W); }),
+        .def_property_readonly("force_n", number([](R r) { return vectorOf(r.f_hand_W); }),
                                "Force on the hand, N, frame W; shape (3,).")
-        .def_property_readonly("torque_nm", number([](R r) { return vectorIn(r.t_hand_W); }),
+        .def_property_readonly("torque_nm", number([](R r) { return vectorOf(r.t_hand_W); }),
                                "Torque on the hand about the tool point that it holds, N m, W; shape (3,).")
-        .def_property_readonly("tool_position_m", number([](R r) { return vectorIn(r.p_WT); }),
+        .def_property_readonly("tool_position_m", number([](R r) { return vectorOf(r.p_WT); }),
                                "The simulated tool after the tick, m, W; shape (3,).")
-        .def_property_readonly("tool_orientation_wxyz", number([](R r) { return vectorIn(r.q_WT); }),
+        .def_property_readonly("tool_orientation_wxyz", number([](R r) { return vectorOf(r.q_WT); }),
                                "Its unit quaternion w, x, y, z, T to W; shape (4,).")
-        .def_property_readonly("hand_position_m", number([](R r) { return vectorIn(r.p_WT_device); }),
+        .def_property_readonly("hand_position_m", number([](R r) { return vectorOf(r.p_WT_device); }),
                                "Where the hand holds the tool, as accepted, m, W; shape (3,).")
-        .def_property_readonly("hand_orientation_wxyz", number([](R r) { return vectorIn(r.q_WT_device); }),
+        .def_property_readonly("hand_orientation_wxyz", number([](R r) { return vectorOf(r.q_WT_device); }),
                                "Its unit quaternion w, x, y, z, T to W; shape (4,).")
         .def_property_readonly("contacts", number([](R r) { return r.contacts; }), "Samples in contact.")
         .def_property_readonly("penetration_m", number([](R r) { return r.max_penetration; }),

@@ -10,8 +10,6 @@
 #include "common/device_messages/device_messages.h"
 #include "haptic_server/apps/python/arrays.h"
 #include "haptic_server/lab/stepping/tick_table.h"
-#include "haptic_server/recording/statistics/bone_files.h"
-#include "haptic_server/surface/mesh/welded_mesh.h"
 
 namespace bonemill::python {
 namespace {
@@ -55,9 +53,9 @@ using Buttons = py::array_t<uint32_t, py::array::c_style | py::array::forcecast>
 
 py::dict runHand(Run& run, const Numbers& positions, const std::optional<Numbers>& orientations,
                  const std::optional<Buttons>& buttons) {
-    const double* const p = rowsOf(positions, -1, 3, "positions_m");
+    const double* const p = rowsIn(positions, -1, 3, "positions_m");
     const py::ssize_t rows = positions.shape(0);
-    const double* const q = orientations ? rowsOf(*orientations, rows, 4, "orientations_wxyz") : nullptr;
+    const double* const q = orientations ? rowsIn(*orientations, rows, 4, "orientations_wxyz") : nullptr;
     const bool is_one = buttons && buttons->ndim() == 0;
     if (buttons && !is_one && (buttons->ndim() != 1 || buttons->shape(0) != rows))
         throw UserError("buttons: expected one number or an array of shape (" + std::to_string(rows) +
@@ -72,51 +70,33 @@ py::dict runHand(Run& run, const Numbers& positions, const std::optional<Numbers
 StepResult stepHand(Run& run, const Numbers& position, const std::optional<Numbers>& orientation,
                     uint32_t buttons) {
     const InUse in_use(run.isUsed());
-    const double* const q = orientation ? vectorOf(*orientation, 4, "orientation_wxyz") : nullptr;
-    const HandStep hand = handOf(vectorOf(position, 3, "position_m"), q, buttons);
+    const double* const q = orientation ? vectorIn(*orientation, 4, "orientation_wxyz") : nullptr;
+    const HandStep hand = handOf(vectorIn(position, 3, "position_m"), q, buttons);
     return {run.run().step(hand), run.run().recorded()};
 }
 
 py::array voxelsOf(Run& run) {
     const InUse in_use(run.isUsed());
-    const VoxelVolume& volume = run.run().bone().volume;
+    const Eigen::Vector3i& dims = run.run().scanned().dims();
     const IndexBox changed = run.run().takeChanged();
-    const Eigen::Vector3i dims = volume.dims();
     if (!run.voxels) {
         run.voxels = py::array_t<Density, py::array::f_style>({dims.x(), dims.y(), dims.z()});
         run.voxels.attr("flags").attr("writeable") = false;
     }
     auto* const data = static_cast<Density*>(const_cast<void*>(py::array(run.voxels).data()));
-    for (int k = changed.min.z(); k <= changed.max.z(); ++k)
-        for (int j = changed.min.y(); j <= changed.max.y(); ++j) {
-            const Eigen::Vector3i first(changed.min.x(), j, k);
-            Density* out = data + placeIn(dims, first);
-            volume.forEachRun(first, changed.max.x() - first.x() + 1, [&](size_t offset, int n) {
-                out = std::copy_n(volume.ownerData() + offset, n, out);
-            });
-        }
+    run.run().copyVoxels(changed, {data, run.run().scanned().geometry().voxelCount()});
     return run.voxels;
 }
 
 py::tuple meshOf(Run& run) {
     const InUse in_use(run.isUsed());
-    std::vector<double> vertices;
-    std::vector<uint32_t> triangles;
+    RunSurface surface;
     {
         const py::gil_scoped_release release;
-        const BoneModel& bone = run.run().bone();
-        const MeshGrid grid(bone.volume, bone.lattice);
-        const WeldedMesh mesh = weld(meshWholeBone(bone.volume, bone.lattice), grid);
-        const Pose& X_WV = bone.volume.geometry().X_WV;
-        vertices.reserve(3 * mesh.vertices.size());
-        for (const Eigen::Vector3i& vertex : mesh.vertices) {
-            const Eigen::Vector3d p_W = X_WV * grid.position(vertex);
-            vertices.insert(vertices.end(), p_W.begin(), p_W.end());
-        }
-        for (const auto& triangle : mesh.triangles)
-            triangles.insert(triangles.end(), triangle.begin(), triangle.end());
+        surface = run.run().surface();
     }
-    return py::make_tuple(arrayOf(std::move(vertices), 3), arrayOf(std::move(triangles), 3));
+    return py::make_tuple(rowsOf<double>(std::move(surface.vertices_W)),
+                          rowsOf<uint32_t>(std::move(surface.triangles)));
 }
 
 py::tuple toolMeshOf(py::object self) {

@@ -1,11 +1,14 @@
 #include "haptic_server/lab/stepping/stepped_run.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "common/base/user_error.h"
 #include "common/config/scene_tools.h"
 #include "haptic_server/core/effects/effect_figures.h"
+#include "haptic_server/recording/statistics/bone_files.h"
 #include "haptic_server/scene/setup/scene_materials.h"
+#include "haptic_server/surface/mesh/welded_mesh.h"
 
 namespace bonemill {
 
@@ -61,6 +64,31 @@ uint64_t SteppedRun::stateHash() const {
 
 std::vector<std::string> SteppedRun::toolNames() const {
     return toolNamesOf(loaded_.scene);
+}
+
+void SteppedRun::copyVoxels(const IndexBox& box, std::span<Density> all) const {
+    const VoxelVolume& volume = bone().volume;
+    for (int k = box.min.z(); k <= box.max.z(); ++k)
+        for (int j = box.min.y(); j <= box.max.y(); ++j) {
+            const Eigen::Vector3i first(box.min.x(), j, k);
+            Density* out = &all[placeIn(volume.dims(), first)];
+            volume.forEachRun(first, box.max.x() - first.x() + 1, [&](size_t offset, int n) {
+                out = std::copy_n(volume.ownerData() + offset, n, out);
+            });
+        }
+}
+
+RunSurface SteppedRun::surface() const {
+    const BoneModel& of = bone();
+    const MeshGrid grid(of.volume, of.lattice);
+    WeldedMesh welded = weld(meshWholeBone(of.volume, of.lattice), grid);
+    const Pose& X_WV = of.volume.geometry().X_WV;
+    RunSurface surface;
+    surface.triangles = std::move(welded.triangles);
+    surface.vertices_W.reserve(welded.vertices.size());
+    for (const Eigen::Vector3i& vertex : welded.vertices)
+        surface.vertices_W.push_back(X_WV * grid.position(vertex));
+    return surface;
 }
 
 void SteppedRun::requireTask() const {

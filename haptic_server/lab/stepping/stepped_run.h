@@ -2,9 +2,11 @@
 // has the hand. SI, frame W. One normal thread at a time.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,6 +41,12 @@ struct TaskProgress {
     Eigen::Vector3d p_ideal_W;            // m: the middle of the box around what shall be gone
 };
 
+// The bone's surface, as triangles counter-clockwise seen from outside.
+struct RunSurface {
+    std::vector<Eigen::Vector3d> vertices_W;  // m
+    std::vector<std::array<uint32_t, 3>> triangles;
+};
+
 class SteppedRun {
   public:
     virtual ~SteppedRun() = default;
@@ -63,6 +71,11 @@ class SteppedRun {
 
     // The voxels that may have changed since the last call; at first all.
     IndexBox takeChanged() noexcept { return std::exchange(changed_, {}); }
+
+    // Copies the densities of this box of voxels to their places in `all`, where the whole volume lies x
+    // fastest.
+    void copyVoxels(const IndexBox& box, std::span<Density> all) const;
+    RunSurface surface() const;
 
     virtual size_t tool() const noexcept = 0;
     // From the next tick on.
