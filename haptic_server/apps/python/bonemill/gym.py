@@ -162,9 +162,11 @@ class MillingEnv:
     def _observe(self, result: StepResult, removed: float) -> Observation:
         tool_m = result.tool_position_m
         distance = result.effects.get("protected_distance_mm", np.nan) * 1e-3
-        return np.concatenate([tool_m - self._target_m, result.tool_orientation_wxyz, result.hand_position_m - tool_m,
-                               result.force_n, result.torque_nm,
-                               [removed, self._share(), min(np.nan_to_num(distance, nan=_FAR_M), _FAR_M)]]).astype(np.float32)
+        near = min(float(np.nan_to_num(distance, nan=_FAR_M)), _FAR_M)
+        observation: Observation = np.concatenate(
+            [tool_m - self._target_m, result.tool_orientation_wxyz, result.hand_position_m - tool_m, result.force_n,
+             result.torque_nm, [removed, self._share(), near]]).astype(np.float32)
+        return observation
 
 
 def _rotation(turn: NDArray[Any]) -> NDArray[Any]:

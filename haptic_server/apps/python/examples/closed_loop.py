@@ -2,7 +2,7 @@
 
     closed_loop.py SCENE [--delay TICKS]
 
-SCENE is a flat block with its face at z = 0 and a ball of 1 mm for a tool. 24 devices and hands press it with 2 N
+SCENE has a block with a flat top and a ball of 1 mm for a tool. 24 devices and hands press it with 2 N
 through DELAY ticks; the force of the last 0.2 s is quiet (N RMS about its mean at most 0.05) or buzzes. These are the
 points of the stability grid on the plane (docs, "stability": loop_grid_plane_one_tick, loop_grid_plane_three_ticks).
 """
@@ -47,9 +47,9 @@ class Handle:
             self.z = middle + self.h / 2 * self.v
 
 
-def buzz(sim, device, hand, encoder_m, delay):
+def buzz(sim, top_m, device, hand, encoder_m, delay):
     sim.reset()
-    handle = Handle(device, hand, RADIUS_M + 0.2e-3, sim.period_s)
+    handle = Handle(device, hand, top_m + RADIUS_M + 0.2e-3, sim.period_s)
     under_way, forces = collections.deque([0.0] * delay), []
     for tick in range(700):
         measured = round(handle.z / encoder_m) * encoder_m
@@ -65,9 +65,10 @@ def main():
     parser.add_argument("--delay", type=int, default=1)
     options = parser.parse_args()
     sim = bonemill.Scene.load(options.scene).simulation(keep_inputs=False)
+    top_m = sim.mesh()[0][:, 2].max()
     worst, buzzing = 0.0, []
     for (device, d), (hand, h), encoder_m in itertools.product(DEVICES.items(), HANDS.items(), ENCODERS_M):
-        rms = buzz(sim, d, h, encoder_m, options.delay)
+        rms = buzz(sim, top_m, d, h, encoder_m, options.delay)
         worst = max(worst, rms)
         if rms > QUIET_N:
             buzzing.append(f"{device}/{hand}/{encoder_m * 1e6:.0f}um")

@@ -3,7 +3,7 @@
     counterfactual.py SESSION.mcap --at SECONDS [--shift-mm X Y Z] [--tool NAME]
 
 Both runs are the same to the bit up to that moment. Then the recorded hand goes on, shifted, and with another burr
-of the scene where one is named. Printed: removed bone, force, heat and damage where the scene has them, and the score.
+of the scene where one is named; orders of the session (pause, put the bone back) are not repeated there. Printed: removed bone, force, heat and damage where the scene has them, and the score.
 """
 import argparse
 
