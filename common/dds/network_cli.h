@@ -18,9 +18,8 @@ inline void addNetworkOptions(CLI::App& app, NetworkOptions& network) {
         ->type_name("ADDRESS")
         ->expected(1)
         ->take_all();
-    app.add_option(
-           "--secure", network.secure,
-           "folder of deploy/security/make-session: only its people can join (docs/howto/security.md)")
+    app.add_option("--secure", network.secure,
+                   "folder of deploy/security/make-session: only its people join (docs/howto/security.md)")
         ->type_name("DIR");
 }
 

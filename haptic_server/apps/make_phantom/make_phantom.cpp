@@ -1,5 +1,5 @@
 // Writes phantoms: a tooth as a DICOM CT series, blocks, a vertebra, temporal bones, third molars and
-// analytic bodies as NRRD. See docs/reference/volumes.md.
+// analytic bodies as NRRD. See docs/reference/phantoms.md.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <iostream>
@@ -227,7 +227,7 @@ int run(int argc, char** argv) {
         tooth);
     addBlock(add("block", "block of layers of any density as NRRD, HU; top face at z = 0", makeBlock, block),
              block);
-    addBody(add("body", "analytic body as NRRD; the exact surfaces are in docs/reference/volumes.md",
+    addBody(add("body", "analytic body as NRRD; the exact surfaces are in docs/reference/phantoms.md",
                 makeBody, body),
             body);
     addAnatomicPhantoms(app, anatomic);
