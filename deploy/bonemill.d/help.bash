@@ -13,6 +13,7 @@ Usage: bonemill COMMAND [options]
   invite NAME      let somebody join a session in a browser: prints a link and its QR code
   replay [FILE]    show a recorded session again, the last one or FILE
   doctor           what this PC lacks, and what to type
+  handbook [PAGE]  read how to use all this, in a browser
 `bonemill COMMAND --help` says more, `bonemill --version` which one this is.
 TEXT
 }
@@ -108,5 +109,10 @@ usage_of() {  # COMMAND
             echo "Says what this PC lacks, and what to type: programs, real time, network (of interface I, and a firewall's ports"
             echo "for domain D), display, OpenGL, devices, what was left running. It installs nothing. The exit code is 1 when no"
             echo "session can be started." ;;
+        handbook)
+            echo "Usage: bonemill handbook [PAGE]"
+            echo "Opens the handbook in the browser, and prints where it lies: tutorials, how to, reference, explanation."
+            echo "  PAGE              a page as messages name it (docs/howto/security.md), or its name (security); another word is"
+            echo "                    looked for, and the pages are named that have it" ;;
     esac
 }

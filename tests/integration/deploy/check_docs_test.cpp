@@ -99,6 +99,15 @@ TEST_F(CheckDocs, OptionsMustBeThoseOfTheProgram) {
                 "11: deploy/demo has no option --frames");
 }
 
+TEST_F(CheckDocs, WhatAProgramIsSaidToSayStandsInASource) {
+    set("haptic_server/apps/main.cpp",
+        "throw UserError(path + \": the disk is \"\n    \"full; tidy up\");\n");
+    set("deploy/start", "fail \"$1 is gone\"\n");
+    readme("It says “: the disk is full; tidy up”, “the disk … tidy up” and “is gone”.\n");
+    EXPECT_EQ(check().exit_code, 0) << check().out;
+    expectFound("| “the disk is empty” | do |\n", "10: no source says “the disk is empty”");
+}
+
 TEST_F(CheckDocs, EveryPackageHasItsRow) {
     set("deploy/packages.txt", "# All\ncmake  # builds\nninja-build  # is quick\n");
     set("deploy/packages-bench.txt", "r-base-core\n");
