@@ -169,7 +169,8 @@ scene::Scene sceneOfCase(const CasePlan& plan, const CaseRequest& request,
 std::string textOfScene(const scene::Scene& scene) {
     std::string text;
     google::protobuf::TextFormat::PrintToString(scene, &text);
-    return "# A case made of a scan (docs/teach/cases.md). docs/lab/scene.md has every field with its unit, "
+    return "# A case made of a scan (docs/howto/cases.md). docs/reference/scene.md has every field with its "
+           "unit, "
            "default "
            "and range.\n" +
            text;

@@ -25,7 +25,7 @@ namespace {
 
 constexpr size_t kMaxWaiting = 4096;  // rows
 
-// Ticks as the columns of an HDF5 file, with units and frames (docs/teach/replay.md lists them). It is for
+// Ticks as the columns of an HDF5 file, with units and frames (docs/howto/replay.md lists them). It is for
 // one normal thread.
 class TickTable {
   public:

@@ -1,6 +1,6 @@
 // Runs the ticks of a recording again: with the same build, from its first tick on, they come to the same
-// bits (docs/lab/recording.md). From a later one the bone is the same, and all else settles within a fraction
-// of a second: what effects have counted and warmed up begins anew there.
+// bits (docs/reference/recording.md). From a later one the bone is the same, and all else settles within a
+// fraction of a second: what effects have counted and warmed up begins anew there.
 //
 // It belongs to one normal thread; the mesher may read the bone meanwhile.
 #pragma once

@@ -95,7 +95,7 @@ double areaHalfIn(const Burr& burr) {
 }
 
 // A tick in which the solve takes long tests each contact point so often (drills of 5 mm:
-// docs/lab/realtime.md).
+// docs/howto/realtime.md).
 constexpr double kTestsOfPoint = 13;
 
 void warnOfManyPoints(SceneSetup& simulation, const SceneTool& tool) {
@@ -115,7 +115,7 @@ void warnOfManyPoints(SceneSetup& simulation, const SceneTool& tool) {
 }
 
 // A groove half as deep as the burr's radius R is larger than what was swept by this times (voxel / R)², as
-// docs/teach/effects.md (time_removal) has it measured.
+// docs/reference/effects.md (time_removal) has it measured.
 constexpr double kGrooveExcess = 1.3;
 constexpr double kMaxGrooveExcess = 0.1;
 
@@ -153,7 +153,7 @@ void warnOfColdRemoval(SceneSetup& simulation) {
         "rubbing alone; use energy_removal where heat is judged");
 }
 
-// A tick has time for some bricks of cubes only (docs/teach/effects.md, thermal).
+// A tick has time for some bricks of cubes only (docs/reference/effects.md, thermal).
 constexpr double kFinestHeat = 0.35e-3;  // m
 
 void warnOfFineHeat(SceneSetup& simulation) {
