@@ -1,5 +1,6 @@
 """What the handbook says out of the sources themselves: each field's meaning in the scene, and each program's --help."""
 
+import json
 import os
 import pathlib
 import re
@@ -117,3 +118,41 @@ def programs_page(programs):
 def listed_programs(binaries, launcher):
     names = ("haptic_server", "device_daemon", "render_client", "bonemill_lab", "make_phantom", "ares_emulator", "study")
     return [pathlib.Path(launcher), *(binaries / name for name in names if (binaries / name).exists())]
+
+
+# Asks the module itself: (heading, signature or nothing, docstring) of all that it offers.
+PYTHON = r"""
+import inspect, json, bonemill, bonemill.demonstrations, bonemill.gym
+def said(thing): return inspect.getdoc(thing) or ""
+def entries(owner, prefix):
+    for name, thing in sorted(vars(owner).items(), key=lambda entry: entry[0]):
+        if name.startswith("_") or not said(thing): continue
+        if isinstance(thing, property): yield 3, prefix + name, "", said(thing)
+        elif callable(thing) or isinstance(thing, classmethod):
+            thing = getattr(owner, name)
+            try: signature = str(inspect.signature(thing)).replace("self, ", "").replace("(self)", "()")
+            except (TypeError, ValueError): signature = None
+            first, _, rest = said(thing).partition("\n")
+            yield 3, prefix + name, signature or "", rest.strip() if signature is None else said(thing)
+pages = []
+for module in (bonemill, bonemill.gym, bonemill.demonstrations):
+    pages.append((2, module.__name__, "", said(module)))
+    for name in sorted(module.__all__):
+        thing = getattr(module, name)
+        if inspect.isclass(thing):
+            pages.append((2, name, "", said(thing)))
+            pages += entries(thing, name + ".")
+        elif inspect.isroutine(thing):
+            pages += [entry for entry in entries(type("one", (), {name: staticmethod(thing)}), "")]
+print(json.dumps(pages))
+"""
+
+
+def python_page(package):
+    """Every class and call of the Python module, by its own docstrings."""
+    asked = subprocess.run(["/usr/bin/python3", "-c", PYTHON], capture_output=True, text=True, check=True, timeout=60,
+                           env={"PATH": os.environ["PATH"], "PYTHONPATH": str(package)})
+    made = ["# The Python module", "", "What its docstrings say. [How to use it](../howto/python.md)."]
+    for depth, name, signature, said in json.loads(asked.stdout):
+        made += ["", f"{'#' * depth} {name}", "", *([f"`{name}{signature}`", ""] if signature else []), *(["```", said, "```"] if said else [])]
+    return "\n".join(made) + "\n"

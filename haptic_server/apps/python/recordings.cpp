@@ -85,7 +85,8 @@ void defineRecordings(py::module_& module) {
         return [read](const Recording& recording) { return read(recording.manifest()); };
     };
     using Manifest = const journal::Manifest&;
-    py::class_<Recording, std::shared_ptr<Recording>>(module, "Recording")
+    py::class_<Recording, std::shared_ptr<Recording>>(
+        module, "Recording", "A recorded session as its file has it; made by read_recording().")
         .def(py::init<const std::filesystem::path&>(), py::arg("path"))
         .def_property_readonly("path", [](const Recording& recording) { return recording.path().string(); })
         .def_property_readonly("ticks", &Recording::ticks)

@@ -52,7 +52,7 @@ void defineResults(py::module_& module) {
         return [read](const StepResult& result) { return read(result.record); };
     };
     using R = const TickRecord&;
-    py::class_<StepResult>(module, "StepResult")
+    py::class_<StepResult>(module, "StepResult", "What one tick came to.")
         .def_property_readonly("tick", number([](R r) { return r.tick; }), "Number of the tick, from 0.")
         .def_property_readonly("t_s", number([](R r) { return r.t_s; }),
                                "Time of the tick, s since the first one.")
@@ -81,6 +81,8 @@ void defineResults(py::module_& module) {
                                "Voxels that rose to the iso-value in this tick.")
         .def_property_readonly("tool", number([](R r) { return r.tool; }),
                                "The tool's place in the scene's list, from 0.")
+        .def_property_readonly("buttons", number([](R r) { return r.buttons; }),
+                               "Pressed in this tick: 1 removes, 2 adds.")
         .def_property_readonly("tick_us", number([](R r) { return microsecondsOfNs(double(r.compute_ns)); }),
                                "Measured duration of the tick, us; equal runs differ in it.")
         .def_property_readonly("faults", number([](R r) { return faultList(r.faults); }),

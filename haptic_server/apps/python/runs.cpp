@@ -225,7 +225,8 @@ StepResult stepRecorded(Replay& self) {
 }
 
 void defineReplay(py::module_& module) {
-    py::class_<Replay, Run, std::shared_ptr<Replay>>(module, "Replay")
+    py::class_<Replay, Run, std::shared_ptr<Replay>>(module, "Replay",
+                                                     "A recorded session, run again; made by replay().")
         .def(py::init(&makeReplay), py::arg("recording"))
         .def("step_recorded", stepRecorded, "Runs the next tick as it was recorded.")
         .def("run_recorded", runRecorded, py::arg("until_s") = py::none(),
@@ -253,7 +254,8 @@ InUse::InUse(std::atomic<bool>& is_used) : is_used_(is_used) {
 }
 
 void defineRuns(py::module_& module) {
-    py::class_<Run, std::shared_ptr<Run>>(module, "Run")
+    py::class_<Run, std::shared_ptr<Run>>(module, "Run",
+                                          "A scene that is milled tick by tick: a simulation, or a replay.")
         .def("step", stepHand, py::arg("position_m"), py::arg("orientation_wxyz") = py::none(),
              py::arg("buttons") = 0,
              "Runs one tick with the hand there and returns what it came to.\n"
@@ -315,9 +317,10 @@ void defineRuns(py::module_& module) {
         .def_property_readonly(
             "volume_pose", [](Run& run) { return poseDict(run.run().bone().volume.geometry().X_WV); },
             "Frame V in W: voxel (i, j, k) lies at spacing_m * (i, j, k) in V.");
-    py::class_<RunCheckpoint>(module, "Checkpoint")
+    py::class_<RunCheckpoint>(module, "Checkpoint", "What a simulation has done so far.")
         .def_property_readonly("ticks", &RunCheckpoint::ticks, "How many it runs.");
-    py::class_<Simulation, Run, std::shared_ptr<Simulation>>(module, "Simulation")
+    py::class_<Simulation, Run, std::shared_ptr<Simulation>>(
+        module, "Simulation", "A run from the scanned bone on; made by Scene.simulation().")
         .def(py::init(&makeSimulation), py::arg("scene"), py::arg("settings") = std::vector<std::string>{},
              py::arg("tool") = "", py::arg("keep_inputs") = true)
         .def(

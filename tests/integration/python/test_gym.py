@@ -1,10 +1,12 @@
 """bonemill.gym keeps Gymnasium's promises, without Gymnasium."""
+import json
 import unittest
 
 import numpy as np
 
+import bonemill.demonstrations
 import bonemill.gym
-from place import BLOCK, TASK, Folder
+from place import BLOCK, TASK, TESTS, Folder, run
 
 DOWN = [0, 0, -1, 0, 0, 0, 1]
 
@@ -72,6 +74,33 @@ class OfABlock(Folder):
             env.step([np.nan] * 7)
         with self.assertRaisesRegex(bonemill.Error, "needs a task"):
             bonemill.gym.MillingEnv(self.scene(BLOCK))
+
+
+class OfASession(Folder):
+    def test_attempts_become_demonstrations_of_those_who_consent(self):
+        made = run(TESTS / "recorded_session_maker", self.folder, "--with-attempts")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        recording = bonemill.read_recording(self.folder / "session.mcap")
+        everybody = list(bonemill.demonstrations.of(recording))
+        self.assertEqual([demonstration.trainee for demonstration in everybody], ["P1", "P2"])
+        one = everybody[0]
+        self.assertEqual(one.observations.shape[1], sum(bonemill.gym.OBSERVED.values()))
+        self.assertEqual(len(one.actions), len(one.observations))
+        self.assertEqual(len(one.rewards), len(one.actions))
+        self.assertEqual(set(one.actions[:, 6]), {1.0})
+        # What the hand did in a step is what the action says.
+        hand, first = recording.hand(), round(recording.attempts[0]["begin_s"] * 1000)
+        moved = hand["positions_m"][first + 6] - hand["positions_m"][first + 1]
+        np.testing.assert_allclose(one.actions[0, :3] * 0.0005, moved, atol=2e-5)
+        for name, consent, withdrawn in (("P1", True, True), ("P2", True, False), ("P3", False, False)):
+            place = self.folder / "study" / "participants" / name
+            place.mkdir(parents=True)
+            (place / "participant.json").write_text(
+                json.dumps({"pseudonym": name, "consent": consent, "withdrawn": withdrawn}))
+        allowed = list(bonemill.demonstrations.of(recording, study=self.folder / "study"))
+        self.assertEqual([demonstration.trainee for demonstration in allowed], ["P2"])
+        with self.assertRaisesRegex(bonemill.Error, "is no study"):
+            next(bonemill.demonstrations.of(recording, study=self.folder / "nowhere"))
 
 
 if __name__ == "__main__":

@@ -24,6 +24,7 @@ class StepResult:
     removed_voxels: int
     added_voxels: int
     tool: int
+    buttons: int
     tick_us: float
     faults: list[str]
     events: list[str]

@@ -28,7 +28,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import REMOVE, Scene
-from ._bonemill import Error, Recording, Simulation, StepResult
+from ._bonemill import Error, Run, Simulation, StepResult
+
+__all__ = ["Box", "MillingEnv", "OBSERVED", "Observer"]
 
 OBSERVED = {"tool_offset_m": 3, "tool_orientation_wxyz": 4, "hand_offset_m": 3, "force_n": 3, "torque_nm": 3,
             "removed_mm3": 1, "target_share": 1, "protected_distance_m": 1}
@@ -60,7 +62,38 @@ class Box:
         return x.shape == self.shape and bool(np.isfinite(x).all() and (x >= self.low).all() and (x <= self.high).all())
 
 
+class Observer:
+    """What an agent sees of a run, and what it is paid for; the run has a task."""
+
+    def __init__(self, run: Run, overcut_weight: float) -> None:
+        self.run, self.overcut_weight = run, overcut_weight
+        self.progress = run.progress()
+
+    def target_share(self) -> float:
+        return float(self.progress["ideal_removed_mm3"] / self.progress["ideal_mm3"])
+
+    def observe(self, result: StepResult, removed_mm3: float) -> Observation:
+        tool_m = result.tool_position_m
+        distance = result.effects.get("protected_distance_mm", np.nan) * 1e-3
+        near = min(float(np.nan_to_num(distance, nan=_FAR_M)), _FAR_M)
+        observation: Observation = np.concatenate(
+            [tool_m - self.progress["target_centre_m"], result.tool_orientation_wxyz, result.hand_position_m - tool_m,
+             result.force_n, result.torque_nm, [removed_mm3, self.target_share(), near]]).astype(np.float32)
+        return observation
+
+    def reward(self, removed_mm3: float, is_damaged: bool) -> float:
+        """Of a step; before observe()."""
+        if removed_mm3 == 0:
+            return -float(is_damaged)
+        before, self.progress = self.progress, self.run.progress()
+        gained = self.progress["ideal_removed_mm3"] - before["ideal_removed_mm3"]
+        elsewhere = self.progress["removed_mm3"] - before["removed_mm3"] - gained
+        return float((gained - self.overcut_weight * elsewhere) / self.progress["ideal_mm3"]) - float(is_damaged)
+
+
 class MillingEnv:
+    """One scene, one episode after the other."""
+
     metadata: dict[str, Any] = {"render_modes": []}
     render_mode: str | None = None
     reward_range = (-float("inf"), float("inf"))
@@ -84,7 +117,6 @@ class MillingEnv:
         self.action_space = Box(-1, 1, (7,))
         self.observation_space = Box(-np.inf, np.inf, (sum(OBSERVED.values()),))
         self._random = np.random.default_rng()
-        self._target_m = self.sim.progress()["target_centre_m"]
         if not self.sim.waypoints:
             raise Error(f"{scene.path}: an environment begins where the scene's own hand does, and it has none")
         _, self._start_m, self._start_wxyz, _ = self.sim.waypoints[0]
@@ -104,10 +136,10 @@ class MillingEnv:
         self._is_fresh = False
         jitter = self._random.uniform(-1, 1, 3) * self.start_jitter_m
         self._hand_m, self._hand_wxyz = self._start_m + jitter, self._start_wxyz.copy()
-        self._progress = self.sim.progress()
+        self._observer = Observer(self.sim, self.overcut_weight)
         self._is_over = False
         result = self.sim.step(self._hand_m, self._hand_wxyz)
-        return self._observe(result, 0.0), {}
+        return self._observer.observe(result, 0.0), {}
 
     def step(self, action: ArrayLike) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         a = np.asarray(action, float)
@@ -123,12 +155,13 @@ class MillingEnv:
             removed += result.removed_mm3
             is_damaged |= "protected_damaged" in result.events
         assert result is not None
-        reward = self._reward(removed) - float(is_damaged)
-        observation = self._observe(result, removed)
-        terminated = is_damaged or self._share() >= self.done_share
+        reward = self._observer.reward(removed, is_damaged)
+        observation = self._observer.observe(result, removed)
+        share = self._observer.target_share()
+        terminated = is_damaged or share >= self.done_share
         truncated = self.sim.ticks * self.sim.period_s >= self.max_seconds
         self._is_over = terminated or truncated
-        info: dict[str, Any] = {"removed_mm3": removed, "target_share": self._share(), "is_damaged": is_damaged}
+        info: dict[str, Any] = {"removed_mm3": removed, "target_share": share, "is_damaged": is_damaged}
         if self._is_over and self.final_score:
             info["judgement"] = judgement = self.sim.judge()
             reward += judgement["total"]["score"] if judgement.get("passed", True) and "total" in judgement else 0
@@ -144,32 +177,12 @@ class MillingEnv:
         """The hand's poses of one step's ticks, evenly apart."""
         shares = np.arange(1, self.ticks_per_step + 1) / self.ticks_per_step
         positions = self._hand_m + shares[:, None] * move
-        orientations = np.array([_product(_rotation(share * turn), self._hand_wxyz) for share in shares])
+        orientations = np.array([product_of(rotation_of(share * turn), self._hand_wxyz) for share in shares])
         self._hand_m, self._hand_wxyz = positions[-1], orientations[-1] / np.linalg.norm(orientations[-1])
         return positions, orientations
 
-    def _share(self) -> float:
-        return float(self._progress["ideal_removed_mm3"] / self._progress["ideal_mm3"])
 
-    def _reward(self, removed: float) -> float:
-        if removed == 0:
-            return 0.0
-        before, self._progress = self._progress, self.sim.progress()
-        gained = self._progress["ideal_removed_mm3"] - before["ideal_removed_mm3"]
-        elsewhere = self._progress["removed_mm3"] - before["removed_mm3"] - gained
-        return float((gained - self.overcut_weight * elsewhere) / self._progress["ideal_mm3"])
-
-    def _observe(self, result: StepResult, removed: float) -> Observation:
-        tool_m = result.tool_position_m
-        distance = result.effects.get("protected_distance_mm", np.nan) * 1e-3
-        near = min(float(np.nan_to_num(distance, nan=_FAR_M)), _FAR_M)
-        observation: Observation = np.concatenate(
-            [tool_m - self._target_m, result.tool_orientation_wxyz, result.hand_position_m - tool_m, result.force_n,
-             result.torque_nm, [removed, self._share(), near]]).astype(np.float32)
-        return observation
-
-
-def _rotation(turn: NDArray[Any]) -> NDArray[Any]:
+def rotation_of(turn: NDArray[Any]) -> NDArray[Any]:
     """The quaternion w, x, y, z of a rotation vector."""
     angle = float(np.linalg.norm(turn))
     if angle < 1e-12:
@@ -177,5 +190,5 @@ def _rotation(turn: NDArray[Any]) -> NDArray[Any]:
     return np.concatenate([[np.cos(angle / 2)], np.sin(angle / 2) / angle * turn])
 
 
-def _product(a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:
+def product_of(a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:
     return np.array([a[0] * b[0] - a[1:] @ b[1:], *(a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:]))])
