@@ -85,7 +85,7 @@ def spaced(lines):
                 made.append("")
             in_list, line = True, indented(line)
         elif in_list and line.startswith("  "):
-            line = indented(line)
+            line = indented(line) if not before.strip() else line.lstrip()
         elif line and not before.strip():
             in_list = False
         made.append(line)
