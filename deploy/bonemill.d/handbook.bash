@@ -22,6 +22,8 @@ find_page() {
     [[ -n $word ]] || word=index
     mapfile -t named < <(find "$1" -path "$1/$word.html" -o -path "$1/*/$word.html" | sort)
     if [[ ${#named[@]} == 1 ]]; then echo "${named[0]}"; return; fi
+    named=("${named[@]#"$1/"}")
+    [[ ${#named[@]} == 0 ]] || fail "several pages of the handbook are called $2: ${named[*]%.html}"
     having=$(cd "$1" && grep -rliF --include='*.html' -- "$2" . | sed 's#^\./##; s#\.html$##' | sort | head -n 12 | paste -sd ' ')
     [[ -n $having ]] || fail "the handbook has no page $2, and none with that word: bonemill handbook alone opens its first page"
     fail "the handbook has no page $2; these have that word: $having"

@@ -73,9 +73,10 @@ set(CPACK_DEBIAN_DOC_PACKAGE_NAME bonemill-doc)
 set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_DOC_PACKAGE_SECTION doc)
 set(CPACK_DEBIAN_DOC_PACKAGE_SHLIBDEPS OFF)
-set(CPACK_DEBIAN_DOC_DESCRIPTION "documentation of the haptic bone-milling simulator
-Pages for who teaches with bonemill, runs its laboratory, does research on
-it, or changes it; with what was measured.")
+set(CPACK_DEBIAN_DOC_DESCRIPTION "handbook of the haptic bone-milling simulator
+Tutorials, how to, reference and explanation for who teaches with bonemill,
+runs its laboratory, does research on it, or changes it, to be read in a
+browser without a net: bonemill handbook.")
 
 # Each package says under which licence it is, and what has changed. deploy/package writes what depends on the version.
 foreach(component ${CPACK_COMPONENTS_ALL})

@@ -69,6 +69,9 @@ TEST_F(BonemillPc, TheHandbookOpensAtThePageThatAMessageNames) {
     rig_.setDisplay(false);
     EXPECT_EQ(open({"handbook", "security"}).out, page + "\n");
     expectRefusal(open({"handbook", "May Come"}), "these have that word: howto/security");
+    std::filesystem::create_directory(pages / "reference");
+    test::writeFile(pages / "reference/security.html", "its words");
+    expectRefusal(open({"handbook", "security"}), "are called security: howto/security reference/security");
     expectRefusal(open({"handbook", "xyzzy"}), "has no page xyzzy, and none with that word");
 }
 
