@@ -9,7 +9,7 @@ import shutil
 
 LINK = re.compile(r"(!?)\[([^]]*)\]\(([^)\s#]*)(#[^)\s]*)?\)")
 LIST_ITEM = re.compile(r"\s*([-*+]|\d+\.)\s")
-MARK = re.compile(r"<!--.*?-->\n?")
+MARK = re.compile(r"<!--=.*?-->\n?|^<!--.*?-->\n", re.MULTILINE)
 
 
 def anchor_of(heading):
@@ -70,9 +70,9 @@ class Staging:
 
 def spaced(lines):
     """The lines with what mkdocs wants around and within lists, and at headings."""
-    made, fenced, in_list = [], False, False
+    made, fenced, in_list, in_block = [], False, False, False  # in_block: a paragraph or table of its own within an item
     for line in lines:
-        before = made[-1] if made else ""
+        is_after_text = bool(made) and bool(made[-1].strip())
         if line.lstrip().startswith("```"):
             fenced = not fenced
             line = re.sub(r"^(```\w*).*", r"\1", line)
@@ -81,12 +81,13 @@ def spaced(lines):
         elif re.match(r"#+ ", line):
             line, in_list = f"{line} {{#{anchor_of(line.lstrip('#'))}}}", False
         elif LIST_ITEM.match(line):
-            if before.strip() and not in_list:
+            if is_after_text and (in_block or not in_list):
                 made.append("")
-            in_list, line = True, indented(line)
+            in_list, in_block, line = True, False, indented(line)
         elif in_list and line.startswith("  "):
-            line = indented(line) if not before.strip() else line.lstrip()
-        elif line and not before.strip():
+            in_block = in_block or not is_after_text
+            line = indented(line) if in_block else line.lstrip()
+        elif line and not is_after_text:
             in_list = False
         made.append(line)
     return made
