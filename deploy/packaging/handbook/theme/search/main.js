@@ -27,7 +27,7 @@ function article(section, words) {
   const link = document.createElement("a"), heading = document.createElement("h3"), text = document.createElement("p");
   link.href = section.location;
   link.textContent = section.title;
-  heading.append(link);
+  heading.append(link, " in " + section.location.replace(/\.html.*/, ""));
   text.textContent = excerpt(section.text, words);
   const whole = document.createElement("article");
   whole.append(heading, text);
