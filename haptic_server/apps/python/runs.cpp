@@ -51,19 +51,28 @@ py::dict runTicks(Run& run, size_t ticks, Tick&& tick) {
 
 using Buttons = py::array_t<uint32_t, py::array::c_style | py::array::forcecast>;
 
+// One number a row; null: none are given.
+template <class Array>
+auto rowsOfOne(const std::optional<Array>& array, py::ssize_t rows, const char* what) {
+    if (!array) return decltype(array->data()){nullptr};
+    if (array->ndim() != 1 || array->shape(0) != rows)
+        throw UserError(std::string(what) + ": expected an array of shape (" + std::to_string(rows) +
+                        ",), got " + shapeText(*array));
+    return array->data();
+}
+
 py::dict runHand(Run& run, const Numbers& positions, const std::optional<Numbers>& orientations,
-                 const std::optional<Buttons>& buttons) {
+                 const std::optional<Buttons>& buttons, const std::optional<Numbers>& times) {
     const double* const p = rowsIn(positions, -1, 3, "positions_m");
     const py::ssize_t rows = positions.shape(0);
     const double* const q = orientations ? rowsIn(*orientations, rows, 4, "orientations_wxyz") : nullptr;
     const bool is_one = buttons && buttons->ndim() == 0;
-    if (buttons && !is_one && (buttons->ndim() != 1 || buttons->shape(0) != rows))
-        throw UserError("buttons: expected one number or an array of shape (" + std::to_string(rows) +
-                        ",), got " + shapeText(*buttons));
-    const uint32_t* const b = buttons ? buttons->data() : nullptr;
+    const uint32_t* const b = is_one ? buttons->data() : rowsOfOne(buttons, rows, "buttons");
+    const double* const t = rowsOfOne(times, rows, "t_s");
     return runTicks(run, size_t(rows), [&](size_t n) -> const TickRecord& {
-        const uint32_t pressed = !b ? 0 : b[is_one ? 0 : n];
-        return run.run().step(handOf(p + 3 * n, q ? q + 4 * n : nullptr, pressed));
+        HandStep hand = handOf(p + 3 * n, q ? q + 4 * n : nullptr, !b ? 0 : b[is_one ? 0 : n]);
+        if (t) hand.t_s = t[n];
+        return run.run().step(hand);
     });
 }
 

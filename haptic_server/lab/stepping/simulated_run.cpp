@@ -1,6 +1,9 @@
 #include "haptic_server/lab/stepping/simulated_run.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
 
 #include "common/base/user_error.h"
 #include "haptic_server/core/tick/tick_once.h"
@@ -38,12 +41,22 @@ void SimulatedRun::chooseTool(size_t tool) {
     tools_.choose(tool);
 }
 
+void SimulatedRun::keep(const HandStep& hand) {
+    const Eigen::Vector3d& p = hand.X_WT.position;
+    const Eigen::Quaterniond& q = hand.X_WT.rotation;
+    done_.push_back({{p.x(), p.y(), p.z()},
+                     {q.w(), q.x(), q.y(), q.z()},
+                     hand.t_s.value_or(std::numeric_limits<double>::quiet_NaN()),
+                     hand.buttons,
+                     uint32_t(tools_.chosen())});
+}
+
 const TickRecord& SimulatedRun::tick(const HandStep& hand) {
-    if (keeps_inputs_) done_.push_back({hand, uint32_t(tools_.chosen())});
+    if (keeps_inputs_) keep(hand);
     DeviceInput input;
     input.X_WT_device = hand.X_WT;
     input.buttons = hand.buttons;
-    input.t_s = double(ticks()) * setup().tick.dt;
+    input.t_s = hand.t_s ? *hand.t_s : double(ticks()) * setup().tick.dt;
     return tickOnce(*tick_, input);
 }
 
@@ -57,16 +70,20 @@ RunCheckpoint SimulatedRun::checkpoint() const {
 void SimulatedRun::restore(const RunCheckpoint& checkpoint) {
     if (!keeps_inputs_) throw UserError("this run keeps no inputs, so it restores no checkpoint");
     const auto is_same = [](const RunCheckpoint::Done& a, const RunCheckpoint::Done& b) {
-        return a.tool == b.tool && a.hand.buttons == b.hand.buttons &&
-               a.hand.X_WT.position == b.hand.X_WT.position &&
-               a.hand.X_WT.rotation.coeffs() == b.hand.X_WT.rotation.coeffs();
+        return std::memcmp(&a, &b, sizeof a) == 0;
     };
     const std::vector<RunCheckpoint::Done>& wanted = *checkpoint.ticks_;
     if (done_.size() > wanted.size() || !std::equal(done_.begin(), done_.end(), wanted.begin(), is_same))
         reset();
     for (size_t n = done_.size(); n < wanted.size(); ++n) {
-        tools_.choose(wanted[n].tool);
-        step(wanted[n].hand);
+        const RunCheckpoint::Done& done = wanted[n];
+        HandStep hand;
+        hand.X_WT = {Eigen::Vector3d(done.p_WT),
+                     Eigen::Quaterniond(done.q_WT[0], done.q_WT[1], done.q_WT[2], done.q_WT[3])};
+        hand.buttons = done.buttons;
+        if (!std::isnan(done.t_s)) hand.t_s = done.t_s;
+        tools_.choose(done.tool);
+        step(hand);
     }
 }
 

@@ -19,10 +19,13 @@ class RunCheckpoint {
 
   private:
     friend class SimulatedRun;
+    // Packed: of a long run there are many.
     struct Done {
-        HandStep hand;
-        uint32_t tool = 0;
+        double p_WT[3], q_WT[4];  // w, x, y, z
+        double t_s;               // NaN: it has none of its own
+        uint32_t buttons, tool;
     };
+    static_assert(sizeof(Done) == 72);
     std::shared_ptr<const std::vector<Done>> ticks_;
 };
 
@@ -45,6 +48,7 @@ class SimulatedRun final : public SteppedRun {
   private:
     const TickRecord& tick(const HandStep& hand) override;
     void makeTick();
+    void keep(const HandStep& hand);
 
     size_t first_tool_;
     bool keeps_inputs_;

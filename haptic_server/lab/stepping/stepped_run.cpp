@@ -1,6 +1,7 @@
 #include "haptic_server/lab/stepping/stepped_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "common/base/user_error.h"
@@ -44,6 +45,7 @@ const TickRecord& SteppedRun::step(const HandStep& hand) {
     const Eigen::Quaterniond& q = hand.X_WT.rotation;
     if (!hand.X_WT.position.allFinite() || !q.coeffs().allFinite() || q.norm() == 0)
         throw UserError("the hand's pose is not finite, or its quaternion is 0: give metres, and w, x, y, z");
+    if (hand.t_s && !std::isfinite(*hand.t_s)) throw UserError("the tick's time is not finite: give seconds");
     return note(tick(hand));
 }
 

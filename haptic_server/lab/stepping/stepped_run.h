@@ -26,6 +26,7 @@ namespace bonemill {
 struct HandStep {
     Pose X_WT;
     uint32_t buttons = 0;
+    std::optional<double> t_s = {};  // without: a period after the tick before
 };
 
 // How much of a zone has been milled away, in m³.

@@ -13,7 +13,7 @@ DOWN = np.linspace([0, 0, 3e-3], [0.2e-3, 0.1e-3, 1.6e-3], 300)
 
 
 def written(path, way):
-    numbers = np.column_stack([np.arange(len(way["t_s"])) * 1e-3, way["positions_m"], way["orientations_wxyz"]])
+    numbers = np.column_stack([way["t_s"], way["positions_m"], way["orientations_wxyz"]])
     rows = (",".join(repr(float(x)) for x in row) + f",{pressed}\n" for row, pressed in zip(numbers, way["buttons"]))
     path.write_text("t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons\n" + "".join(rows))
     return path
@@ -105,6 +105,8 @@ class OfABlock(Folder):
             "quaternion is 0": lambda: sim.step([0, 0, 0], [0, 0, 0, 0]),
             r"positions_m: expected an array of shape \(N, 3\)": lambda: sim.run(np.zeros((5, 2))),
             r"orientations_wxyz: .*\(5, 4\)": lambda: sim.run(np.zeros((5, 3)), np.zeros((4, 4))),
+            r"t_s: expected an array of shape \(5,\)": lambda: sim.run(np.zeros((5, 3)), t_s=[0, 1]),
+            "time is not finite": lambda: sim.run(np.zeros((1, 3)), t_s=[np.inf]),
             "buttons: expected": lambda: sim.run(np.zeros((5, 3)), buttons=[1, 2]),
             "no such scene file": lambda: bonemill.Scene.load(self.folder / "no.textproto"),
             "unknown field": lambda: scene.simulation(settings=["volume.colour=3"]),
@@ -202,7 +204,7 @@ class OfShippedScenes(Folder):
                 told = run(BIN / "haptic_server", "simulate", "--scene", file, "--trajectory",
                            written(self.folder / "way.csv", way))
                 self.assertEqual(told.returncode, 0, told.stderr)
-                sim.run(*(way[name] for name in ("positions_m", "orientations_wxyz", "buttons")))
+                sim.run(**way)
                 self.assertEqual(f"{sim.state_hash:016x}", json.loads(told.stdout)["state_hash"])
 
 

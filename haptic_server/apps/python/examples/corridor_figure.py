@@ -19,7 +19,7 @@ def main():
     options = parser.parse_args()
     sim = bonemill.Scene.load(options.scene).simulation()
     way = bonemill.scripted_hand(sim)
-    run = sim.run(way["positions_m"], way["orientations_wxyz"], way["buttons"])
+    run = sim.run(**way)
     force, torque = (np.linalg.norm(run[name], axis=1) for name in ("force_n", "torque_nm"))
     milling = run["removed_voxels"] > 0
     print(f"{sim.ticks} ticks, {run['removed_mm3'].sum():.2f} mm3 removed in {milling.sum()} of them; force "
