@@ -79,7 +79,10 @@ TEST_F(LessonPicture, SessionsToChooseFrom) {
 }
 
 TEST_F(LessonPicture, TheSummaryOfAnAttempt) {
+    session_.class_folder = "/class";
+    session_.has_launcher = true;
     endAttempt();
+    lesson_.mutable_attempts(2)->mutable_verdict()->set_results("third");
     EXPECT_EQ(test::goldenProblem(draw(), "lesson_summary"), "");
 }
 
