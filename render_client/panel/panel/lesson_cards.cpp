@@ -94,7 +94,9 @@ void LessonCards::buildTop() {
     if (!is_clock_alone) ImGui::PushTextWrapPos();
     if (attempt_s) sayClock(*attempt_s);
     if (is_changing) {
-        ImGui::Text("Changing to %s \u2026", sceneTitle(lesson, lesson.changing_to()).c_str());
+        const topics::SceneChoice* const next = sceneOf(lesson, lesson.changing_to());
+        ImGui::Text("Changing to %s%s \u2026", sceneTitle(lesson, lesson.changing_to()).c_str(),
+                    next && next->is_made_first() ? ", whose bone is made first: some seconds" : "");
     } else if (!is_clock_alone) {
         ImGui::TextColored(colourOfCard(kHudLabelColour), "%s", sceneTitle(lesson, scene->id()).c_str());
         ImGui::TextUnformatted(scene->task().c_str());

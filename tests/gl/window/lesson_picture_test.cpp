@@ -67,6 +67,7 @@ double coveredShare(const Picture& picture) {
 }
 
 TEST_F(LessonPicture, TheListOfScenes) {
+    lesson_.mutable_scenes(1)->set_is_made_first(true);
     switchPanel();
     EXPECT_EQ(test::goldenProblem(draw(), "lesson_scenes"), "");
 }

@@ -48,6 +48,13 @@ TEST_F(LessonClicks, TheMouseAloneOpensThePanelAndChooses) {
     EXPECT_TRUE(wishes_.commands.empty()) << "it has a problem";
 }
 
+TEST_F(LessonClicks, ASceneWhoseBoneIsMadeFirstTakesOneClick) {
+    lesson_.mutable_scenes(1)->set_is_made_first(true);
+    switchPanel();
+    click("Pedicle of a vertebra");
+    EXPECT_EQ(command().choose_scene(), "pedicle");
+}
+
 TEST_F(LessonClicks, ARowIsClickedAnywhereAndOnlyByAWholeClick) {
     switchPanel();
     layOut();
