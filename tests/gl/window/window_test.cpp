@@ -166,6 +166,17 @@ TEST_F(Window, IsNoLargerThanTheScreenHasRoomFor) {
     }
 }
 
+TEST_F(Window, WhatIsCopiedIsOnTheDisplaysClipboard) {
+    session_.tune();
+    start("me", "instructor");
+    key("m");
+    PanelTwin panel(display_, session_, Viewer::INSTRUCTOR);
+    panel.click("Tuning");
+    panel.click("Copy");
+    const std::string text = "coupling { damping_time_ms: 1.5 }\naccuracy { preset: BALANCED }";
+    waitFor("the scene text on the clipboard", [&] { return display_.clipboard() == text; });
+}
+
 TEST_F(Window, EveryModeByKeyLooksAsItDid) {
     WindowedViewer& viewer = start("me", "operator");
     key("Tab");  // the figures change
