@@ -65,8 +65,7 @@ void Comparison::open(Wish wish) {
     takeAway();
     if (wish.isNone()) return;
     if (!wish.attempt)
-        wish.attempt =
-            openCompared({resultOfName(folders_, wish.result), 0}, folders_, shown_.recording);
+        wish.attempt = openCompared({resultOfName(folders_, wish.result), 0}, folders_, shown_.recording);
     begin(std::move(*wish.attempt));
 }
 

@@ -32,7 +32,8 @@ constexpr size_t kRingRecords = 8192, kRingCuts = 8192;
 constexpr auto kRecordPeriod = 4ms, kLookBeside = 4ms;
 constexpr int64_t kLookEveryNs = 20 * kNsPerMillisecond;
 
-// A viewer's choice that cannot be compared leaves the replay alone; what was asked for at the start is wrong.
+// A viewer's choice that cannot be compared leaves the replay alone; what was asked for at the start is
+// wrong.
 std::optional<ComparedAttempt> openAgainst(const ReplayOptions& options, const Recording& shown) {
     if (options.against.file.empty()) return std::nullopt;
     try {

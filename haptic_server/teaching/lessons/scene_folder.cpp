@@ -168,8 +168,8 @@ void makeMissing(const ListedScene& scene, const SceneMaker& maker) {
     const Captured made = runCaptured({maker.program, "prepare", scene.file});
     if (made.exit_code == 0 && !lacksFiles(scene)) return;
     const std::string why = made.err.substr(0, made.err.find_last_not_of('\n') + 1);
-    throw UserError("what " + scene.choice.id() + " reads could not be made: " +
-                    printableLine(why.substr(why.rfind('\n') + 1)));
+    throw UserError("what " + scene.choice.id() +
+                    " reads could not be made: " + printableLine(why.substr(why.rfind('\n') + 1)));
 }
 
 std::string sceneTable(const std::vector<ListedScene>& scenes) {

@@ -31,7 +31,7 @@ std::string accuracyFiguresOf(const std::string& scene_file);
 struct ListedScene {
     topics::SceneChoice choice;
     std::string file;
-    std::vector<NamedFile> files = {};                 // all that the scene reads
+    std::vector<NamedFile> files = {};                // all that the scene reads
     std::vector<std::filesystem::path> missing = {};  // of these, when it was listed
 };
 

@@ -66,8 +66,8 @@ class BonemillSession : public testing::Test {
 TEST_F(BonemillSession, OneOrderMakesThePhantomOfAnotherSceneAndChangesToIt) {
     std::filesystem::create_symlink(test::binDir() + "/make_phantom", rig_.programFile("make_phantom"));
     const std::string domain = std::to_string(testDomain());
-    Process session(rig_.words({"start", "minimal", "--session", session_, "--device", "simulated", "--no-viewer",
-                                "--domain", domain}));
+    Process session(rig_.words({"start", "minimal", "--session", session_, "--device", "simulated",
+                                "--no-viewer", "--domain", domain}));
     ASSERT_TRUE(haveMet("device", "haptic_server answers", 1)) << session.outSoFar() << logOf("server");
     const std::string phantom = rig_.folder() / "data/bonemill/build/data/clay_block.nrrd";
     ASSERT_FALSE(std::filesystem::exists(phantom));

@@ -245,7 +245,8 @@ TEST_F(ComparedReplay, WhatCannotBeComparedIsRefusedInOneLine) {
            "in another version than what is replayed: compare attempts of the same scene"}}) {
         const test::Finished finished = test::run(server({"--against", file}));
         EXPECT_EQ(finished.exit_code, 2) << file;
-        for (const std::string& word : {std::string("error: --against: "), part, std::string("lists attempts")})
+        for (const std::string& word :
+             {std::string("error: --against: "), part, std::string("lists attempts")})
             EXPECT_NE(finished.err.find(word), std::string::npos) << finished.err;
     }
 }

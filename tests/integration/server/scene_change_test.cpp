@@ -279,9 +279,10 @@ TEST_F(SceneChange, TheSimulatedHandBeginsAnewWithAnAttemptAndRestsAfterIt) {
 
 TEST_F(SceneChange, WhatASceneLacksIsMadeWhenItIsChosen) {
     for (const char* name : {"late", "lost", "never"}) writeScene(name, std::string(name) + ".nrrd", 2);
-    test::writeFile(folder_ / "launcher", "#!/bin/bash\ncd \"${0%/*}\"\n[[ $1 == prepare ]] || exit 3\n"
-                                          "if [[ $2 == */late.textproto ]]; then cp slab.nrrd late.nrrd; exit; fi\n"
-                                          "echo 'bonemill: it is no phantom' >&2\nexit 2\n");
+    test::writeFile(folder_ / "launcher",
+                    "#!/bin/bash\ncd \"${0%/*}\"\n[[ $1 == prepare ]] || exit 3\n"
+                    "if [[ $2 == */late.textproto ]]; then cp slab.nrrd late.nrrd; exit; fi\n"
+                    "echo 'bonemill: it is no phantom' >&2\nexit 2\n");
     std::filesystem::permissions(folder_ / "launcher", std::filesystem::perms::owner_all);
     std::vector<std::string> words = server();
     words.insert(words.end(), {"--launcher", folder_ / "launcher", "--makes=late", "--makes=never"});

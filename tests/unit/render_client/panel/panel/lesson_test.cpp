@@ -261,8 +261,7 @@ TEST_F(LessonClicks, AllOfASummarysButtonsAreInItsCard) {
     PixelPoint end = panel_.find("All attempts as CSV").value();
     end.x += kAlongTheLabel;
     send(MouseMoveEvent{end});
-    for (const bool is_down : {true, false})
-        send(MouseButtonEvent{MouseButton::kLeft, is_down, end, {}, 0});
+    for (const bool is_down : {true, false}) send(MouseButtonEvent{MouseButton::kLeft, is_down, end, {}, 0});
     EXPECT_TRUE(wishes_.save_attempts);
 }
 
