@@ -115,6 +115,7 @@ class PanelTwin : test::ControlledPanel {
     PanelTwin(const VirtualDisplay& display, test::ShownSession& shown, Viewer::Role role)
         : display_(display), shown_(shown) {
         session_.role = role;
+        session_.tool = &tool_;  // the panel's last part shows it
         switchPanel();
         lookAtSession();
     }
@@ -156,6 +157,7 @@ class PanelTwin : test::ControlledPanel {
 
     const VirtualDisplay& display_;
     test::ShownSession& shown_;
+    const topics::ToolState tool_;
 };
 
 TEST_F(Window, IsNoLargerThanTheScreenHasRoomFor) {
