@@ -235,7 +235,7 @@ def effect_lines(runs):
         ]
         if figures:
             lines.append(f"- {run['name']}: " + ", ".join(figures) + ".")
-    return ["", "Effects (docs/teach/effects.md):", "", *lines] if lines else []
+    return ["", "Effects (docs/reference/effects.md):", "", *lines] if lines else []
 
 
 def verdict(runs):
@@ -298,7 +298,7 @@ def run_section(run):
         ]
     if run["sound"]:
         lines += [f"What it sounded like: [{run['sound']}]({run['sound']}).", ""]
-    lines += [f"Every tick: [{run['trace']}]({run['trace']}) (columns: docs/research/simulate.md).", ""]
+    lines += [f"Every tick: [{run['trace']}]({run['trace']}) (columns: docs/reference/simulate.md).", ""]
     return lines
 
 
@@ -320,7 +320,7 @@ LIMITS = """- Hand and device are simulated: a hand impedance that follows waypo
 - The thesis' runs were made by hand on other bone with a scaling factor of 3; the rates compare, the curves only in kind.
 - All three programs shared this machine, and the viewer drew on the processor. On two cores that costs latency.
 - The force is that of the scene's accuracy preset (`balanced` unless it says otherwise); its error against a converged
-  solution: docs/research/accuracy.md. Removal is by time, as in the thesis, and so depends on more than force;
+  solution: docs/explanation/accuracy.md. Removal is by time, as in the thesis, and so depends on more than force;
   only in `pedicle` by energy.
 - cyclictest ran right before each run, while the server idled, not during it: it would disturb what it measures."""
 

@@ -30,11 +30,11 @@ std::string whyNotOrder(Viewer::Role role, CommandAction action, OpenTo open_to)
         return "this scene is an examination; only instructors command it";
     if (open_to == OpenTo::kInstructors) return "only instructors command this session (--instructor-only)";
     if (action == topics::Command::kShutDown && role != Viewer::VIEWER)
-        return "only an instructor ends the session (docs/lab/security.md)";
+        return "only an instructor ends the session (docs/howto/security.md)";
     if (role == Viewer::EXAMINER)
-        return "an examiner leaves bone, tool and device to operator and instructor (docs/lab/security.md)";
-    if (role == Viewer::OPERATOR) return "only an instructor may that (docs/lab/security.md)";
-    return "a viewer only looks; to do this, join again as operator (docs/lab/security.md)";
+        return "an examiner leaves bone, tool and device to operator and instructor (docs/howto/security.md)";
+    if (role == Viewer::OPERATOR) return "only an instructor may that (docs/howto/security.md)";
+    return "a viewer only looks; to do this, join again as operator (docs/howto/security.md)";
 }
 
 bool mayOrderAnything(Viewer::Role role) {

@@ -1,5 +1,5 @@
 // Says which role may order what of the server, and how often, by the rows of command_rows.h: the only place
-// that decides it (docs/lab/security.md has the same table). It is thread-safe.
+// that decides it (docs/howto/security.md has the same table). It is thread-safe.
 #pragma once
 
 #include <cstdint>

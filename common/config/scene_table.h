@@ -6,7 +6,7 @@
 namespace bonemill {
 
 // Makes a Markdown table, one row per field, in the order of proto/scene.proto, for
-// --describe-scene and docs/lab/scene.md.
+// --describe-scene and docs/reference/scene.md.
 std::string describeDefaults();
 
 }  // namespace bonemill

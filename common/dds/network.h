@@ -1,5 +1,5 @@
 // Chooses the network that this process joins: a profile of deploy/dds, this PC's interface, peers
-// (docs/lab/network.md). It is not for the tick.
+// (docs/howto/network.md). It is not for the tick.
 #pragma once
 
 #include <cstdint>

@@ -9,7 +9,7 @@ namespace bonemill::dds {
 
 inline void addNetworkOptions(CLI::App& app, NetworkOptions& network) {
     app.add_option("--profile", network.profile,
-                   "network: one-pc (default), lab, classroom, or a Cyclone DDS file (docs/lab/network.md)")
+                   "network: one-pc (default), lab, classroom, or a Cyclone DDS file (docs/howto/network.md)")
         ->type_name("NAME|FILE.xml");
     app.add_option("--interface", network.interface,
                    "this PC's interface to the others, name or IPv4 address; for lab and classroom")
@@ -19,7 +19,7 @@ inline void addNetworkOptions(CLI::App& app, NetworkOptions& network) {
         ->expected(1)
         ->take_all();
     app.add_option("--secure", network.secure,
-                   "folder of deploy/security/make-session: only its people can join (docs/lab/security.md)")
+                   "folder of deploy/security/make-session: only its people join (docs/howto/security.md)")
         ->type_name("DIR");
 }
 

@@ -94,7 +94,7 @@ Entity::~Entity() {
 Entity requireEntity(int32_t result, const std::string& what) {
     if (result < 0) {
         throw UserError("cannot create " + what + " (" + dds_strretcode(result) +
-                        "): check the network interfaces and the profile (docs/lab/network.md)");
+                        "): check the network interfaces and the profile (docs/howto/network.md)");
     }
     return Entity(result);
 }

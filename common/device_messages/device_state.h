@@ -1,5 +1,5 @@
-// The states of the device that hold whatever hand it has, and the causes that stop it. docs/lab/safety.md
-// says what leads from one to another.
+// The states of the device that hold whatever hand it has, and the causes that stop it.
+// docs/explanation/safety.md says what leads from one to another.
 //
 // The numbers are those in shared memory, on the wire and in the topics: a state or cause keeps its number
 // for ever.

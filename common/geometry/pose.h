@@ -1,6 +1,6 @@
 // Here are rigid poses, the exponential and the logarithm of rotations, and wrenches.
 //
-// The conventions are those of docs/develop/frames.md: X_AB maps coordinates in frame B to frame A, and
+// The conventions are those of docs/reference/frames.md: X_AB maps coordinates in frame B to frame A, and
 // increments in the world are p+ = p + x, R+ = exp(omega~) R. Units are m, rad, N, N·m. Every function is
 // RT-safe and thread-safe, and none throws.
 #pragma once

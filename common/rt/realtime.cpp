@@ -106,7 +106,7 @@ void schedule(int priority, RealtimeReport& report) {
     std::string sentence =
         "No SCHED_FIFO at priority " + std::to_string(priority) + " (" + std::strerror(error) + ")";
     if (error == EPERM) {
-        sentence += ": raise 'rtprio' for this user (docs/lab/realtime.md says how)";
+        sentence += ": raise 'rtprio' for this user (docs/howto/realtime.md says how)";
     }
     report.missing.push_back(sentence + "; other programs can delay every tick.");
 }
@@ -162,7 +162,7 @@ RealtimeReport lockMemory() {
     if (!reason.empty()) {
         report.missing.push_back(
             "Memory is not locked (" + reason +
-            "): set 'memlock' to unlimited for this user (docs/lab/realtime.md says how); "
+            "): set 'memlock' to unlimited for this user (docs/howto/realtime.md says how); "
             "a page fault can delay a tick by milliseconds.");
     }
     return report;

@@ -1,5 +1,5 @@
-// The folder of --secure: what proves to the others of a session who this program is (docs/lab/security.md).
-// It is not for the tick.
+// The folder of --secure: what proves to the others of a session who this program is
+// (docs/howto/security.md). It is not for the tick.
 #pragma once
 
 #include <ctime>

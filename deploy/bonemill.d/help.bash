@@ -14,6 +14,7 @@ Usage: bonemill COMMAND [options]
   invite NAME      let somebody join a session in a browser: prints a link and its QR code
   replay [FILE]    show a recorded session again, the last one or FILE
   doctor           what this PC lacks, and what to type
+  handbook [PAGE]  read how to use all this, in a browser
 `bonemill COMMAND --help` says more, `bonemill --version` which one this is.
 TEXT
 }
@@ -36,7 +37,7 @@ TEXT
 
 network_options() {
     cat <<'TEXT'
-  --profile P       network: one-pc, lab, classroom, or a Cyclone DDS file (docs/lab/network.md)
+  --profile P       network: one-pc, lab, classroom, or a Cyclone DDS file (docs/howto/network.md)
   --interface I     this PC's interface to the others
   --peer ADDRESS    a PC to look for where multicast does not work; may be repeated
 TEXT
@@ -72,7 +73,7 @@ usage_of() {  # COMMAND
         invite)
             echo "Usage: bonemill invite NAME [options]"
             echo "Prints a link, and its QR code, with which NAME joins a session of this PC in a browser; the session's port for"
-            echo "guests is open for as long as this command runs (docs/lab/gateway.md)."
+            echo "guests is open for as long as this command runs (docs/howto/gateway.md)."
             echo "  --session N       number of the session (default: the one that runs)"
             echo "  --role R          observer (default), operator, instructor or examiner"
             echo "  --people N        so many may come with the link (default 1)"
@@ -87,7 +88,7 @@ usage_of() {  # COMMAND
             echo "                    attempt's result (results/*.json): its recording, from 3 s before the worst moment on"
             echo "  --at S            begin at this second of the session"
             echo "  --against OTHER   compare with another attempt at the same scene, a recording (its last attempt) or a result:"
-            echo "                    its tool goes along as a ghost, and colours tell who has removed what (docs/teach/replay.md)"
+            echo "                    its tool goes along as a ghost, and colours tell who has removed what (docs/howto/replay.md)"
             echo "  --clip FILE.mp4   no window: write the seconds around --at (of a result: around its worst moment) as a video"
             echo "  --seconds T       so many of them (default 10)"
             echo "  --view A,E,D,X,Y,Z  the clip's camera: azimuth, elevation (degrees), distance, target (mm); default: the scene's"
@@ -113,5 +114,10 @@ usage_of() {  # COMMAND
             echo "Says what this PC lacks, and what to type: programs, real time, network (of interface I, and a firewall's ports"
             echo "for domain D), display, OpenGL, devices, what was left running. It installs nothing. The exit code is 1 when no"
             echo "session can be started." ;;
+        handbook)
+            echo "Usage: bonemill handbook [PAGE]"
+            echo "Opens the handbook in the browser, and prints where it lies: tutorials, how to, reference, explanation."
+            echo "  PAGE              a page as messages name it (docs/howto/security.md), or its name (security); another word is"
+            echo "                    looked for, and the pages are named that have it" ;;
     esac
 }

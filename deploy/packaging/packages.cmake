@@ -7,7 +7,10 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
-set(CPACK_COMPONENTS_ALL session viewer doc)
+set(CPACK_COMPONENTS_ALL session viewer library dev doc)
+if(TARGET bonemill_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
@@ -44,6 +47,28 @@ set(CPACK_DEBIAN_VIEWER_PACKAGE_DEPENDS "fonts-dejavu-core, iproute2, libgl1, op
 set(CPACK_DEBIAN_VIEWER_PACKAGE_RECOMMENDS "xdg-utils")
 set(CPACK_DEBIAN_VIEWER_PACKAGE_SUGGESTS "ffmpeg, qrencode")
 
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libbonemill${PROJECT_VERSION_MAJOR})
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "haptic bone milling for programs (library)
+The tick of a bone-milling session, one call a tick: a hand goes in, force,
+contact and removed bone come out. It needs no device and no other process.")
+set(CPACK_COMPONENT_DEV_DEPENDS library)
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME bonemill-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_DEV_DESCRIPTION "haptic bone milling for programs (header)
+What compiles against libbonemill: one header, find_package(bonemill), and an
+example.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-bonemill)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "bonemill, gnuplot-nox")
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "haptic bone milling for Python
+The tick of a bone-milling session, one call a tick or whole arrays at once;
+recorded sessions, run again to the bit or on with another hand; a learning
+environment with Gymnasium's interface.")
+
 set(CPACK_DEBIAN_DOC_PACKAGE_NAME bonemill-doc)
 set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_DOC_PACKAGE_SECTION doc)
@@ -53,7 +78,7 @@ Pages for who teaches with bonemill, runs its laboratory, does research on
 it, or changes it; with what was measured.")
 
 # Each package says under which licence it is, and what has changed. deploy/package writes what depends on the version.
-foreach(component session viewer doc)
+foreach(component ${CPACK_COMPONENTS_ALL})
   string(TOUPPER ${component} upper)
   set(folder share/doc/${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${folder} RENAME copyright COMPONENT ${component})

@@ -1,6 +1,6 @@
-// The laws of other schools have this in common, beside which our own is judged (docs/research/laws.md): the
-// spring between hand and tool, which all of them share with the gradient law so that only contact differs,
-// and what they are told while ticks go on.
+// The laws of other schools have this in common, beside which our own is judged (docs/explanation/laws.md):
+// the spring between hand and tool, which all of them share with the gradient law so that only contact
+// differs, and what they are told while ticks go on.
 //
 // The spring is Barbič and James' static virtual coupling that saturates; the relaxing spring and the damping
 // of the gradient law are not part of it. All of it is RT-safe but for construction, for the tick thread

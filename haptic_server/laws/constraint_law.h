@@ -6,7 +6,7 @@
 // bodies with surface properties", IEEE TVCG 13(3), 2007, and for live volumes Chan, Conti, Blevins and
 // Salisbury, "Constraint-based six degree-of-freedom haptic rendering of volume-embedded isosurfaces", World
 // Haptics 2011. The metric is the coupling's stiffness in place of a mass; the contacts are the bone's points
-// against the tool's exact distance. docs/research/laws.md has the equations.
+// against the tool's exact distance. docs/explanation/laws.md has the equations.
 #pragma once
 
 #include "haptic_server/laws/blocked_motion.h"

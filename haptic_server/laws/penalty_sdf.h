@@ -5,7 +5,7 @@
 // After Barbič and James, "Six-DoF haptic rendering of contact between geometrically complex reduced
 // deformable models", IEEE Transactions on Haptics 1(1), 2008, without deformation. The roles are exchanged:
 // here the points are the bone's, whose shell follows the milling, and the field is the tool's, which never
-// changes; a field of the bone would have to be made anew with every voxel. docs/research/laws.md has the
+// changes; a field of the bone would have to be made anew with every voxel. docs/explanation/laws.md has the
 // equations.
 #pragma once
 

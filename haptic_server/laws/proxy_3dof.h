@@ -3,7 +3,7 @@
 //
 // After Zilles and Salisbury, "A constraint-based god-object method for haptic display", IROS 1995, with the
 // ball in place of their point after Ruspini, Kolarov and Khatib, "The haptic display of complex graphical
-// environments", SIGGRAPH 1997. docs/research/laws.md says what it is good for.
+// environments", SIGGRAPH 1997. docs/explanation/laws.md says what it is good for.
 #pragma once
 
 #include "haptic_server/core/tool/shape_field.h"

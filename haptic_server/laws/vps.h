@@ -7,8 +7,8 @@
 // coupling of Wan and McNeely, "Quasi-static approximation for 6 degrees-of-freedom haptic rendering", IEEE
 // Visualization 2003. Their map is precomputed; this one is the live density against the iso-value, so that
 // milled bone is felt at once. It knows no distance: below the surface voxel the point looks for it along its
-// normal, kLayers voxels far, in place of their distance field of some layers. docs/research/laws.md has the
-// equations.
+// normal, kLayers voxels far, in place of their distance field of some layers. docs/explanation/laws.md has
+// the equations.
 #pragma once
 
 #include <cstdint>

@@ -352,7 +352,7 @@ std::optional<ClientOptions> parseOptions(int argc, const char* const* argv) {
     RawOptions raw;
     CLI::App app{
         "Shows the session of a haptic_server in a window, or off screen as pictures "
-        "(docs/teach/viewer.md)."};
+        "(docs/reference/viewer.md)."};
     addOptions(app, raw, options);
     if (!parseCommandLine(app, argc, argv, "render_client")) return std::nullopt;
     return convert(raw, options);

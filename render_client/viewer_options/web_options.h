@@ -1,5 +1,5 @@
 // Options of render_client that have to do with gateways: to be one (--serve), to be or use a relay (--relay,
-// --via), to reach a session through one (--connect). docs/lab/gateway.md says how they meet.
+// --via), to reach a session through one (--connect). docs/howto/gateway.md says how they meet.
 #pragma once
 
 #include <cstdint>

@@ -95,7 +95,7 @@ void run(const DensitiesOptions& options) {
     nlohmann::json json;
     for (const std::string& file : options.scenes) {
         const LoadedScene loaded = loadScene(file);
-        Simulation simulation = makeSimulation(loaded);
+        SceneSetup simulation = setUpScene(loaded);
         BoneHistory history(*simulation.bone);
         const DensitySource source(*simulation.bone, history, simulation.tick.effects.properties.get());
         DensityEncoder encoder(uint16_t(

@@ -20,11 +20,11 @@ struct EffectsOptions {
     std::string json;
 };
 
-Simulation simulationOf(const EffectsOptions& o, const char* law) {
+SceneSetup simulationOf(const EffectsOptions& o, const char* law) {
     const test::TemporaryFolder folder;
     test::writeBlock(folder.path().string(), o.block);
     test::writeScene(folder / "scene.textproto", test::everyEffectScene(o.block, law));
-    return makeSimulation(loadScene(folder / "scene.textproto"));
+    return setUpScene(loadScene(folder / "scene.textproto"));
 }
 
 nlohmann::json toJson(const TickTimes& us) {
@@ -68,7 +68,7 @@ nlohmann::json print(const EffectCosts& costs, const std::string& title) {
 }
 
 EffectCosts costsOf(const EffectsOptions& o, const char* law) {
-    Simulation simulation = simulationOf(o, law);
+    SceneSetup simulation = simulationOf(o, law);
     const std::vector<DeviceInput> path =
         weave(simulation.bone->volume,
               {.burr_radius = o.block.burr_radius_mm * kMillimetre, .depth = 0.5e-3, .ticks = o.ticks});

@@ -69,7 +69,7 @@ class TimedIo final : public TickIo {
 // What is run is timed on one bone, which is put back before each round.
 class HeavyCase {
   public:
-    HeavyCase(std::string name, Simulation simulation, FixedTickConfig config, std::vector<DeviceInput> path)
+    HeavyCase(std::string name, SceneSetup simulation, FixedTickConfig config, std::vector<DeviceInput> path)
         : name_(std::move(name)),
           simulation_(std::move(simulation)),
           config_(std::move(config)),
@@ -110,7 +110,7 @@ class HeavyCase {
 
   private:
     std::string name_;
-    Simulation simulation_;
+    SceneSetup simulation_;
     FixedTickConfig config_;
     std::vector<DeviceInput> path_;
     std::unique_ptr<BoneHistory> history_;
@@ -120,7 +120,7 @@ class HeavyCase {
 HeavyCase sceneCase(const std::string& name, const std::string& file) {
     const LoadedScene loaded = loadScene(file);
     const OperatorPath hand = scenarioOf(loaded.scene).path;
-    Simulation simulation = makeSimulation(loaded);
+    SceneSetup simulation = setUpScene(loaded);
     const FixedTickConfig config = simulation.fixedTick();
     std::vector<DeviceInput> path(size_t(hand.duration() / config.dt), DeviceInput{});
     for (size_t n = 0; n < path.size(); ++n) {
@@ -145,7 +145,7 @@ constexpr Wide kWide[] = {{WideEffects::kNone, "no effect"},
                           {WideEffects::kEnergyRemoval, "energy_removal alone"},
                           {WideEffects::kAllOfMastoid, "all of mastoid's"}};
 
-Simulation wideSimulation(double voxel_mm, WideEffects which) {
+SceneSetup wideSetup(double voxel_mm, WideEffects which) {
     const test::EveryEffectBlock block{.edge = int(kBlockMm / voxel_mm),
                                        .voxel_mm = voxel_mm,
                                        .burr_radius_mm = kWideRadiusMm,
@@ -165,7 +165,7 @@ Simulation wideSimulation(double voxel_mm, WideEffects which) {
     const test::TemporaryFolder folder;
     test::writeBlock(folder.path().string(), block);
     test::writeScene(folder / "scene.textproto", scene);
-    return makeSimulation(loadScene(folder / "scene.textproto"));
+    return setUpScene(loadScene(folder / "scene.textproto"));
 }
 
 // The ball sinks in to its middle, then goes quickly over the face, row beside row.
@@ -198,7 +198,7 @@ std::vector<DeviceInput> rowsOver(const VoxelVolume& volume, double dt) {
 }
 
 HeavyCase wideCase(const std::string& name, double voxel_mm, WideEffects effects) {
-    Simulation simulation = wideSimulation(voxel_mm, effects);
+    SceneSetup simulation = wideSetup(voxel_mm, effects);
     FixedTickConfig config = simulation.fixedTick();
     if (effects == WideEffects::kNone) config.effects = {};
     std::vector<DeviceInput> path = rowsOver(simulation.bone->volume, config.dt);

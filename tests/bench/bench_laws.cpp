@@ -1,5 +1,6 @@
 // Every contact law slides a ball, and a drill that leans on its rim, over a flat frictionless face askew in
-// the voxels, from burrs of half a voxel to burrs of many, for `haptic_bench laws` (docs/research/laws.md).
+// the voxels, from burrs of half a voxel to burrs of many, for `haptic_bench laws`
+// (docs/explanation/laws.md).
 //
 // The hand is 0.3 mm below the face's surface and moves at 5 mm/s. The figures are: the force along the
 // normal in per cent of what a rigid tool on the exact face would be felt with; the force along the face,

@@ -1,6 +1,6 @@
 // Guests of a gateway, as many as are asked for: do all come in and get the whole model, what is each sent,
-// and what does that cost the programs on the way (docs/lab/gateway.md)? They take what comes as a page does,
-// and draw nothing.
+// and what does that cost the programs on the way (docs/howto/gateway.md)? They take what comes as a page
+// does, and draw nothing.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fstream>

@@ -34,7 +34,7 @@ void run(double minutes, int jumps) {
     const int64_t load_ns = monotonicNowNs();
     const Recording recording(session.journal);
     const LoadedScene scene = recording.scene();
-    const Simulation simulation = makeSimulation(scene);
+    const SceneSetup simulation = setUpScene(scene);
     const Recording::Bones bones = recording.readBones(*simulation.bone);
     std::printf("loaded in %.2f s, %zu states of the bone, %.0f MB of memory in all\n", secondsSince(load_ns),
                 bones.keyframes.size(), double(residentBytesOf(getpid())) / 1e6);

@@ -203,7 +203,7 @@ int main(int argc, char** argv) {
     if (argc % 2 == 0) {
         std::puts(
             "zwidth_bench [--out DIR] [--variant NAME] [--rate HZ]: the Z-width by loop rate, see "
-            "docs/research/stability.md");
+            "docs/explanation/stability.md");
         return 2;
     }
     const auto valueOf = [&](const char* option) -> const char* {

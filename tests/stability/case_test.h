@@ -6,7 +6,7 @@
 // figure beyond the bound, so that the documentation's table stays true. With BONEMILL_STABILITY_LAWS=1 every
 // case is measured for every law of another school as well, and judged nowhere: the suite Reported. Each run
 // prints its figure and appends it to the CSV file named by BONEMILL_STABILITY_REPORT (case, variant,
-// measured, bound, unit, pass); docs/research/stability.md is filled from it.
+// measured, bound, unit, pass); docs/explanation/stability.md is filled from it.
 #pragma once
 
 #include <gtest/gtest.h>

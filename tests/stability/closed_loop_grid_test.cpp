@@ -18,7 +18,7 @@ struct Named {
     Kind value;
 };
 
-// These are the ends and the middle of the ranges in docs/research/stability.md.
+// These are the ends and the middle of the ranges in docs/explanation/stability.md.
 const Named<DevicePlant> kDevices[] = {
     {"light", {.mass = 0.1, .damping = 0.5, .coulomb = 0.1, .inertia = 2e-5, .amplifier_hz = 1000}},
     {"typical", {}},

@@ -1,5 +1,5 @@
 // This is the energy that a hand puts into the simulation, from poses and wrenches at
-// the ticks (docs/research/stability.md).
+// the ticks (docs/explanation/stability.md).
 //
 // Both meters take the wrench on the hand and the pose it acts at, and count work done against it as
 // positive: on a path that ends where it began, a passive simulation returns at least zero. Torque works on

@@ -167,7 +167,7 @@ struct CoarseBench : JoltBench {
 JoltFigures otherAccuracy(const Variant& variant) {
     return changes<CoarseBench>(variant, {Preset::kFast, Preset::kBalanced, Preset::kExact});
 }
-// Not to vps, in which such a burr sinks into the face (docs/research/laws.md).
+// Not to vps, in which such a burr sinks into the face (docs/explanation/laws.md).
 JoltFigures otherLaw(const Variant& variant) {
     return changes<PressedBench>(variant, {Preset::kThesis2012, Preset::kBalanced, Preset::kProxy3Dof,
                                            Preset::kPenaltySdf, Preset::kConstraint});

@@ -1,5 +1,5 @@
 // Discrete events, under a hand that rests on the bone or moves slowly: what they make of the force. The
-// bench `jolts_bench` prints all of them for every preset and law (docs/lab/safety.md, Jolts);
+// bench `jolts_bench` prints all of them for every preset and law (docs/explanation/safety.md, Jolts);
 // tests/unit/haptic_server/core/tick has bounds for those that matter.
 //
 // A *jolt* is what the force on the hand changes by in a tick beyond what the hand's own motion explains:

@@ -50,7 +50,7 @@ double oneVoxelWallFast(const Variant& variant) {
 
 // The pin is thinner than what the tool may move in one tick: only the sweep can see the wall. With
 // material_stiffness it lies on soft bone alone, which carries some 50 N of it and is pulled at with more
-// (docs/research/stability.md); from 45 N instead of 50 on it holds.
+// (docs/explanation/stability.md); from 45 N instead of 50 on it holds.
 double pinThroughWall(const Variant& variant) {
     constexpr double kPin = 0.2e-3;
     const DistanceFunction one_voxel = wall(kMiddle, Eigen::Vector3d::UnitZ(), kVoxel);

@@ -4,9 +4,9 @@
 // One rigid body carries the device's and the hand's mass and inertia (isotropic, about the tool point). On
 // it act the commanded wrench after the amplifiers' first-order pole, viscous and Coulomb friction of the
 // device, the hand's spring and damper towards its target, and a constant bias (a weight when no hand holds
-// the handle). The ranges of the defaults are in docs/research/stability.md. It is integrated by leapfrog at
-// kRate_hz or finer; friction is implicit, so that the body truly sticks and Coulomb friction cannot chatter.
-// Units are SI, axes W. It is deterministic.
+// the handle). The ranges of the defaults are in docs/explanation/stability.md. It is integrated by leapfrog
+// at kRate_hz or finer; friction is implicit, so that the body truly sticks and Coulomb friction cannot
+// chatter. Units are SI, axes W. It is deterministic.
 #pragma once
 
 #include "common/geometry/pose.h"

@@ -1,5 +1,5 @@
 // The runs of the Z-width: a tool is pressed against bone, and the loop either comes to rest or does not
-// (docs/research/stability.md; tests/bench/zwidth_bench.cpp searches for where it ends).
+// (docs/explanation/stability.md; tests/bench/zwidth_bench.cpp searches for where it ends).
 #pragma once
 
 #include <vector>

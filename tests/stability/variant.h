@@ -28,7 +28,7 @@ struct Variant {
 const std::vector<Variant>& allVariants();
 const Variant& baselineVariant();
 
-// These are the contact laws of other schools (docs/research/laws.md).
+// These are the contact laws of other schools (docs/explanation/laws.md).
 const std::vector<Variant>& lawVariants();
 Names everyLaw();
 

@@ -1,4 +1,5 @@
-// The table of the Z-width in docs/research/stability.md stays true: `balanced` at 1000 Hz, drag as it comes.
+// The table of the Z-width in docs/explanation/stability.md stays true: `balanced` at 1000 Hz, drag as it
+// comes.
 #include <gtest/gtest.h>
 
 #include "tests/stability/pressed.h"

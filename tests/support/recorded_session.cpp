@@ -97,7 +97,7 @@ std::string textOf(const std::filesystem::path& path) {
     return text.str();
 }
 
-journal::Manifest manifestOf(const LoadedScene& loaded, const Simulation& simulation) {
+journal::Manifest manifestOf(const LoadedScene& loaded, const SceneSetup& simulation) {
     journal::Manifest manifest;
     manifest.set_journal_id("0123456789abcdef0123456789abcdef");
     manifest.set_session(1);
@@ -121,7 +121,7 @@ RecordedSession recordSession(const std::filesystem::path& folder, const Recorde
                             .x_m = {},
                             .y_m = {}};
     const LoadedScene loaded = loadScene(session.scene);
-    Simulation simulation = makeSimulation(loaded);
+    SceneSetup simulation = setUpScene(loaded);
     BoneModel& bone = *simulation.bone;
     BoneHistory history(bone);
     Checkpoints checkpoints(history, bone);

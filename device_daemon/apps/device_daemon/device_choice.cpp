@@ -170,7 +170,7 @@ std::vector<ListedDevice> foundDevices() {
 
 const char* deviceChoices() {
     return "The hand: auto (the best that is there), simulated (a scripted hand on the emulated ARES), "
-           "ares:ADDRESS:PORT (a controller that speaks docs/lab/ares_link.md), bridge:ADDRESS:PORT (a "
+           "ares:ADDRESS:PORT (a controller that speaks docs/reference/ares_link.md), bridge:ADDRESS:PORT (a "
            "program "
            "that speaks "
            "its pose packets), force-dimension, touch, haply, spacemouse, gamepad[:PATH], pointer (the mouse "

@@ -1,4 +1,4 @@
-// device_daemon is the device side of the simulator (docs/lab/device.md).
+// device_daemon is the device side of the simulator (docs/howto/device.md).
 #include <spdlog/fmt/fmt.h>
 #include <sys/stat.h>
 

@@ -1,9 +1,9 @@
 // ARES with its joints behind the wire: a real controller, or the emulated one.
 //
-// Geometry and limits are the scene's, and the controller describes its own (docs/lab/ares_link.md). Where
-// the two differ by more than 0.1 %, poses would be wrong or forces too large: such a controller is refused
-// for good. Its motors are never wanted, read() returns false with kDeviceFault and the code kAresIsAnother,
-// and refusal() says what differs.
+// Geometry and limits are the scene's, and the controller describes its own (docs/reference/ares_link.md).
+// Where the two differ by more than 0.1 %, poses would be wrong or forces too large: such a controller is
+// refused for good. Its motors are never wanted, read() returns false with kDeviceFault and the code
+// kAresIsAnother, and refusal() says what differs.
 //
 // Making one throws UserError. Everything else but refusal() is RT-safe but for the socket's system calls,
 // and for the loop's thread.

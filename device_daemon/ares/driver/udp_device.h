@@ -75,7 +75,7 @@ class UdpDevice {
 extern template class UdpDevice<wire::JointPackets>;
 extern template class UdpDevice<wire::PosePackets>;
 
-// This is a motion controller with the six axes of ARES behind the UDP wire (docs/lab/ares_link.md).
+// This is a motion controller with the six axes of ARES behind the UDP wire (docs/reference/ares_link.md).
 class UdpJointDevice final : public JointDevice {
   public:
     explicit UdpJointDevice(UdpDeviceConfig config) : device_(std::move(config)) {}

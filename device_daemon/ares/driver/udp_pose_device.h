@@ -1,5 +1,5 @@
 // This is any device whose own program, a bridge, speaks poses and wrenches over the UDP wire
-// (docs/lab/ares_link.md).
+// (docs/reference/ares_link.md).
 //
 // read() returns false for a pose that is none and after a pose that jumped (PoseGuard); status, buttons,
 // fault and motors' load of the reading are filled all the same, and its pose is not. Of a silent bridge

@@ -1,5 +1,5 @@
 // ares_emulator is an ARES with its motion controller and a hand on it, none of them real
-// (docs/lab/device.md).
+// (docs/reference/ares.md).
 #include <iostream>
 
 #include "common/base/user_error.h"

@@ -9,7 +9,7 @@
 // T's origin], both in D. Units are m, rad, N, N·m.
 //
 // Everything here is RT-safe and thread-safe (const), and nothing throws. The formulas
-// stand in docs/lab/device.md.
+// stand in docs/reference/ares.md.
 #pragma once
 
 #include <array>

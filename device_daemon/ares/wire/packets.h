@@ -1,11 +1,11 @@
 // These are the packets between device_daemon (the host) and whoever has the motors: a motion controller with
-// six axes (joint packets), or a program that knows a haptic arm (pose packets). docs/lab/ares_link.md
+// six axes (joint packets), or a program that knows a haptic arm (pose packets). docs/reference/ares_link.md
 // specifies the exchange.
 //
 // All numbers are little-endian, floating point is IEEE 754, and every packet ends with the CRC-32 (zlib's)
 // of what is before it. Units are m, N, N·m, s unless a name says otherwise. Frames are D and T
-// (docs/develop/frames.md). The structs are the bytes on the wire. What comes in is believed only when it is
-// well-formed. Everything is RT-safe, and any thread may call it.
+// (docs/reference/frames.md). The structs are the bytes on the wire. What comes in is believed only when it
+// is well-formed. Everything is RT-safe, and any thread may call it.
 #pragma once
 
 #include <bit>

@@ -1,7 +1,7 @@
 // A bridge knows its haptic arm as this: something that is opened, that says in each of its periods where the
 // handle is, and that takes a wrench in answer.
 //
-// D and T are the arm's base and its handle as docs/lab/bridges.md lays them: x to the operator's left, y
+// D and T are the arm's base and its handle as docs/howto/bridges.md lays them: x to the operator's left, y
 // towards the operator, z up, origin in the middle of the workspace. Units are m, N, N·m, rad, s; stamps are
 // CLOCK_MONOTONIC ns.
 #pragma once

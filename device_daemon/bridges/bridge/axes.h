@@ -1,6 +1,6 @@
 // Takes what a vendor's library says in its own axes to D, and wrenches back.
 //
-// R_DV is one of the rotations that docs/lab/bridges.md lists, V the vendor's axes. The handle's frame T is
+// R_DV is one of the rotations that docs/howto/bridges.md lists, V the vendor's axes. The handle's frame T is
 // the vendor's own handle frame with D's axes: a handle that the vendor calls not turned is not turned in D.
 //
 // Everything is RT-safe, and any thread may call it.

@@ -1,9 +1,9 @@
-/* An example of a bridge (docs/lab/bridges.md): plain C99 and sockets, no other file of this project. The device is a mass
+/* An example of a bridge (docs/howto/bridges.md): plain C99 and sockets, no other file of this project. The device is a mass
  * on a spring, which the host's force moves; put your own device where it says DEVICE.
  *
  *   cc -std=c99 -O2 -o spring_bridge spring_bridge.c -lm && ./spring_bridge 0
  *
- * Frames and units are those of docs/lab/bridges.md; numbers are little-endian, as this machine must be. */
+ * Frames and units are those of docs/howto/bridges.md; numbers are little-endian, as this machine must be. */
 #define _DEFAULT_SOURCE
 #include <arpa/inet.h>
 #include <math.h>

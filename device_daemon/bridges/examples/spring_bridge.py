@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""An example of a bridge (docs/lab/bridges.md): Python's standard library, no other file of this project. The device is a
+"""An example of a bridge (docs/howto/bridges.md): Python's standard library, no other file of this project. The device is a
 mass on a spring, which the host's force moves; put your own device where it says DEVICE.
 
   ./spring_bridge.py [PORT]     0, the default, takes any free port
 
-Frames and units are those of docs/lab/bridges.md."""
+Frames and units are those of docs/howto/bridges.md."""
 import math
 import signal
 import socket

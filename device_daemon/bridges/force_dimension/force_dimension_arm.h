@@ -1,7 +1,7 @@
 // An arm of Force Dimension, or a Falcon, through their SDK: a thread of ours calls it once in each period.
 //
 // Axes of the SDK: x towards the operator, y to the right, z up. Not verified on hardware
-// (docs/lab/bridges.md).
+// (docs/howto/bridges.md).
 #pragma once
 
 #include <atomic>

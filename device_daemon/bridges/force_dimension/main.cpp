@@ -1,5 +1,5 @@
 // bonemill_bridge_force_dimension lets device_daemon use an arm of Force Dimension or a Falcon
-// (docs/lab/bridges.md).
+// (docs/howto/bridges.md).
 #include "device_daemon/bridges/bridge/bridge_main.h"
 #include "device_daemon/bridges/force_dimension/force_dimension_arm.h"
 

@@ -1,7 +1,7 @@
 // An Inverse3 or Minverse of Haply through their Inverse Service: a thread of ours sends it one message in
 // each period, and it answers with the arm's state.
 //
-// Not verified on hardware (docs/lab/bridges.md).
+// Not verified on hardware (docs/howto/bridges.md).
 #pragma once
 
 #include <array>

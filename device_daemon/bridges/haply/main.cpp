@@ -1,4 +1,4 @@
-// bonemill_bridge_haply lets device_daemon use an Inverse3 or Minverse of Haply (docs/lab/bridges.md).
+// bonemill_bridge_haply lets device_daemon use an Inverse3 or Minverse of Haply (docs/howto/bridges.md).
 #include "device_daemon/bridges/bridge/bridge_main.h"
 #include "device_daemon/bridges/haply/haply_arm.h"
 

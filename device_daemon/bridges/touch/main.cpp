@@ -1,4 +1,4 @@
-// bonemill_bridge_touch lets device_daemon use a Touch or Phantom of 3D Systems (docs/lab/bridges.md).
+// bonemill_bridge_touch lets device_daemon use a Touch or Phantom of 3D Systems (docs/howto/bridges.md).
 #include "device_daemon/bridges/bridge/bridge_main.h"
 #include "device_daemon/bridges/touch/touch_arm.h"
 

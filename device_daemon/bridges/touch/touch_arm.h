@@ -1,7 +1,7 @@
 // A Touch or Phantom of 3D Systems through OpenHaptics HD: the library has the clock and calls us about 1000
 // times a second, on a thread of its own.
 //
-// It gives force only, and never torque. Not verified on hardware (docs/lab/bridges.md).
+// It gives force only, and never torque. Not verified on hardware (docs/howto/bridges.md).
 #pragma once
 
 #include <atomic>

@@ -1,5 +1,5 @@
 // Decides in which state the device is, and how much of the commanded wrench the hand may feel
-// (docs/lab/safety.md has the table of states and causes).
+// (docs/explanation/safety.md has the table of states and causes).
 //
 // Force flows only while engaged. The device engages when it is calibrated and drives, haptic_server answers,
 // the commanded wrench is small, and the enabling switch was pressed afresh and is held (or the user has said

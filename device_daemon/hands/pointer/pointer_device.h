@@ -1,8 +1,8 @@
 // The mouse in a viewer's window holds the tool: device_daemon --device pointer.
 //
-// Viewers publish on the topic HandPointer where they want the tool (docs/teach/viewer.md). A thread of this
-// class reads them and hands the newest wish of who holds to the loop through a seqlock; the loop moves a
-// VirtualHandle, which feels the wrench of haptic_server. Wishes are the tool's, in W; the handle is in D,
+// Viewers publish on the topic HandPointer where they want the tool (docs/howto/mouse.md). A thread of
+// this class reads them and hands the newest wish of who holds to the loop through a seqlock; the loop moves
+// a VirtualHandle, which feels the wrench of haptic_server. Wishes are the tool's, in W; the handle is in D,
 // with X_WD of the scene, and moves as its HandSpace says.
 //
 // A wish with a new number of placements puts the handle there without a way there, and so does the beginning

@@ -71,7 +71,7 @@ void addReplayOptions(CLI::App& app, ReplayOptions& replay) {
 
 void addExportOptions(CLI::App& app, ExportOptions& files) {
     app.add_option("journal", files.journal, "the recorded session (.mcap)")->required();
-    app.add_option("--h5", files.h5, "write everything as HDF5, with units (docs/teach/replay.md)");
+    app.add_option("--h5", files.h5, "write everything as HDF5, with units (docs/howto/replay.md)");
     app.add_option("--csv", files.csv, "write one CSV line per tick, as --trace does");
     app.add_option("--traj", files.traj, "write what went in, for simulate --trajectory");
     app.add_option("--tool-path", files.tool_path,
@@ -153,14 +153,14 @@ void addFileCommands(CLI::App& app, Options& options, Run& chosen) {
             }),
         options.report);
     addReplayOptions(
-        add(app, "replay", "show a recorded session again, as a live one (docs/teach/replay.md)", chosen,
+        add(app, "replay", "show a recorded session again, as a live one (docs/howto/replay.md)", chosen,
             [&] {
                 const int exit_code = runReplay(options.replay);
                 forgiveUnprinted();
                 return exit_code;
             }),
         options.replay);
-    addCaseOptions(add(app, "make-case", "make a training case of a scan (docs/teach/cases.md)", chosen,
+    addCaseOptions(add(app, "make-case", "make a training case of a scan (docs/howto/cases.md)", chosen,
                        [&] {
                            keepFilesPrivate();
                            makeCase(options.request, versionText(), std::cout);
@@ -180,7 +180,7 @@ void addSessionCommands(CLI::App& session, Options& options, Run& chosen) {
             chosen, [&] { return forgetPerson(options.forget, std::cout); }),
         options.forget);
     addAssessOptions(add(session, "assess",
-                         "measure and judge the attempts of a recording anew (docs/teach/assessment.md)",
+                         "measure and judge the attempts of a recording anew (docs/reference/assessment.md)",
                          chosen, [&] { return assessJournal(options.assess, std::cout); }),
                      options.assess);
     CLI::App& verifying = add(session, "verify", "run a recording again and compare every bit", chosen,

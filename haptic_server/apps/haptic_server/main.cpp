@@ -41,8 +41,8 @@ void addLabCommands(CLI::App& app, char** argv) {
     };
     add("accuracy-report",
         "measure errors and tick times of the accuracy settings in a scene, on this machine");
-    add("replay", "show a recorded session again, as a live one (docs/teach/replay.md)");
-    add("make-case", "make a training case of a scan (docs/teach/cases.md)");
+    add("replay", "show a recorded session again, as a live one (docs/howto/replay.md)");
+    add("make-case", "make a training case of a scan (docs/howto/cases.md)");
     add("list-series", "print which DICOM series a folder holds, and which is the best for bone");
     add("session", "what can be done with what sessions have left");
 }
@@ -52,7 +52,7 @@ void addSaveOptions(CLI::App& app, SavePaths& save) {
     app.add_option("--save-mesh", save.mesh, "at the end: the surface (.stl or .ply, mm)");
     app.add_option(
         "--save-difference", save.difference,
-        "at the end: what was removed (positive) and added (negative) (.nrrd, docs/research/simulate.md)");
+        "at the end: what was removed (positive) and added (negative) (.nrrd, docs/reference/simulate.md)");
 }
 
 void addServerOptions(CLI::App& app, ServerOptions& server) {
@@ -68,7 +68,7 @@ void addServerOptions(CLI::App& app, ServerOptions& server) {
     app.add_option("--domain", server.domain, "DDS domain, 0 to 230");
     dds::addNetworkOptions(app, server.network);
     app.add_option("--from", server.from,
-                   "go on from that moment of a recording: FILE.mcap@SECONDS (docs/teach/replay.md)");
+                   "go on from that moment of a recording: FILE.mcap@SECONDS (docs/howto/replay.md)");
     app.add_option("--seconds", server.seconds,
                    "stop this long after the first tick; 0: run until SIGINT or SIGTERM")
         ->check(within(0, kMaxSeconds));
@@ -79,10 +79,10 @@ void addServerOptions(CLI::App& app, ServerOptions& server) {
                    "node meshes take this much of the network at most, those nearest to the burr first")
         ->check(within(0.1, 10000))
         ->capture_default_str();
-    auto* const recording =
-        app.add_option("--recording", server.recording,
-                       "folder for what every session leaves of itself (docs/lab/recording.md); default: "
-                       "$XDG_STATE_HOME/bonemill/recordings");
+    auto* const recording = app.add_option(
+        "--recording", server.recording,
+        "folder for what every session leaves of itself (docs/reference/recording.md); default: "
+        "$XDG_STATE_HOME/bonemill/recordings");
     app.add_flag("!--no-recording", server.is_recorded, "leave no recording")->excludes(recording);
     app.add_flag("--record-results", server.records_results,
                  "record what the ticks came to as well, which a replay finds again");

@@ -1,5 +1,5 @@
 // Writes phantoms: a tooth as a DICOM CT series, blocks, a vertebra, temporal bones, third molars and
-// analytic bodies as NRRD. See docs/teach/volumes.md.
+// analytic bodies as NRRD. See docs/reference/phantoms.md.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <iostream>
@@ -227,9 +227,9 @@ int run(int argc, char** argv) {
         tooth);
     addBlock(add("block", "block of layers of any density as NRRD, HU; top face at z = 0", makeBlock, block),
              block);
-    addBody(
-        add("body", "analytic body as NRRD; the exact surfaces are in docs/teach/volumes.md", makeBody, body),
-        body);
+    addBody(add("body", "analytic body as NRRD; the exact surfaces are in docs/reference/phantoms.md",
+                makeBody, body),
+            body);
     addAnatomicPhantoms(app, anatomic);
     app.require_subcommand(1);
     parseCommandLine(app, argc, argv, "make_phantom");

@@ -1,4 +1,4 @@
-// study plans, asks, keeps and judges a user study on the simulator (docs/research/study.md).
+// study plans, asks, keeps and judges a user study on the simulator (docs/howto/study.md).
 #include <sys/stat.h>
 
 #include <algorithm>

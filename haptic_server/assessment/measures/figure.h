@@ -15,8 +15,8 @@
 
 namespace bonemill {
 
-// One measured number. `id` and `version` name its definition (docs/teach/assessment.md): a definition that
-// changes gets another version, and figures of different versions are never compared.
+// One measured number. `id` and `version` name its definition (docs/reference/assessment.md): a definition
+// that changes gets another version, and figures of different versions are never compared.
 struct Figure {
     std::string id;  // "force.p95"; a figure of one structure or burr ends in its name: "damage.volume:nerve"
     int version = 1;    // of the definition, from 1
@@ -109,8 +109,8 @@ struct Assessment {
 };
 
 // The list of what is measured of technique: each figure's name, version, words and unit, once. What the
-// formulas are stands in docs/teach/assessment.md, and a definition that changes there gets another version
-// here.
+// formulas are stands in docs/reference/assessment.md, and a definition that changes there gets another
+// version here.
 struct Definition {
     const char* id;
     int version;

@@ -1,5 +1,5 @@
 // All measures of technique of one attempt, from its stream of tick records: the same code beside a live
-// session and on what was recorded. docs/teach/assessment.md says what each is, and what it does not say.
+// session and on what was recorded. docs/reference/assessment.md says what each is, and what it does not say.
 //
 // Records come in the order of their ticks; lost ones may be missing, which is measured. One normal thread;
 // memory is bounded, however long the attempt. Not to be copied or moved.

@@ -1,5 +1,5 @@
 // Judges what an attempt has left of the bone: every figure of the final product that the task asks for or
-// that its zones and structures allow (docs/teach/tasks.md). The same bone gives the same figures.
+// that its zones and structures allow (docs/reference/tasks.md). The same bone gives the same figures.
 //
 // It takes one normal thread a second or two with a CT head and allocates some 250 MB at most; no volume may
 // be written meanwhile.

@@ -71,8 +71,8 @@ class ScanBone {
     Pose X_VW_;
 };
 
-// A quarter of the burr's radius is as fine as a part's voxels would be (docs/teach/volumes.md). The largest
-// one is as large as round burrs for bone are.
+// A quarter of the burr's radius is as fine as a part's voxels would be (docs/reference/volumes.md). The
+// largest one is as large as round burrs for bone are.
 std::optional<double> fittingRadius(const Eigen::Vector3d& spacing) {
     constexpr double kVoxels = 4, kStep = 0.5e-3, kDefault = 1e-3, kLargest = 8e-3;
     const double radius = std::ceil(kVoxels * std::sqrt(spacing.squaredNorm() / 3) / kStep - 1e-6) * kStep;

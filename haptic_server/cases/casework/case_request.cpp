@@ -29,7 +29,7 @@ void addCaseOptions(CLI::App& app, CaseRequest& request) {
                    "who is to be named for the scan, and its licence; stands behind the task");
     app.add_option("--iso", request.iso, "raw value (HU) of the bone's surface; default: proposed");
     app.add_option("--at", request.at_mm,
-                   "middle of the part that is milled, in W (docs/develop/frames.md), mm; default: all is")
+                   "middle of the part that is milled, in W (docs/reference/frames.md), mm; default: all is")
         ->expected(3);
     app.add_option("--size-mm", request.size_mm, "edge of that part")
         ->check(within(2, 500))

@@ -169,7 +169,8 @@ scene::Scene sceneOfCase(const CasePlan& plan, const CaseRequest& request,
 std::string textOfScene(const scene::Scene& scene) {
     std::string text;
     google::protobuf::TextFormat::PrintToString(scene, &text);
-    return "# A case made of a scan (docs/teach/cases.md). docs/lab/scene.md has every field with its unit, "
+    return "# A case made of a scan (docs/howto/cases.md). docs/reference/scene.md has every field with its "
+           "unit, "
            "default "
            "and range.\n" +
            text;
@@ -328,7 +329,7 @@ void makeCase(const CaseRequest& request, const std::string& version, std::ostre
     const std::string scene_file = folder.name() + ".textproto";
     writeWhole(folder / scene_file, textOfScene(sceneOfCase(plan, request, labels, tools, folder.name())));
     writeWhole(folder / "provenance.json", provenanceOf(scan, plan, request, folder / kScanOfCase, version));
-    const Simulation simulation = makeSimulation(loadScene(folder / scene_file));  // as a session would
+    const SceneSetup simulation = setUpScene(loadScene(folder / scene_file));  // as a session would
     for (const std::string& remark : simulation.remarks) out << remark << '\n';
     for (const std::string& warning : simulation.warnings) out << "warning: " << warning << '\n';
     folder.finish();

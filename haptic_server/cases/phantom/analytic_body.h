@@ -2,7 +2,7 @@
 // known density: uniform, cortical shell over trabecular core, or whatever else.
 //
 // W is the world (and the written file's LPS frame); B is the body's own frame. Lengths are in m, angles in
-// rad. In B (definitions are repeated in docs/teach/volumes.md):
+// rad. In B (definitions are repeated in docs/reference/phantoms.md):
 //   slab       |z| <= thickness / 2, endless in x and y
 //   sphere     |p| <= radius
 //   hole       plate |z| <= thickness / 2 with a round hole x² + y² < radius²

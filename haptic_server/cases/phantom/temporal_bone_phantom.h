@@ -1,7 +1,7 @@
 // Makes the mastoid part of a temporal bone in Hounsfield units, as a block cut from a skull: cortex, air
 // cells, antrum, middle ear with ossicles, ear canal, inner ear in its dense capsule, facial nerve, sigmoid
 // sinus with jugular bulb, and the dura of both fossae. No patient's: shapes and their variation are put
-// together from published sizes (docs/teach/volumes.md names them); another seed is another bone.
+// together from published sizes (docs/reference/phantoms.md names them); another seed is another bone.
 //
 // Lengths are in m. W is LPS: x to the patient's left, y to the back, z up; its origin is the spine of
 // Henle. A right bone is the mirror image, in x, of the left one of the same kind. Thread-safe; start-up

@@ -1,7 +1,7 @@
 // Makes a piece of a lower jaw with an impacted third molar in Hounsfield units: cortex over trabecular
 // bone, a second molar, the third molar tilted forwards beneath the bone with its follicle, and the canal of
 // the inferior alveolar nerve below its roots. No patient's: shapes and their variation are put together from
-// textbook sizes (docs/teach/volumes.md); another seed is another jaw.
+// textbook sizes (docs/reference/phantoms.md); another seed is another jaw.
 //
 // Lengths are in m. W is LPS: x to the patient's left, y to the back, z up; its origin is the middle of the
 // bone's crest, right behind the second molar. A right jaw is the mirror image, in x, of the left one of the

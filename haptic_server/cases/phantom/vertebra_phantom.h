@@ -5,8 +5,8 @@
 // Lengths are in m. W has its origin in the middle of the vertebral body, x to the patient's left, y to
 // the back, z up (LPS). Sizes are rounded from morphometry of L3 (Panjabi et al., Spine 17:299, 1992;
 // Zindrick et al., Spine 12:160, 1987): body 45 x 33 x 28 mm, pedicles 10 mm wide and 14.5 mm high, canal
-// 24 x 17 mm, 95 mm across the transverse processes; both sides are alike. docs/teach/volumes.md describes
-// shell and densities. Thread-safe; start-up only.
+// 24 x 17 mm, 95 mm across the transverse processes; both sides are alike. docs/reference/phantoms.md
+// describes shell and densities. Thread-safe; start-up only.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The accuracy dial says what the haptic loop computes, and how finely. docs/research/accuracy.md says what
-// each knob buys and costs.
+// The accuracy dial says what the haptic loop computes, and how finely. docs/explanation/accuracy.md says
+// what each knob buys and costs.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace bonemill {
 
-// Those behind kGradient are of other schools, to compare with (docs/research/laws.md). The
+// Those behind kGradient are of other schools, to compare with (docs/explanation/laws.md). The
 // numbers are those of scene.proto (scene_accuracy.cpp).
 enum class ContactLaw : uint8_t { kThesis2012, kGradient, kProxy3Dof, kVps, kPenaltySdf, kConstraint };
 inline constexpr size_t kLawCount = 6;

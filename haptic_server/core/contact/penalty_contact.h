@@ -18,7 +18,7 @@ struct ContactWrench {
     double max_depth = 0;  // m
 };
 
-// The derivative is as printed in eq 6-9, and kept wrong where the thesis is (docs/research/simulate.md): eq
+// The derivative is as printed in eq 6-9, and kept wrong where the thesis is (docs/explanation/laws.md): eq
 // 7 carries + k d n~ although the bone's normals do not turn with the tool, and eq 8 lacks + F~.
 //
 // Tests every shell point of the leaves that the tool's box meets. RT-safe; X_VT is the tool's pose in V.

@@ -71,7 +71,7 @@ struct SurfacePiece {
 
 // Cuts triangles of iso-surface near the tool into pieces that are small against the contact, however large
 // the voxels are. The triangles of all cells tile the surface without gaps and overlaps, so their pieces do,
-// too; that is what keeps a sum over them smooth when the tool slides (docs/research/accuracy.md).
+// too; that is what keeps a sum over them smooth when the tool slides (docs/explanation/accuracy.md).
 //
 // A piece is cut in two across its longest edge as long as that is longer than its limit: the sampling's
 // spacing where the tool touches or nearly does, and in proportion to the distance away from it. Pieces that

@@ -7,8 +7,8 @@
 // (Barbič and James 2008 for the saturation).
 // Beside it there is a spring of k_2 about d_f, which follows d with the time constant τ_2 (a standard linear
 // solid): it damps what is quicker than τ_2 and so makes up for the energy that sampling and delay give a
-// stiff spring; a free tool, whose d does not change, is not held back by it. docs/research/stability.md says
-// how much that is worth.
+// stiff spring; a free tool, whose d does not change, is not held back by it. docs/explanation/stability.md
+// says how much that is worth.
 #pragma once
 
 #include "common/base/units.h"

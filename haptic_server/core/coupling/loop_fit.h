@@ -1,6 +1,6 @@
 // Finds the springs nearest to the wished ones with which the device comes to rest although no hand holds it:
 // the wished ones if they do; else as stiff ones with a larger relaxing share, which is felt only as a
-// quicker rise of the force; else softer ones. docs/research/stability.md says what rests on it.
+// quicker rise of the force; else softer ones. docs/explanation/stability.md says what rests on it.
 //
 // It goes on a little in every tick, so that a device that is plugged in costs no period. Everything is
 // RT-safe.

@@ -1,7 +1,7 @@
 // By the default law the tool's pose minimises contact energy + coupling energy + damping against
 // the last pose, by a few Gauss-Newton steps with Cholesky factors, Levenberg damping, a trust
 // radius and a line search. The energy never rises inside a tick, so that no contact can make the
-// tool diverge (docs/research/stability.md).
+// tool diverge (docs/explanation/stability.md).
 #pragma once
 
 #include <algorithm>

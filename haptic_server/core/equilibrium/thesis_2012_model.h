@@ -1,5 +1,5 @@
 // The baseline has penalty contact along the bone's normals, a quaternion coupling, one LU solve and static
-// damping (thesis §4.3). It is kept as printed; docs/research/simulate.md lists its warts.
+// damping (thesis §4.3). It is kept as printed; docs/explanation/laws.md lists its warts.
 #pragma once
 
 #include "haptic_server/core/contact/penalty_contact.h"

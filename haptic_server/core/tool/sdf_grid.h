@@ -1,11 +1,11 @@
 // The contact loop sees the tool as signed distances at the nodes of a regular grid, interpolated
 // between them.
 //
-// The frame is T (docs/develop/frames.md), with its origin at the burr centre and +y along the shaft towards
-// the hand. The unit is m; distances are negative inside. Node (i, j, k) lies at origin + spacing·(i, j, k).
-// Outside of the grid there is no tool and hence no contact. Queries are const, noexcept and RT-safe, for any
-// thread; a NaN point counts as outside. The thesis ("Haptic Milling Simulation in Six Degrees-of-Freedom",
-// KTH 2012) has a grid of 22×128×22 nodes.
+// The frame is T (docs/reference/frames.md), with its origin at the burr centre and +y along the shaft
+// towards the hand. The unit is m; distances are negative inside. Node (i, j, k) lies at origin + spacing·(i,
+// j, k). Outside of the grid there is no tool and hence no contact. Queries are const, noexcept and RT-safe,
+// for any thread; a NaN point counts as outside. The thesis ("Haptic Milling Simulation in Six
+// Degrees-of-Freedom", KTH 2012) has a grid of 22×128×22 nodes.
 #pragma once
 
 #include <algorithm>

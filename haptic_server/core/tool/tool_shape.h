@@ -22,7 +22,7 @@ struct CapsuleShape {  // all points within `radius` of the segment
     double radius = 0.8e-3;
 };
 // Scenes round edges off by this radius: a sharp edge touches a face in a line that no sampling of the bone
-// carries (docs/teach/tool.md).
+// carries (docs/reference/tool.md).
 inline constexpr double kEdgeRadius = 0.1e-3;  // m
 
 struct CylinderShape {  // flat ends

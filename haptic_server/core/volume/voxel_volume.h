@@ -1,9 +1,9 @@
 // The bone is the densities of all voxels, shared between the tick (only writer) and the mesher (reader).
 //
 // Voxel (i, j, k) of frame I lies at V-position spacing ∘ (i, j, k) and W-position X_WV * that
-// (docs/develop/frames.md). A border of one voxel of air surrounds the data: indices -1 .. dims are readable,
-// 0 .. dims-1 writable, so every surface is closed. Density 0..255 of the thesis is stored as 16 bit, 257
-// counts per unit.
+// (docs/reference/frames.md). A border of one voxel of air surrounds the data: indices -1 .. dims are
+// readable, 0 .. dims-1 writable, so every surface is closed. Density 0..255 of the thesis is stored as 16
+// bit, 257 counts per unit.
 //
 // Cell (i, j, k) is the cube between voxels (i, j, k) and (i+1, j+1, k+1). The voxels are stored in bricks
 // of 16³ cells (brick_store.h): memory goes to what is neither all air nor all of the highest density. Each

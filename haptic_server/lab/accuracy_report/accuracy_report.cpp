@@ -113,7 +113,7 @@ SweepProgress progressOf(size_t count, std::ostream& out, SoFar& so_far) {
 }
 
 // Measures everything; the files that need all of it come later.
-ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, const AccuracyReportOptions& options,
+ReportData measureAll(const LoadedScene& loaded, SceneSetup& simulation, const AccuracyReportOptions& options,
                       std::ostream& progress) {
     const auto settings =
         settingsNamed(options.settings,
@@ -184,7 +184,7 @@ std::string accuracyReport(const AccuracyReportOptions& options, std::ostream& p
     const std::filesystem::path out(options.out);
     makeFolder(out);
     progress << "reading the scene's volume" << std::endl;
-    Simulation simulation = makeSimulation(loaded);
+    SceneSetup simulation = setUpScene(loaded);
     for (const std::string& warning : simulation.warnings) progress << "warning: " << warning << '\n';
     ReportData data = measureAll(loaded, simulation, options, progress);
     data.budget_us = options.budget_us;

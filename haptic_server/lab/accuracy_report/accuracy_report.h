@@ -1,5 +1,5 @@
 // `bonemill_lab accuracy-report` measures how exact each accuracy setting is in a scene, and how long its
-// ticks take here. docs/research/accuracy.md says what the figures mean.
+// ticks take here. docs/explanation/accuracy.md says what the figures mean.
 #pragma once
 
 #include <iosfwd>

@@ -189,14 +189,14 @@ std::string timesText(const ReportData& data) {
     return "**Times** are of whole ticks, probing and milling together, on this machine (" + data.machine +
            "), one thread, not in real time. The same work runs three times and the shortest time of each "
            "tick counts, so that what other programs take does not; a live session has that on top "
-           "(docs/lab/realtime.md). With the longest times instead one sees how much that was." +
+           "(docs/howto/realtime.md). With the longest times instead one sees how much that was." +
            format(" Other programs had %.0f %% of the processor.", 100 * data.taken_share) +
            format(" The scene's tick has %.4g µs.\n\n", kPerMicrosecond * data.tick_period);
 }
 
 std::string otherLawsText() {
     return "**†** These are other contact laws: thesis_2012, and those of other schools "
-           "(docs/research/laws.md). They compute another force. There is no truth of it that a finer "
+           "(docs/explanation/laws.md). They compute another force. There is no truth of it that a finer "
            "sampling would approach. Their columns of errors show how far they are from the truth of the "
            "gradient law; they take no part in the front and are never proposed.\n\n";
 }

@@ -19,7 +19,7 @@ class JournalAssessment {
           said_(said),
           recording_(options.journal),
           loaded_(recording_.scene()),
-          simulation_(makeSimulation(loaded_)),
+          simulation_(setUpScene(loaded_)),
           bones_(recording_.readBones(*simulation_.bone)),
           eyes_(recordedEyes(recording_)),
           attempts_(recordedAttempts(recording_.content())),
@@ -96,7 +96,7 @@ class JournalAssessment {
     std::ostream& said_;
     Recording recording_;
     LoadedScene loaded_;
-    Simulation simulation_;
+    SceneSetup simulation_;
     Recording::Bones bones_;
     std::vector<RecordedEye> eyes_;
     std::vector<RecordedAttempt> attempts_;

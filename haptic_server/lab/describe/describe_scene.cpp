@@ -127,7 +127,7 @@ void describeRules(const JudgedTask& task, std::ostream& out) {
 }
 
 // Nothing for a scene without a task.
-void describeTask(const Simulation& simulation, std::ostream& out) {
+void describeTask(const SceneSetup& simulation, std::ostream& out) {
     if (!simulation.task) return;
     const JudgedTask& task = *simulation.task;
     const VoxelVolume& volume = simulation.bone->volume;
@@ -191,7 +191,7 @@ std::string textOf(const Eigen::AlignedBox3d& box) {
 }
 
 // Where the bone lies in W, and in what pieces: what a device, a region and a camera are placed by.
-void describePlace(const LoadedScene& loaded, const Simulation& simulation, std::ostream& out) {
+void describePlace(const LoadedScene& loaded, const SceneSetup& simulation, std::ostream& out) {
     const VoxelVolume& volume = simulation.bone->volume;
     const VolumeGeometry& geometry = volume.geometry();
     const auto inWorld = [&](const Eigen::AlignedBox3d& box_V) {
@@ -210,7 +210,7 @@ void describePlace(const LoadedScene& loaded, const Simulation& simulation, std:
         out << "pieces of bone, for volume.drop_piece:\n  " << listPieces(volume) << '\n';
 }
 
-void describeTools(const Simulation& simulation, std::ostream& out) {
+void describeTools(const SceneSetup& simulation, std::ostream& out) {
     int number = 0;
     for (const SceneTool& tool : simulation.tools) {
         const SdfGrid& grid = tool.built.model.grid();
@@ -222,7 +222,7 @@ void describeTools(const Simulation& simulation, std::ostream& out) {
     }
 }
 
-void describeBudget(const Simulation& simulation, std::ostream& out) {
+void describeBudget(const SceneSetup& simulation, std::ostream& out) {
     const TickConfig& tick = simulation.tick;
     out << "most point tests in a tick: " << tick.gradient.most_point_tests
         << (simulation.accuracy.law == ContactLaw::kGradient ? "\n" : ", without effect on this law\n")
@@ -257,7 +257,7 @@ DeviceCapabilities aresOf(const scene::Scene& scene) {
 
 std::string describeScene(const std::string& scene_file) {
     const LoadedScene loaded = loadScene(scene_file);
-    Simulation simulation = makeSimulation(loaded);
+    SceneSetup simulation = setUpScene(loaded);
     const BoneModel& bone = *simulation.bone;
     std::ostringstream out;
     out << "scene '" << loaded.scene.name() << "', preset " << settingsName(simulation.accuracy) << '\n';

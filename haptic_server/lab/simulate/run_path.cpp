@@ -1,31 +1,9 @@
 #include "haptic_server/lab/simulate/run_path.h"
 
-#include "common/rt/clock.h"
 #include "haptic_server/core/tick/fixed_tick.h"
+#include "haptic_server/core/tick/tick_once.h"
 
 namespace bonemill {
-namespace {
-
-// Time comes from the path; the clock only tells how long a tick took.
-class PathIo final : public TickIo {
-  public:
-    explicit PathIo(std::span<const DeviceInput> path) : path_(path) {}
-
-    bool read(DeviceInput& input) noexcept override {
-        if (next_ == path_.size()) return false;
-        input = path_[next_++];
-        input.start_ns = monotonicNowNs();
-        return true;
-    }
-    int64_t write(const Wrench&) noexcept override { return monotonicNowNs(); }
-    int64_t now() noexcept override { return monotonicNowNs(); }
-
-  private:
-    std::span<const DeviceInput> path_;
-    size_t next_ = 0;
-};
-
-}  // namespace
 
 std::vector<DeviceInput> inputsOf(std::span<const Pose> path_WT, double dt, uint32_t buttons) {
     std::vector<DeviceInput> inputs(path_WT.size(), DeviceInput{});
@@ -39,8 +17,7 @@ std::vector<DeviceInput> inputsOf(std::span<const Pose> path_WT, double dt, uint
 
 void runPath(HapticTick& tick, std::span<const DeviceInput> path,
              const std::function<void(const TickRecord&)>& see) {
-    PathIo io(path);
-    while (const TickRecord* record = tick.tick(io)) see(*record);
+    for (const DeviceInput& input : path) see(tickOnce(tick, input));
 }
 
 std::vector<TickRecord> runPath(const FixedTickConfig& config, BoneModel& bone,

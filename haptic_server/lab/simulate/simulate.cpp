@@ -135,7 +135,7 @@ SimulateResult simulate(const SimulateOptions& options) {
     requireWritable(options.trace);
     requireReplaceable(options.deviation);
     const RecordedEffects recorded = recordedEffectsOf(loaded.scene.effects());
-    Simulation simulation = makeSimulation(loaded);
+    SceneSetup simulation = setUpScene(loaded);
     for (const std::string& warning : simulation.warnings) spdlog::warn("{}", warning);
     BoneModel& bone = *simulation.bone;
     checkReach(rows, bone.volume, options.trajectory);

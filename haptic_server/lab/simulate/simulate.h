@@ -21,7 +21,7 @@ struct SimulateOptions {
 };
 
 struct SimulateResult {
-    std::string json;                   // object with totals and `state_hash` (docs/research/simulate.md)
+    std::string json;                   // object with totals and `state_hash` (docs/reference/simulate.md)
     std::vector<std::string> problems;  // one message for each file that is not there or not whole
 };
 

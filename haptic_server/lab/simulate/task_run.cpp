@@ -43,7 +43,7 @@ std::string writeAssessment(const AssessmentTarget& target, const LoadedScene& l
     return fileStemOf(attempt);
 }
 
-TaskRun::TaskRun(const scene::Scene& scene, const Simulation& simulation, bool wanted)
+TaskRun::TaskRun(const scene::Scene& scene, const SceneSetup& simulation, bool wanted)
     : task_(simulation.task) {
     if (!task_ && !wanted) return;
     if (task_) breach_ = breachWatchOf(simulation);

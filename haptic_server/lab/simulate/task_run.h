@@ -19,7 +19,7 @@ class TaskRun {
   public:
     // In a scene without a task it does nothing, unless the technique is `wanted`. `simulation` must outlive
     // it.
-    TaskRun(const scene::Scene& scene, const Simulation& simulation, bool wanted = false);
+    TaskRun(const scene::Scene& scene, const SceneSetup& simulation, bool wanted = false);
 
     void add(const TickRecord& record);
     // The trainee's eye is here from the next record on.

@@ -25,7 +25,7 @@ namespace {
 
 constexpr size_t kMaxWaiting = 4096;  // rows
 
-// Ticks as the columns of an HDF5 file, with units and frames (docs/teach/replay.md lists them). It is for
+// Ticks as the columns of an HDF5 file, with units and frames (docs/howto/replay.md lists them). It is for
 // one normal thread.
 class TickTable {
   public:
@@ -213,7 +213,7 @@ void exportJournal(const ExportOptions& options) {
     if (!options.traj.empty()) writeTrajectory(options.traj, recording);
     if (options.h5.empty() && options.csv.empty() && options.tool_path.empty()) return;
 
-    Simulation simulation = makeSimulation(scene);
+    SceneSetup simulation = setUpScene(scene);
     const Recording::Bones bones = recording.readBones(*simulation.bone);
     const RecordedEffects recorded = recordedEffectsOf(scene.scene.effects());
     std::optional<H5Export> h5;

@@ -1,5 +1,5 @@
 // `bonemill_lab session export`: a recorded session as files for other programs. What its ticks came to is
-// had by running them again (docs/teach/replay.md).
+// had by running them again (docs/howto/replay.md).
 #pragma once
 
 #include <string>

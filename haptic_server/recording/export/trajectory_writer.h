@@ -1,5 +1,5 @@
 // Recorded sessions as trajectories: what went into the ticks, for `simulate`, which comes to the same bits
-// with it (docs/research/simulate.md); and the way of the tool in one attempt. For one normal thread.
+// with it (docs/reference/simulate.md); and the way of the tool in one attempt. For one normal thread.
 #pragma once
 
 #include <fstream>

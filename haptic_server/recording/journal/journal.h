@@ -1,7 +1,7 @@
 // A session's journal: what its threads tell of it goes into an MCAP file that only grows
-// (docs/lab/recording.md). A kill loses the last 250 ms at most, the loss of power about a second. Nothing
-// waits for the disk: where it is full or too slow, or ticks are lost on the way, the journal says from which
-// tick on it is incomplete, and the session goes on.
+// (docs/reference/recording.md). A kill loses the last 250 ms at most, the loss of power about a second.
+// Nothing waits for the disk: where it is full or too slow, or ticks are lost on the way, the journal says
+// from which tick on it is incomplete, and the session goes on.
 #pragma once
 
 #include <atomic>

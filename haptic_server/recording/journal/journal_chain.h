@@ -1,6 +1,6 @@
-// Chains a journal's messages (docs/lab/recording.md): each link is the SHA-256 of the link before and of all
-// that was written since, so that who noted the last one sees whether anything was changed, added or left
-// out. It is for one normal thread.
+// Chains a journal's messages (docs/reference/recording.md): each link is the SHA-256 of the link before and
+// of all that was written since, so that who noted the last one sees whether anything was changed, added or
+// left out. It is for one normal thread.
 #pragma once
 
 #include <cstdint>

@@ -6,10 +6,12 @@
 #include <cstdio>
 #include <iterator>
 
+#include "common/base/assert.h"
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/rt/clock.h"
 #include "common/text/foreign_text.h"
+#include "haptic_server/core/tick/tick_once.h"
 #include "haptic_server/recording/journal/build_facts.h"
 #include "haptic_server/scene/setup/scene_accuracy.h"
 
@@ -49,6 +51,26 @@ std::string secondsText(double seconds) {
     return text;
 }
 
+// References to the tick stay in it.
+DeviceInput inputOf(const JournalTick& tick, const DeviceCapabilities* device) {
+    const TickInput& in = tick.input;
+    DeviceInput input;
+    input.X_WT_device = {Eigen::Vector3d(in.p_WT),
+                         Eigen::Quaterniond(in.q_WT[0], in.q_WT[1], in.q_WT[2], in.q_WT[3])};
+    input.is_repeated = in.is_repeated;
+    input.buttons = tick.buttons;
+    input.placements = in.placements;
+    input.device = tick.device;
+    input.other_device = device;
+    input.faults = in.faults;
+    input.stale_factor = in.stale_factor;
+    input.is_stale = in.is_stale;
+    input.periods = in.periods;
+    input.t_s = secondsOfNs(tick.start_ns);
+    input.decisions = &in.decisions;
+    return input;
+}
+
 }  // namespace
 
 MomentName momentNameOf(const std::string& text) {
@@ -66,12 +88,12 @@ MomentName momentNameOf(const std::string& text) {
     return name;
 }
 
-BoneModel scannedCopyOf(const Simulation& simulation, const LoadedScene& scene) {
+BoneModel scannedCopyOf(const SceneSetup& simulation, const LoadedScene& scene) {
     const BoneModel& bone = *simulation.bone;
     return {bone.volume.withoutSpareBricks(), bone.lattice.leafCells(), shellConfigOf(scene.scene)};
 }
 
-RecordedMoment momentOf(const Recording& recording, const Simulation& simulation, const LoadedScene& scene,
+RecordedMoment momentOf(const Recording& recording, const SceneSetup& simulation, const LoadedScene& scene,
                         double seconds) {
     requireSameScene(recording, scene);
     requireSameVolume(recording, scene);
@@ -103,38 +125,7 @@ RecordedMoment momentOf(const Recording& recording, const Simulation& simulation
     return moment;
 }
 
-// Hands one recorded tick in.
-class Rerun::Io final : public TickIo {
-  public:
-    Io(const JournalTick& tick, const DeviceCapabilities* device) : tick_(tick), device_(device) {}
-
-    bool read(DeviceInput& input) noexcept override {
-        const TickInput& in = tick_.input;
-        input.X_WT_device = {Eigen::Vector3d(in.p_WT),
-                             Eigen::Quaterniond(in.q_WT[0], in.q_WT[1], in.q_WT[2], in.q_WT[3])};
-        input.is_repeated = in.is_repeated;
-        input.buttons = tick_.buttons;
-        input.placements = in.placements;
-        input.device = tick_.device;
-        input.other_device = device_;
-        input.faults = in.faults;
-        input.stale_factor = in.stale_factor;
-        input.is_stale = in.is_stale;
-        input.periods = in.periods;
-        input.t_s = secondsOfNs(tick_.start_ns);
-        input.start_ns = monotonicNowNs();
-        input.decisions = &in.decisions;
-        return true;
-    }
-    int64_t write(const Wrench&) noexcept override { return monotonicNowNs(); }
-    int64_t now() noexcept override { return monotonicNowNs(); }
-
-  private:
-    const JournalTick& tick_;
-    const DeviceCapabilities* device_;
-};
-
-Rerun::Rerun(const Recording& recording, const Simulation& simulation, const RecordedCheckpoints& checkpoints,
+Rerun::Rerun(const Recording& recording, const SceneSetup& simulation, const RecordedCheckpoints& checkpoints,
              BoneModel& bone, const Keyframe& start)
     : recording_(recording),
       checkpoints_(checkpoints),
@@ -178,6 +169,7 @@ void Rerun::makeTick() {
         bone_order_ = first.bone_order;
     done_order_ = bone_order_;
     is_device_told_ = false;
+    has_left_ = false;
     tick_ = std::make_unique<HapticTick>(config_, TickBone{bone_, &history_},
                                          TickChoices{tools_, accuracy_, &tunings_});
 }
@@ -202,6 +194,7 @@ void Rerun::putBack(const TickDecisions& decisions) {
 }
 
 const TickRecord& Rerun::step() {
+    BONEMILL_ASSERT(!has_left_);
     JournalTick tick = ticks_.at(next_);
     choose(tick.input.decisions);
     tick.input.decisions.tool = uint32_t(tools_.chosen());
@@ -212,12 +205,26 @@ const TickRecord& Rerun::step() {
     if (!is_device_told_ && !device) device = recording_.deviceBefore(next_);
     is_device_told_ = true;
     const bool was_restoring = history_.isRestoring();
-    Io io(tick, device);
-    record_ = *tick_->tick(io);
+    record_ = tickOnce(*tick_, inputOf(tick, device));
+    tunings_.choose(tick.input.decisions.tuning);
     if (!history_.isRestoring()) done_order_ = bone_order_;
     record_.bone_order = done_order_;
     is_put_back_ = was_restoring;
     ++next_;
+    return record_;
+}
+
+const TickRecord& Rerun::step(const Pose& X_WT_hand, uint32_t buttons) {
+    DeviceInput input;
+    input.X_WT_device = X_WT_hand;
+    input.buttons = buttons;
+    input.placements = record_.input.placements;
+    input.t_s = record_.t_s + config_.dt;
+    if (!is_device_told_) input.other_device = recording_.deviceBefore(next_);
+    is_device_told_ = true;
+    record_ = tickOnce(*tick_, input);
+    record_.bone_order = done_order_;
+    has_left_ = true;
     return record_;
 }
 

@@ -1,6 +1,6 @@
 // Runs the ticks of a recording again: with the same build, from its first tick on, they come to the same
-// bits (docs/lab/recording.md). From a later one the bone is the same, and all else settles within a fraction
-// of a second: what effects have counted and warmed up begins anew there.
+// bits (docs/reference/recording.md). From a later one the bone is the same, and all else settles within a
+// fraction of a second: what effects have counted and warmed up begins anew there.
 //
 // It belongs to one normal thread; the mesher may read the bone meanwhile.
 #pragma once
@@ -22,7 +22,7 @@ using RecordedCheckpoints = std::map<uint32_t, std::shared_ptr<const BoneSnapsho
 class Rerun {
   public:
     // All must outlive this object; `bone` is as scanned. Begins before the first tick, with `start`.
-    Rerun(const Recording& recording, const Simulation& simulation, const RecordedCheckpoints& checkpoints,
+    Rerun(const Recording& recording, const SceneSetup& simulation, const RecordedCheckpoints& checkpoints,
           BoneModel& bone, const Keyframe& start);
 
     // The bone becomes that of the keyframe, whose tick is the next one.
@@ -35,6 +35,10 @@ class Rerun {
     // Runs the next tick, which there is. The record is good until the next call; its start_ns is now, and
     // its bone_order is the recording's.
     const TickRecord& step();
+    // Leaves the recording: runs a tick with this hand instead, held by an engaged device, and with what the
+    // switches below choose. What is in force stays so. From then on no tick of the recording is run.
+    const TickRecord& step(const Pose& X_WT_hand, uint32_t buttons);
+    bool hasLeft() const noexcept { return has_left_; }
     // An order of the recording has put the bone back, or has begun to, in the last step.
     bool isBonePutBack() const noexcept { return is_put_back_; }
 
@@ -45,7 +49,6 @@ class Rerun {
     AccuracySwitch& accuracies() noexcept { return accuracy_; }
 
   private:
-    class Io;
     void makeTick();
     void addTunings(const TunableScene& scene);
     uint32_t tuningOf(const TickDecisions& decisions) const;
@@ -68,6 +71,7 @@ class Rerun {
     uint64_t bone_order_ = 0;  // of the recording, given last
     uint64_t done_order_ = 0;  // of the recording, whose bone is there
     bool is_put_back_ = false;
+    bool has_left_ = false;
     bool is_device_told_ = false;  // to tick_
 };
 
@@ -88,11 +92,11 @@ struct RecordedMoment {
 };
 
 // Another bone like that of a fresh simulation of the scene.
-BoneModel scannedCopyOf(const Simulation& simulation, const LoadedScene& scene);
+BoneModel scannedCopyOf(const SceneSetup& simulation, const LoadedScene& scene);
 
 // Runs the ticks up to there again, from the state of the bone before it. `simulation` is fresh, and stays
 // so. Throws UserError if the recording is of another scene, or ends before.
-RecordedMoment momentOf(const Recording& recording, const Simulation& simulation, const LoadedScene& scene,
+RecordedMoment momentOf(const Recording& recording, const SceneSetup& simulation, const LoadedScene& scene,
                         double seconds);
 
 }  // namespace bonemill

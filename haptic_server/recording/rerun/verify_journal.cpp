@@ -219,7 +219,7 @@ JournalVerdict verifyJournal(const std::filesystem::path& path, const std::strin
     verdict.not_whole = notWhole(recording.content());
     const LoadedScene scene = recording.scene();
     verdict.reasons = reasonsAgainstSameBits(recording.manifest(), version);
-    Simulation simulation = makeSimulation(scene);
+    SceneSetup simulation = setUpScene(scene);
     BonePass states(*simulation.bone);
     ChainCheck chain(noted_link);
     readJournal(path, [&](JournalTopic topic, const mcap::Message& message) {

@@ -23,7 +23,7 @@ struct IsoProposal {
 };
 
 // The value comes from the histogram of the finite values; rules and measured table are in
-// docs/teach/volumes.md.
+// docs/reference/volumes.md.
 //   1. On the Hounsfield scale (is_hounsfield, or shifted by +1024 as some exports are) it is half-way
 //      between the peak of soft tissue and the median of what is clearly bone, kept within 200 .. 300 HU.
 //   2. On another scale with one material above air, and a thin tail far above that, the material is taken

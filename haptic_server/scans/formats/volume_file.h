@@ -20,10 +20,10 @@ RawVolume importMetaImage(const std::filesystem::path& path,
 
 // An InVesalius 3 project (.inv3) is a compressed tar archive of main.plist and the matrix file it names.
 //
-// The plist's shape counts slices, rows, columns (docs/teach/volumes.md); spacing is given column, row, slice
-// in mm; columns run to the patient's left, slices upwards, and InVesalius stores the rows from back to front
-// (it flips the rows of each DICOM slice), so they are reversed here. The project keeps no origin: W has its
-// origin at the centre of voxel (0, 0, 0).
+// The plist's shape counts slices, rows, columns (docs/reference/volumes.md); spacing is given column, row,
+// slice in mm; columns run to the patient's left, slices upwards, and InVesalius stores the rows from back to
+// front (it flips the rows of each DICOM slice), so they are reversed here. The project keeps no origin: W
+// has its origin at the centre of voxel (0, 0, 0).
 RawVolume importInv3(const std::filesystem::path& path);
 
 // A closed surface, such as a segmented bone that was saved as STL or PLY, in mm, LPS unless its head says

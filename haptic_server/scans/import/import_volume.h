@@ -1,6 +1,6 @@
 // Reads a scanned volume from any format we accept; the one entrance for files of bone.
 //
-//   folder                DICOM series (docs/teach/volumes.md: how a series is chosen, ordered and checked)
+//   folder                DICOM series (how one is chosen, ordered and checked: docs/reference/volumes.md)
 //   .nrrd .nhdr           NRRD, attached or detached, raw/gzip/text, either byte order
 //   .nii .nii.gz          NIfTI-1
 //   .mha .mhd             MetaImage
@@ -8,7 +8,7 @@
 //   .dcm, any DICOM file  a multi-frame file; of a single slice its series, of a DICOMDIR its folder
 //   folder                PNG or TIFF images, one of each slice
 //   .stl .ply             closed surface
-//   .zip .tar .tar.gz     archive of one of these but the last (docs/teach/volumes.md#archives)
+//   .zip .tar .tar.gz     archive of one of these but the last (docs/reference/volumes.md#archives)
 //   .tgz .tar.xz
 //
 // Lengths in m, world frame W = LPS of the file (x to the patient's left, y back, z up). Start-up

@@ -64,7 +64,7 @@ std::string list(const BonePieces& pieces, const std::vector<bool>& is_dropped, 
 }
 
 constexpr double kLargeBurrShare = 0.125;  // what its tick can bear (docs/measurements.md)
-constexpr double kBurrShare = 0.25;        // docs/teach/volumes.md: voxels of a quarter of the burr's radius
+constexpr double kBurrShare = 0.25;  // docs/reference/volumes.md: voxels of a quarter of the burr's radius
 constexpr double kAirHu = -1000, kSurelyAirHu = -500, kDensestHu = 3071;
 constexpr double kProposedVoxels = 1 << 26;
 constexpr double kMostVoxels = 1 << 28;

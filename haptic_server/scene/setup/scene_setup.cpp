@@ -46,7 +46,7 @@ std::string textOf(double value) {
     return text;
 }
 
-void warnOfLargeLeaves(Simulation& simulation) {
+void warnOfLargeLeaves(SceneSetup& simulation) {
     const int cells = simulation.bone->lattice.leafCells().maxCoeff();
     if (cells > kSlowLeafCells)
         simulation.warnings.push_back(
@@ -55,11 +55,11 @@ void warnOfLargeLeaves(Simulation& simulation) {
 }
 
 // Says which tool is meant, if there are several.
-std::string ofTool(const Simulation& simulation, const SceneTool& tool) {
+std::string ofTool(const SceneSetup& simulation, const SceneTool& tool) {
     return simulation.tools.size() > 1 ? tool.name + ": " : "";
 }
 
-void warnOfCoarseShell(Simulation& simulation, const SceneTool& tool) {
+void warnOfCoarseShell(SceneSetup& simulation, const SceneTool& tool) {
     const AccuracySettings& settings = simulation.accuracy;
     if (settings.tool_distance == ToolDistance::kAnalytic && tool.built.model.hasShapes()) return;
     const double shell_spacing = settings.shell_factor * simulation.bone->volume.spacing().maxCoeff();
@@ -72,7 +72,7 @@ void warnOfCoarseShell(Simulation& simulation, const SceneTool& tool) {
 }
 
 // The coupling's pull is limited by what the burr carries.
-void warnOfThinTool(Simulation& simulation, const scene::Scene& scene, const SceneTool& tool) {
+void warnOfThinTool(SceneSetup& simulation, const scene::Scene& scene, const SceneTool& tool) {
     const GradientConfig& config = simulation.tick.gradient;
     double radius = tool.built.model.field(simulation.accuracy).thinnestRadius();
     if (tool.burr.kind == BurrKind::kCone) radius = std::min(radius, tool.burr.tip_radius);
@@ -95,10 +95,10 @@ double areaHalfIn(const Burr& burr) {
 }
 
 // A tick in which the solve takes long tests each contact point so often (drills of 5 mm:
-// docs/lab/realtime.md).
+// docs/howto/realtime.md).
 constexpr double kTestsOfPoint = 13;
 
-void warnOfManyPoints(Simulation& simulation, const SceneTool& tool) {
+void warnOfManyPoints(SceneSetup& simulation, const SceneTool& tool) {
     const AccuracySettings& settings = simulation.accuracy;
     if (settings.law != ContactLaw::kGradient) return;
     const double voxel = std::cbrt(simulation.bone->volume.spacing().prod());
@@ -115,11 +115,11 @@ void warnOfManyPoints(Simulation& simulation, const SceneTool& tool) {
 }
 
 // A groove half as deep as the burr's radius R is larger than what was swept by this times (voxel / R)², as
-// docs/teach/effects.md (time_removal) has it measured.
+// docs/reference/effects.md (time_removal) has it measured.
 constexpr double kGrooveExcess = 1.3;
 constexpr double kMaxGrooveExcess = 0.1;
 
-void warnOfCoarseVoxels(Simulation& simulation, const SceneTool& tool) {
+void warnOfCoarseVoxels(SceneSetup& simulation, const SceneTool& tool) {
     const bool is_by_ramp = simulation.accuracy.law == ContactLaw::kGradient;
     if (!simulation.tick.effects.time_removal || !is_by_ramp) return;
     const double voxel = std::sqrt(simulation.bone->volume.spacing().squaredNorm() / 3);
@@ -135,7 +135,7 @@ void warnOfCoarseVoxels(Simulation& simulation, const SceneTool& tool) {
         textOf(std::floor(fine_voxel * 1e5) / 100) + " mm it is less than 10 %");
 }
 
-void warnOfNoBone(Simulation& simulation) {
+void warnOfNoBone(SceneSetup& simulation) {
     if (simulation.tick.effects.add_material) return;
     const BoneModel& bone = *simulation.bone;
     for (uint32_t leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
@@ -145,7 +145,7 @@ void warnOfNoBone(Simulation& simulation) {
         "leave it out to have one proposed");
 }
 
-void warnOfColdRemoval(Simulation& simulation) {
+void warnOfColdRemoval(SceneSetup& simulation) {
     const EffectConfigs& effects = simulation.tick.effects;
     if (!effects.thermal || !effects.time_removal) return;
     simulation.warnings.push_back(
@@ -153,10 +153,10 @@ void warnOfColdRemoval(Simulation& simulation) {
         "rubbing alone; use energy_removal where heat is judged");
 }
 
-// A tick has time for some bricks of cubes only (docs/teach/effects.md, thermal).
+// A tick has time for some bricks of cubes only (docs/reference/effects.md, thermal).
 constexpr double kFinestHeat = 0.35e-3;  // m
 
-void warnOfFineHeat(Simulation& simulation) {
+void warnOfFineHeat(SceneSetup& simulation) {
     const auto& thermal = simulation.tick.effects.thermal;
     if (!thermal || thermal->heat.cell >= kFinestHeat) return;
     simulation.warnings.push_back(
@@ -183,7 +183,7 @@ std::vector<SceneTool> buildTools(const LoadedScene& loaded) {
     return tools;
 }
 
-void fitToolsToBone(Simulation& simulation, const scene::Scene& scene) {
+void fitToolsToBone(SceneSetup& simulation, const scene::Scene& scene) {
     const std::vector<const scene::Tool*> of_scene = toolsOf(scene);
     const double finest_spacing = simulation.bone->volume.spacing().minCoeff();
     for (size_t n = 0; n < of_scene.size(); ++n) {
@@ -199,7 +199,7 @@ void fitToolsToBone(Simulation& simulation, const scene::Scene& scene) {
 }
 
 // A range or label that nothing has is most often a slip.
-void warnOfMissingMaterials(Simulation& simulation, const scene::Scene& scene,
+void warnOfMissingMaterials(SceneSetup& simulation, const scene::Scene& scene,
                             const std::vector<MaterialId>& material_ids) {
     std::vector<bool> is_there(size_t(scene.material_size()) + 1);
     for (const MaterialId id : material_ids) is_there[id] = true;
@@ -210,7 +210,7 @@ void warnOfMissingMaterials(Simulation& simulation, const scene::Scene& scene,
 }
 
 // The effects that ask for it learn what the scanned bone was made of.
-void addProperties(Simulation& simulation, const LoadedScene& loaded, const ScannedBone& scanned) {
+void addProperties(SceneSetup& simulation, const LoadedScene& loaded, const ScannedBone& scanned) {
     if (!wantsProperties(loaded.scene)) return;
     const VoxelVolume& volume = scanned.volume;
     const std::vector<MaterialId>& ids = scanned.materials.ids;
@@ -231,13 +231,13 @@ void addProperties(Simulation& simulation, const LoadedScene& loaded, const Scan
 
 }  // namespace
 
-std::vector<SpoTool> Simulation::spoTools() const {
+std::vector<SpoTool> SceneSetup::spoTools() const {
     std::vector<SpoTool> all;
     for (const SceneTool& tool : tools) all.push_back({&tool.built.model, tool.burr, tool.saturation_force});
     return all;
 }
 
-std::optional<BreachMonitor> breachWatchOf(const Simulation& simulation) {
+std::optional<BreachMonitor> breachWatchOf(const SceneSetup& simulation) {
     if (!simulation.task || !simulation.task->plan) return std::nullopt;
     std::vector<BurrProbes> burrs;
     for (const SceneTool& tool : simulation.tools) burrs.emplace_back(tool.burr);
@@ -288,9 +288,9 @@ ToolConfig toolConfigOf(const LoadedScene& loaded, const scene::Tool& tool) {
     return config;
 }
 
-Simulation makeSimulation(const LoadedScene& loaded) {
+SceneSetup setUpScene(const LoadedScene& loaded) {
     const scene::Scene& scene = loaded.scene;
-    Simulation simulation{.tick = {},
+    SceneSetup simulation{.tick = {},
                           .accuracy = accuracyOf(scene),
                           .bone = nullptr,
                           .mapping = {},

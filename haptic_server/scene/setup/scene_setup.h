@@ -29,7 +29,7 @@ struct SceneTool {
     scene::Tool::Handpiece handpiece;  // never AUTOMATIC
 };
 
-struct Simulation {
+struct SceneSetup {
     TickConfig tick;
     AccuracySettings accuracy;
     std::unique_ptr<BoneModel> bone;
@@ -53,10 +53,10 @@ struct Simulation {
 };
 
 // Who follows the tool for its breach beside the planned line of the task; none without such a line.
-std::optional<BreachMonitor> breachWatchOf(const Simulation& simulation);
+std::optional<BreachMonitor> breachWatchOf(const SceneSetup& simulation);
 
 // Imports the volume, builds tree, shell and tools. Throws UserError.
-Simulation makeSimulation(const LoadedScene& loaded);
+SceneSetup setUpScene(const LoadedScene& loaded);
 
 // Returns what the scene chooses, or the kind that suits a tool with this surface; never AUTOMATIC.
 scene::Tool::Handpiece handpieceOf(const scene::Tool& tool, const TriangleSurface& surface);

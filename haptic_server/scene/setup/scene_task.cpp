@@ -233,7 +233,7 @@ TechniqueScene techniqueSceneOf(const scene::Scene& scene) {
 
 // Bone that the burr touches hides nothing: the line of sight ends before it.
 std::function<std::unique_ptr<Technique>()> techniqueMaker(const scene::Scene& scene,
-                                                           const Simulation& simulation) {
+                                                           const SceneSetup& simulation) {
     std::vector<double> margins;
     for (const SceneTool& tool : simulation.tools)
         margins.push_back(tool.burr.radius + simulation.bone->volume.spacing().norm());

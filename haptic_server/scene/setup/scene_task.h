@@ -25,6 +25,6 @@ TechniqueScene techniqueSceneOf(const scene::Scene& scene);
 // What it returns makes one for each attempt. Whether the eye sees the burr is looked up in the bone as it is
 // when a tick is added, so that `simulation` must outlive all ticks that are added.
 std::function<std::unique_ptr<Technique>()> techniqueMaker(const scene::Scene& scene,
-                                                           const Simulation& simulation);
+                                                           const SceneSetup& simulation);
 
 }  // namespace bonemill

@@ -30,7 +30,7 @@ PublisherOptions soleServerOf(uint32_t domain, uint32_t session, const dds::Netw
     if (dds::isOpenToOthers(network))
         spdlog::warn(
             "anyone in this network can watch this session and command it; --secure closes it "
-            "(docs/lab/security.md)");
+            "(docs/howto/security.md)");
     return {.domain = domain, .session = session, .epoch = 0, .secure = network.secure};
 }
 

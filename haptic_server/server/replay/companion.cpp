@@ -9,7 +9,7 @@
 
 namespace bonemill {
 
-Companion::Companion(ComparedAttempt compared, const Recording& shown, const Simulation& simulation,
+Companion::Companion(ComparedAttempt compared, const Recording& shown, const SceneSetup& simulation,
                      const LoadedScene& scene, const VoxelVolume& scanned)
     : compared_(std::move(compared)),
       clock_(shown, *compared_.recording, compared_.attempt),

@@ -21,7 +21,7 @@ class Companion {
   public:
     // `scanned` is the bone before anything has changed it; all but the first must outlive this object.
     // Throws UserError.
-    Companion(ComparedAttempt compared, const Recording& shown, const Simulation& simulation,
+    Companion(ComparedAttempt compared, const Recording& shown, const SceneSetup& simulation,
               const LoadedScene& scene, const VoxelVolume& scanned);
 
     // Goes to where it stands while the replay shows this tick, for so long at most; true: it is there. What

@@ -26,7 +26,7 @@ class Comparison {
     // What is shown; all must outlive this object. `scanned` is the bone before anything has changed it.
     struct Shown {
         const Recording& recording;
-        const Simulation& simulation;
+        const SceneSetup& simulation;
         const LoadedScene& scene;
         const VoxelVolume& scanned;
         const Player& player;

@@ -52,7 +52,7 @@ class ReplayServer {
         : recording_(options.journal),
           against_(openAgainst(options, recording_)),
           scene_(recording_.scene()),
-          simulation_(makeSimulation(scene_)),
+          simulation_(setUpScene(scene_)),
           bones_(recording_.readBones(*simulation_.bone)),
           keyframes_(bones_.keyframes),
           events_(recording_),
@@ -202,7 +202,7 @@ class ReplayServer {
     Recording recording_;
     std::optional<ComparedAttempt> against_;  // until it is handed on
     LoadedScene scene_;
-    Simulation simulation_;
+    SceneSetup simulation_;
     Recording::Bones bones_;
     Keyframes keyframes_;
     ReplayEvents events_;

@@ -1,5 +1,5 @@
 // Shows a recorded session as a live one, to any number of viewers: `bonemill_lab replay`
-// (docs/teach/replay.md).
+// (docs/howto/replay.md).
 #pragma once
 
 #include <cstdint>

@@ -16,7 +16,7 @@ VoxelVolume startOf(const Rerun& rerun, const BoneModel& bone, const Keyframe& f
 
 }  // namespace
 
-Survey::Survey(const Recording& recording, const Simulation& simulation, const LoadedScene& scene,
+Survey::Survey(const Recording& recording, const SceneSetup& simulation, const LoadedScene& scene,
                const Recording::Bones& bones, Keyframes& keyframes, ReplayEvents& events)
     : recording_(recording),
       keyframes_(keyframes),

@@ -236,7 +236,7 @@ class Survey {
   public:
     // All must outlive this object. `scanned` is the simulation's bone before anything has changed it, and is
     // copied.
-    Survey(const Recording& recording, const Simulation& simulation, const LoadedScene& scene,
+    Survey(const Recording& recording, const SceneSetup& simulation, const LoadedScene& scene,
            const Recording::Bones& bones, Keyframes& keyframes, ReplayEvents& events);
 
     void start();

@@ -113,7 +113,7 @@ fs::path newJournalPath(const fs::path& folder, uint32_t session, const fs::path
 }
 
 JournalConfig journalConfigOf(const ServerOptions& options, const LoadedScene& loaded,
-                              const Simulation& simulation) {
+                              const SceneSetup& simulation) {
     JournalConfig config;
     config.recorded = recordedEffectsOf(loaded.scene.effects());
     config.rate_hz = loaded.scene.loop().rate_hz();

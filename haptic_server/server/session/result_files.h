@@ -25,7 +25,7 @@ std::filesystem::path newJournalPath(const std::filesystem::path& folder, uint32
 
 // Reads all files of the scene once more, for their digests. Throws UserError.
 JournalConfig journalConfigOf(const ServerOptions& options, const LoadedScene& loaded,
-                              const Simulation& simulation);
+                              const SceneSetup& simulation);
 
 // Where the scenes of a session put their files: never over what any scene that can be chosen reads, and a
 // later scene's never over what is there already. It belongs to one normal thread.

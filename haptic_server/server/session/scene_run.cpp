@@ -40,7 +40,7 @@ constexpr int64_t kLastMeshingNs = kNsPerSecond / 2;
 constexpr int64_t kLastPublishingNs = kNsPerSecond / 2;
 
 DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& loop,
-                              const Simulation& simulation) {
+                              const SceneSetup& simulation) {
     DeviceLinkIoConfig config;
     config.ends_with_device = options.until_device_leaves;
     config.period_ns = int64_t(std::llround(double(kNsPerSecond) / loop.rate_hz()));
@@ -82,7 +82,7 @@ LoadedScene loadSceneOf(const ServerOptions& options) {
     return loaded;
 }
 
-SceneRun::SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation simulation,
+SceneRun::SceneRun(const ServerOptions& options, LoadedScene loaded, SceneSetup simulation,
                    std::optional<ResumedSession> resumed, const ServerParts& parts)
     : options_(options),
       loaded_(std::move(loaded)),

@@ -41,7 +41,7 @@ class SceneRun {
   public:
     // `options` are those of this scene: its file, and where its files go. With `resumed` it begins with that
     // bone. Throws UserError.
-    SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation simulation,
+    SceneRun(const ServerOptions& options, LoadedScene loaded, SceneSetup simulation,
              std::optional<ResumedSession> resumed, const ServerParts& parts);
     ~SceneRun();
     SceneRun(const SceneRun&) = delete;
@@ -85,7 +85,7 @@ class SceneRun {
 
     ServerOptions options_;
     LoadedScene loaded_;
-    Simulation simulation_;
+    SceneSetup simulation_;
     ServerParts parts_;
     BoneHistory history_;
     AccuracySwitch accuracy_;

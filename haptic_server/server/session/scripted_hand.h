@@ -1,5 +1,5 @@
 // A scripted hand that has done all of its script rests. Then clients may have it begin anew, or a viewer's
-// mouse may take its place (docs/teach/viewer.md). Whoever takes over is remembered, until another scene.
+// mouse may take its place (docs/howto/mouse.md). Whoever takes over is remembered, until another scene.
 //
 // The hand says itself, with its samples, that its script has ended; what is ordered of it goes to
 // device_daemon. All members belong to the publisher thread.

@@ -57,12 +57,12 @@ class Server {
   private:
     struct Loaded {
         LoadedScene scene;
-        Simulation simulation;
+        SceneSetup simulation;
         std::optional<ResumedSession> resumed = {};
     };
     static Loaded load(const ServerOptions& options) {
         LoadedScene scene = loadSceneOf(options);
-        Simulation simulation = makeSimulation(scene);
+        SceneSetup simulation = setUpScene(scene);
         return {std::move(scene), std::move(simulation)};
     }
     // The journal is read while the scene is.

@@ -31,7 +31,7 @@ std::optional<Answer> SessionCommands::carryOut(const topics::Command& command) 
     if (controls_.replay) return carryOutInReplay(command);
     switch (command.action_case()) {
         case topics::Command::kReplay:
-            return Answer::refused("this is a live session, not a replay (docs/teach/replay.md)");
+            return Answer::refused("this is a live session, not a replay (docs/howto/replay.md)");
         case topics::Command::kResetVolume:
             return restore(Checkpoints::kScannedBone);
         case topics::Command::kPauseMilling:
@@ -95,7 +95,7 @@ std::optional<Answer> SessionCommands::carryOutInReplay(const topics::Command& c
         default:
             return Answer::refused(
                 "this is a replay of a recorded session: it is led, not commanded "
-                "(docs/teach/replay.md)");
+                "(docs/howto/replay.md)");
     }
 }
 

@@ -75,7 +75,7 @@ Eigen::AlignedBox3d boneBox(const BoneModel& bone) {
 }
 
 // Viewers show materials by their colours only.
-const BoneProperties* shownProperties(const scene::Scene& scene, const Simulation& simulation) {
+const BoneProperties* shownProperties(const scene::Scene& scene, const SceneSetup& simulation) {
     const scene::Scene shown = shownSceneOf(scene, simulation.segment_colors);
     const bool has_colours =
         std::ranges::any_of(shown.material(), [](const scene::Material& m) { return m.has_color(); });
@@ -87,7 +87,7 @@ DensityScale scaleOf(const DensityMapping& mapping) {
 }
 
 // The tool in use is still missing in it.
-topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulation) {
+topics::SceneInfo sceneInfo(const scene::Scene& scene, const SceneSetup& simulation) {
     topics::SceneInfo info;
     info.set_name(scene.name());
     info.set_title(titleOf(scene));
@@ -114,7 +114,7 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
 }
 
 // It is for people, and must not keep the session waiting. Nothing is under way without structures.
-std::future<std::vector<NodeMesh>> meshingStructures(const Simulation& simulation) {
+std::future<std::vector<NodeMesh>> meshingStructures(const SceneSetup& simulation) {
     const EffectConfigs& effects = simulation.tick.effects;
     const bool are_there =
         std::ranges::any_of(effects.materials, [](const MaterialProperties& m) { return m.is_protected; });
@@ -133,7 +133,7 @@ std::future<std::vector<NodeMesh>> meshingStructures(const Simulation& simulatio
 
 }  // namespace
 
-ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
+ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const SceneSetup& simulation,
                          const BoneHistory& history, const AccuracyFigures& figures, MeshOutbox& outbox,
                          Recorder& recorder, ShownDevice device, SessionCommands& commands, TaskMonitor& task,
                          double bytes_per_s)

@@ -28,7 +28,7 @@ class ShowSession {
 
     // Node meshes and densities take at most `bytes_per_s`, the latter a part of what the former leave.
     // References must outlive this object.
-    ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
+    ShowSession(Publisher& publisher, const scene::Scene& scene, const SceneSetup& simulation,
                 const BoneHistory& history, const AccuracyFigures& figures, MeshOutbox& outbox,
                 Recorder& recorder, ShownDevice device, SessionCommands& commands, TaskMonitor& task,
                 double bytes_per_s);

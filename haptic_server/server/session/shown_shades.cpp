@@ -96,7 +96,7 @@ void describeShades(const ShownShades& shades, topics::SceneInfo& info) {
     for (const scene::Material& shade : shades.list) *info.add_materials() = shade;
 }
 
-ShownBone::ShownBone(const scene::Scene& scene, const Simulation& simulation, const VoxelVolume& scanned)
+ShownBone::ShownBone(const scene::Scene& scene, const SceneSetup& simulation, const VoxelVolume& scanned)
     : scanned_(scanned), materials_(simulation.tick.effects.materials) {
     const scene::Scene shown = shownSceneOf(scene, simulation.segment_colors);
     if (!wantsVertexMaterials(shown)) return;

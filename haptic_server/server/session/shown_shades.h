@@ -29,7 +29,7 @@ void describeShades(const ShownShades& shades, topics::SceneInfo& info);
 // it.
 class ShownBone {
   public:
-    ShownBone(const scene::Scene& scene, const Simulation& simulation, const VoxelVolume& scanned);
+    ShownBone(const scene::Scene& scene, const SceneSetup& simulation, const VoxelVolume& scanned);
     VertexLook look() noexcept { return {properties_, shade_ ? &*shade_ : nullptr, &scanned_, &materials_}; }
 
   private:

@@ -1,4 +1,4 @@
-// Clients tune the contact law of a live session here (docs/research/stability.md, Tuning): what they ask
+// Clients tune the contact law of a live session here (docs/howto/tune.md): what they ask
 // for is checked, made for the tick, noted in the journal, and only then chosen. All members belong to the
 // publisher thread, or to whoever runs none beside it.
 #pragma once

@@ -156,7 +156,7 @@ std::string classPage(const std::vector<AttemptResult>& results, const std::stri
     return out +
            element("footer",
                    "One attempt says little: judge by the mean of three or more. What each figure is, and "
-                   "what it does not say: docs/teach/assessment.md. bonemill is no medical device.") +
+                   "what it does not say: docs/reference/assessment.md. bonemill is no medical device.") +
            "</body></html>\n";
 }
 

@@ -239,7 +239,7 @@ std::string footOf(const AttemptResult& result) {
         "footer",
         "Scene " + escaped(result.scene_id) + ", hash " + escaped(result.scene_hash) +
             ". One attempt says little: judge by the mean of three or more. What each figure is, and "
-            "what it does not say: docs/teach/assessment.md. bonemill is no medical device.");
+            "what it does not say: docs/reference/assessment.md. bonemill is no medical device.");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A questionnaire as a data file (docs/research/study.md has its fields), what counts as an answer to it, and
+// A questionnaire as a data file (docs/howto/study.md has its fields), what counts as an answer to it, and
 // its scores. Pure after reading; any thread may read a form.
 #pragma once
 

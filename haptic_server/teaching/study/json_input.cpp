@@ -110,7 +110,7 @@ void JsonObject::allowOnly(const std::vector<std::string_view>& keys) const {
     for (const auto& [key, value] : json_.items())
         if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
             const std::string shown = isPlainText(key) ? key.substr(0, kMaxIdentifier) : "?";
-            throw UserError(place_ + ": does not know a field \"" + shown + "\"; see docs/research/study.md");
+            throw UserError(place_ + ": does not know a field \"" + shown + "\"; see docs/howto/study.md");
         }
 }
 

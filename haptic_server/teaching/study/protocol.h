@@ -1,4 +1,4 @@
-// What a study planned before its first participant: protocol.json of its folder (docs/research/study.md has
+// What a study planned before its first participant: protocol.json of its folder (docs/howto/study.md has
 // its fields), and in which order a participant meets conditions and tasks. Pure after reading; any thread
 // may read it.
 #pragma once

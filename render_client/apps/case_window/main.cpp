@@ -1,4 +1,4 @@
-// case_window makes training cases of scans in a window (docs/teach/cases.md).
+// case_window makes training cases of scans in a window (docs/howto/cases.md).
 #include <sys/stat.h>
 
 #include <algorithm>

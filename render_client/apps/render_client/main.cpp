@@ -1,4 +1,4 @@
-// render_client shows a session (docs/teach/viewer.md), or does here what needs no picture.
+// render_client shows a session (docs/reference/viewer.md), or does here what needs no picture.
 #include <malloc.h>
 #include <spdlog/spdlog.h>
 

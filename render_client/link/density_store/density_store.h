@@ -17,7 +17,7 @@ namespace bonemill {
 
 // The grid of the scan's voxels, cut into bricks of equal edge. It is for any thread.
 //
-// Voxel (i, j, k) lies at origin_m + spacing_m ∘ (i, j, k) in the volume frame V (docs/develop/frames.md).
+// Voxel (i, j, k) lies at origin_m + spacing_m ∘ (i, j, k) in the volume frame V (docs/reference/frames.md).
 // Bricks are numbered x fastest; the last ones of an axis may reach beyond the grid.
 struct DensityGrid {
     Eigen::Vector3i voxels;     // per axis, at least 1

@@ -76,7 +76,8 @@ const char* whatItWaitsFor(SafetyState state, const topics::Device& device) {
     return has_switch && state == SafetyState::kPaused ? "let the switch go and press it again" : nullptr;
 }
 
-// A device that could not hold the scene's coupling quietly gets a softer one (docs/research/stability.md).
+// A device that could not hold the scene's coupling quietly gets a softer one
+// (docs/explanation/stability.md).
 std::string stiffnessText(const topics::Device& device) {
     constexpr double kAllButAll = 0.995;
     const auto percent = [](double share) {

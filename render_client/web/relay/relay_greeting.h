@@ -1,5 +1,5 @@
-// What a gateway and its relay say to each other before they pass bytes on (docs/lab/gateway.md, "Relay"). A
-// gateway proves by a shared secret that it is one; guests know nothing of it: their first byte, a TLS
+// What a gateway and its relay say to each other before they pass bytes on (docs/howto/gateway.md, "Relay").
+// A gateway proves by a shared secret that it is one; guests know nothing of it: their first byte, a TLS
 // record's, tells them apart.
 //
 //   gateway  kMagic, Ask, GuestId (zeros with kControl)

@@ -1,4 +1,4 @@
-# Measured against predicted, for docs/research/real_numbers.md. `compare` writes what it reads.
+# Measured against predicted, for docs/explanation/real_numbers.md. `compare` writes what it reads.
 set terminal pngcairo size 800,760 font 'sans,11'
 set output 'predictions.png'
 set logscale xy

@@ -1,4 +1,4 @@
-# The picture of docs/research/real_numbers.md: published figures are black, ours coloured. `curves` writes what it reads.
+# The picture of docs/explanation/real_numbers.md: published figures are black, ours coloured. `curves` writes what it reads.
 set terminal pngcairo size 1150,1400 font 'sans,11'
 set output 'real_numbers.png'
 set multiplot layout 3,2 margins 0.075,0.985,0.045,0.965 spacing 0.085,0.075

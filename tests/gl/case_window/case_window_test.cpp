@@ -66,7 +66,7 @@ TEST_F(RealWindow, MakesACaseOfWhatIsTypedAndClicked) {
         clickAt(make);  // disabled, or not yet there, until bone was found
         return std::filesystem::exists(scene);
     });
-    EXPECT_NE(makeSimulation(loadScene(scene)).bone, nullptr);
+    EXPECT_NE(setUpScene(loadScene(scene)).bone, nullptr);
     expect("its pictures", [&] { return window_->outSoFar().find("mill it:") != std::string::npos; });
     EXPECT_TRUE(std::filesystem::exists(folder_ / "case/preview.png"));
     EXPECT_TRUE(std::filesystem::exists(folder_ / "case/case.png"));

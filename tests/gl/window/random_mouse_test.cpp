@@ -1,6 +1,6 @@
 // A hand that knows nothing moves the mouse in the viewer's window: whatever it does, no program stumbles, no
 // force is above the device's norms, and the safety states see no reason to stop. BONEMILL_MOUSE_SECONDS says
-// for how long (docs/lab/safety.md).
+// for how long (docs/explanation/safety.md).
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

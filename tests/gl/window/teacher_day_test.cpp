@@ -298,7 +298,7 @@ TEST_F(TeacherDay, TakesTheWindowAloneAndFewClicks) {
     click("Replay");
     expectToPlayFromWorstMoment(twin_->lesson()->attempts(int(kTrainees.size()) - 1));
     EXPECT_LE(clicks_, kMostClicks);
-    EXPECT_EQ(clicks_, kClicks) << "docs/teach/start.md has the table";
+    EXPECT_EQ(clicks_, kClicks) << "docs/howto/start.md has the table";
     EXPECT_EQ(turns_to_end_, 2);
 }
 

@@ -50,5 +50,27 @@ TEST_F(BonemillPc, ItsVersionIsThatOfItsPrograms) {
     EXPECT_EQ(rig_.call({"--version"}).out, "bonemill 1.2.3 (--version)\n");
 }
 
+TEST_F(BonemillPc, TheHandbookOpensAtThePageThatAMessageNames) {
+    expectRefusal(rig_.call({"handbook"}), "install the package bonemill-doc");
+    const std::filesystem::path pages = rig_.folder() / "share/doc/bonemill/handbook";
+    std::filesystem::create_directories(pages / "howto");
+    test::writeFile(pages / "index.html", "first");
+    test::writeFile(pages / "howto/security.html", "who may come in");
+    rig_.putProgram("xdg-open", "#!/bin/sh\necho \"browser $1\"\n");
+    const auto open = [&](const std::vector<std::string>& words) {
+        std::vector<std::string> all{"/usr/bin/env", "PATH=" + rig_.folder() / "bin:" + std::getenv("PATH")};
+        for (const std::string& word : rig_.words(words)) all.push_back(word);
+        return test::run(all);
+    };
+    const std::string page = std::filesystem::canonical(pages / "howto/security.html");
+    for (const char* name : {"docs/howto/security.md", "howto/security", "security"})
+        EXPECT_EQ(open({"handbook", name}).out, page + "\nbrowser " + page + "\n") << name;
+    EXPECT_NE(open({"handbook"}).out.find("/handbook/index.html\nbrowser "), std::string::npos);
+    rig_.setDisplay(false);
+    EXPECT_EQ(open({"handbook", "security"}).out, page + "\n");
+    expectRefusal(open({"handbook", "May Come"}), "these have that word: howto/security");
+    expectRefusal(open({"handbook", "xyzzy"}), "has no page xyzzy, and none with that word");
+}
+
 }  // namespace
 }  // namespace bonemill

@@ -16,7 +16,7 @@ class CheckDocs : public testing::Test {
     CheckDocs() {
         set("common/rt/clock.h", "");
         set("docs/images/burr.png", "");
-        set("docs/teach/tool.md", "# The tool\n\n## Frame T\n\n![The burr](../images/burr.png)\n");
+        set("docs/reference/tool.md", "# The tool\n\n## Frame T\n\n![The burr](../images/burr.png)\n");
         readme("");
     }
     void set(const std::string& file, const std::string& content) {
@@ -26,9 +26,9 @@ class CheckDocs : public testing::Test {
     }
     void readme(const std::string& more) {
         set("README.md",
-            "# A tree\n\nThe [tool](docs/teach/tool.md#frame-t) has its time from `common/rt/clock.h`, "
+            "# A tree\n\nThe [tool](docs/reference/tool.md#frame-t) has its time from `common/rt/clock.h`, "
             "`rt/clock.h` or\n"
-            "`clock.h`; its results lie in `build/results.h`.\n\n```\ndocs/teach/tool.md\n```\n\n" +
+            "`clock.h`; its results lie in `build/results.h`.\n\n```\ndocs/reference/tool.md\n```\n\n" +
                 more);
     }
     Finished check() { return test::run({test::sourceDir() + "/tests/support/check_docs", root_.path()}); }
@@ -50,8 +50,8 @@ TEST_F(CheckDocs, ATreeInOrderPasses) {
 
 TEST_F(CheckDocs, LinksAndAnchorsMustExist) {
     expectFound("See [this](docs/gone.md).\n", "10: the link docs/gone.md leads nowhere");
-    expectFound("See [this](docs/teach/tool.md#frame-d).\n",
-                "10: docs/teach/tool.md has no heading #frame-d");
+    expectFound("See [this](docs/reference/tool.md#frame-d).\n",
+                "10: docs/reference/tool.md has no heading #frame-d");
     expectFound("See [this](#nowhere).\n", "10: README.md has no heading #nowhere");
 }
 
@@ -97,6 +97,15 @@ TEST_F(CheckDocs, OptionsMustBeThoseOfTheProgram) {
                 "11: bin/haptic_server has no option --slow");
     expectFound("```\ndeploy/demo --frames 3 | sort --unique\n```\n",
                 "11: deploy/demo has no option --frames");
+}
+
+TEST_F(CheckDocs, WhatAProgramIsSaidToSayStandsInASource) {
+    set("haptic_server/apps/main.cpp",
+        "throw UserError(path + \": the disk is \"\n    \"full; tidy up\");\n");
+    set("deploy/start", "fail \"$1 is gone\"\n");
+    readme("It says “: the disk is full; tidy up”, “the disk … tidy up” and “is gone”.\n");
+    EXPECT_EQ(check().exit_code, 0) << check().out;
+    expectFound("| “the disk is empty” | do |\n", "10: no source says “the disk is empty”");
 }
 
 TEST_F(CheckDocs, EveryPackageHasItsRow) {

@@ -63,7 +63,7 @@ TEST_F(RoomTests, CodeWithoutATestIsAFailureAndDocumentsAreNot) {
     EXPECT_NE(code.err.find("no room has render_client/apps/render_client/main.cpp"), std::string::npos)
         << code.err;
     EXPECT_EQ(code.out, "");
-    EXPECT_EQ(ask({"--changed", "docs/teach/tool.md"}).exit_code, 0);
+    EXPECT_EQ(ask({"--changed", "docs/reference/tool.md"}).exit_code, 0);
 }
 
 TEST_F(RoomTests, AnUnknownRoomIsAnsweredWithTheList) {

@@ -1,6 +1,6 @@
 // Server, daemon and emulator are killed and stopped at random moments, again and again: each time the force
 // goes, it does not come back before the enabling switch is pressed anew, and the session goes on when what
-// was gone is back. BONEMILL_CHAOS_ROUNDS says how often (docs/lab/safety.md).
+// was gone is back. BONEMILL_CHAOS_ROUNDS says how often (docs/explanation/safety.md).
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // Judges what passes on the wire between device_daemon and the motors: no force is ordered, and none given,
-// while the hand is not engaged, but for the ramp that leads out of it (docs/lab/safety.md).
+// while the hand is not engaged, but for the ramp that leads out of it (docs/explanation/safety.md).
 //
 // It is for one thread.
 #pragma once

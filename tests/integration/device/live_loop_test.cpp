@@ -1,6 +1,6 @@
 // Closes the loop live: ares_emulator, device_daemon and haptic_server, over UDP and shared memory. A tool
 // that is pressed on bone must come to rest, as in the stability suite's simulated time
-// (docs/research/stability.md).
+// (docs/explanation/stability.md).
 //
 // The device has no dry friction: with the usual 0.2 N the handle sticks even where the loop would shake.
 //

@@ -1,6 +1,6 @@
 // Reads what a live session has recorded, and says how quiet its loop was at rest under load.
 //
-// Frames and units are those of the trace (docs/research/simulate.md). It is for tests, in one thread.
+// Frames and units are those of the trace (docs/reference/simulate.md). It is for tests, in one thread.
 #pragma once
 
 #include <Eigen/Core>

@@ -70,13 +70,13 @@ class EffectIdentity : public testing::TestWithParam<const char*> {
         if (scene_.effects().has_energy_removal())
             scene_.mutable_effects()->mutable_energy_removal()->set_fluted_edge_n_per_mm(0.2);
     }
-    Simulation simulationOf(const scene::Scene& scene) const {
+    SceneSetup simulationOf(const scene::Scene& scene) const {
         test::writeScene(folder_ / "scene.textproto", scene);
-        return makeSimulation(loadScene(folder_ / "scene.textproto"));
+        return setUpScene(loadScene(folder_ / "scene.textproto"));
     }
     // The run takes `effects`, if given, instead of the scene's own, on a bone that nobody has touched.
     Outcome run(const scene::Scene& scene, const EffectConfigs* effects = nullptr) const {
-        Simulation simulation = simulationOf(scene);
+        SceneSetup simulation = simulationOf(scene);
         if (effects) simulation.tick.effects = *effects;
         BoneModel& bone = *simulation.bone;
         Outcome outcome;

@@ -60,11 +60,11 @@ class EffectMemory : public testing::Test {
   protected:
     EffectMemory() : simulation_(makeScene()), all_(simulation_.tick.effects) {}
 
-    Simulation makeScene() const {
+    SceneSetup makeScene() const {
         const test::EveryEffectBlock block;
         test::writeBlock(folder_.path().string(), block);
         test::writeScene(folder_ / "scene.textproto", test::everyEffectScene(block, test::kByEnergy));
-        return makeSimulation(loadScene(folder_ / "scene.textproto"));
+        return setUpScene(loadScene(folder_ / "scene.textproto"));
     }
     EffectConfigs only(const std::string& which) const {
         EffectConfigs configs = all_;
@@ -80,7 +80,7 @@ class EffectMemory : public testing::Test {
     }
 
     test::TemporaryFolder folder_;
-    Simulation simulation_;
+    SceneSetup simulation_;
     EffectConfigs all_;
 };
 

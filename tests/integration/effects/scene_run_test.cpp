@@ -44,7 +44,7 @@ class SceneRun : public testing::Test {
     }
     ShippedRun run(const std::string& name) const {
         const LoadedScene loaded = loadScene(folder_ / ("deploy/scenes/" + name + ".textproto"));
-        Simulation simulation = makeSimulation(loaded);
+        SceneSetup simulation = setUpScene(loaded);
         for (const std::string& warning : simulation.warnings) ADD_FAILURE() << warning;
         BoneModel& bone = *simulation.bone;
         const MeshGrid grid(bone.volume, bone.lattice);

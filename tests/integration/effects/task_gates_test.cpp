@@ -53,7 +53,7 @@ class TaskGates : public testing::Test {
     static Attempt attemptAt(const std::string& scene_file,
                              const Eigen::Vector3d& astray_mm = Eigen::Vector3d::Zero()) {
         const LoadedScene loaded = loadScene(scene_file);
-        Simulation simulation = makeSimulation(loaded);
+        SceneSetup simulation = setUpScene(loaded);
         const VoxelVolume scanned = simulation.bone->volume.withoutSpareBricks();
         TaskRun task(loaded.scene, simulation);
         std::vector<DeviceInput> path =
@@ -160,7 +160,7 @@ TEST(SoftNerveFarFromBone, IsLostWhereTheBurrGoesThroughIt) {
     const test::TemporaryFolder folder;
     writeNerveScene(folder);
     const LoadedScene loaded = loadScene(folder / "nerve.textproto");
-    Simulation simulation = makeSimulation(loaded);
+    SceneSetup simulation = setUpScene(loaded);
     const VoxelVolume scanned = simulation.bone->volume.withoutSpareBricks();
     TaskRun task(loaded.scene, simulation);
     std::vector<Pose> path;

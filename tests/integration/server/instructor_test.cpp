@@ -117,7 +117,7 @@ class Instructor : public testing::Test {
     // The hash is that of what the server would stream.
     uint64_t hashOfFile(const std::string& volume) {
         writeScene("saved.textproto", volume);
-        const auto bone = makeSimulation(loadScene(folder_ / "saved.textproto")).bone;
+        const auto bone = setUpScene(loadScene(folder_ / "saved.textproto")).bone;
         std::vector<NodeMesh> nodes;
         Mesher(bone->volume, bone->lattice, MeshGrid::kStreamedStepsPerCell).pass([&](NodeMesh&& node) {
             nodes.push_back(std::move(node));

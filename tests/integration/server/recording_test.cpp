@@ -164,7 +164,7 @@ class Recording : public testing::Test {
         const JournalContent content = readJournalContent(killed, KeepInputs::kNo);
         EXPECT_EQ(content.problem, "") << "it was mended";
         const LoadedScene loaded = recordedScene(content.manifest, killed);
-        const Simulation simulation = makeSimulation(loaded);
+        const SceneSetup simulation = setUpScene(loaded);
         const BoneModel& bone = *simulation.bone;
         const auto newest = bonesOf(killed, bone).back();  // of the bone that is milled, not of checkpoints
         const auto beginning = bonesOf(next, bone).front();

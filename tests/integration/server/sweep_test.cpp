@@ -78,7 +78,7 @@ TEST_F(Sweep, WhatIsWrongIsOneMessage) {
     }
 }
 
-// The worked example of docs/research/simulate.md.
+// The worked example of docs/howto/check_physics.md.
 TEST_F(Sweep, AWayOfAFewWordsPressesABallOnAPlane) {
     ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--voxel-mm", "0.125", "--dims", "64", "64",
                    "64", "--out", folder_ / "slab.nrrd"})

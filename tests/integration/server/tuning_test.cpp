@@ -81,7 +81,7 @@ TEST_F(Tuning, AnInstructorsOrderIsFeltShownAndRunsAgainToTheBit) {
     EXPECT_EQ(refused.exit_code, 1);
     EXPECT_EQ(
         refused.out,
-        "tune coupling { max_force_n: 1 }: refused: only an instructor may that (docs/lab/security.md)\n");
+        "tune coupling { max_force_n: 1 }: refused: only an instructor may that (docs/howto/security.md)\n");
     const Finished beyond = tune("coupling { max_force_n: 21 }");
     EXPECT_EQ(beyond.exit_code, 1);
     EXPECT_NE(beyond.out.find("is above what the scene file says (20)"), std::string::npos) << beyond.out;

@@ -343,7 +343,7 @@ TEST(SceneTable, schemaRowsHaveUnitDefaultAndRange) {
 
 // BONEMILL_WRITE_DOCS=1 writes the table instead of comparing it.
 TEST(SceneTable, docsHoldTheTableOfTheSchema) {
-    const fs::path page = fs::path(test::sourceDir()) / "docs" / "lab" / "scene.md";
+    const fs::path page = fs::path(test::sourceDir()) / "docs/reference/scene.md";
     std::ifstream stream(page);
     std::string text{std::istreambuf_iterator<char>(stream), {}};
     const std::string heading = "## Every field\n\n";

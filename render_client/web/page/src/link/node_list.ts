@@ -1,5 +1,5 @@
 // What the page holds of the bone: which leaf with which revision. The newer epoch wins, then the newer revision, as
-// docs/lab/network.md says; and there is a bound to what a hostile server can make a browser hold.
+// docs/reference/topics.md says; and there is a bound to what a hostile server can make a browser hold.
 import { demand } from './checks';
 
 const kMostNodes = 65536;

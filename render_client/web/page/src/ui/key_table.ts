@@ -1,4 +1,4 @@
-// Which key does what: the keys of the native viewer (docs/teach/viewer.md) that mean something in a page.
+// Which key does what: the keys of the native viewer (docs/reference/viewer.md) that mean something in a page.
 
 export type Action =
   | 'firstView' | 'cutX' | 'cutY' | 'cutZ' | 'flipX' | 'flipY' | 'flipZ' | 'cutLower' | 'cutHigher' | 'transparency'

@@ -48,7 +48,8 @@ Datagram datagramOf(std::span<const std::byte> bytes) {
     return datagram;
 }
 
-// The oracle: it reads bytes at the offsets that docs/lab/ares_link.md names, and knows nothing of the codec.
+// The oracle: it reads bytes at the offsets that docs/reference/ares_link.md names, and knows nothing of the
+// codec.
 template <class T>
 T at(std::span<const std::byte> bytes, size_t offset) {
     T value;

@@ -76,7 +76,7 @@ TEST_F(RecordingFuzz, MessagesThatSomebodyChanged) {
             messages.push_back({topic, message.time_ns, std::string(message.data)});
     });
     const LoadedScene scene = Recording(journal_).scene();
-    const Simulation simulation = makeSimulation(scene);
+    const SceneSetup simulation = setUpScene(scene);
     std::mt19937 random(20);
     for (int round = 0; round < kRounds; ++round) {
         mcap::Writer writer(kJournalProfile, "bonemill fuzz");

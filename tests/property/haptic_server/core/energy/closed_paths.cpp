@@ -19,7 +19,7 @@ constexpr double kVoxel = 0.25e-3;
 constexpr double kAllowed = 1e-6;  // J that a path may give back, and of what it stored on its way
 constexpr double kAllowedShare = 1e-3;
 // The tool's waist at the edges of a slot has many rests, and snapping from one to another gains some energy,
-// the same in each preset (docs/research/stability.md). It stores up to 900 µJ there.
+// the same in each preset (docs/explanation/stability.md). It stores up to 900 µJ there.
 constexpr double kAllowedInSlot = 20e-6;
 const Vector3d kMiddle(4e-3, 4e-3, 4e-3);
 const Eigen::Quaterniond kUpright = expRotation({M_PI / 2, 0, 0});

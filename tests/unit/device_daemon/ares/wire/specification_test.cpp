@@ -1,4 +1,4 @@
-// docs/lab/ares_link.md says what the code does: its tables of fields, and its example.
+// docs/reference/ares_link.md says what the code does: its tables of fields, and its example.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -13,7 +13,7 @@ namespace bonemill::wire {
 namespace {
 
 std::string specification() {
-    return bonemill::test::readFile(bonemill::test::sourceDir() + "/docs/lab/ares_link.md");
+    return bonemill::test::readFile(bonemill::test::sourceDir() + "/docs/reference/ares_link.md");
 }
 
 std::string sectionOf(const std::string& heading) {

@@ -1,5 +1,5 @@
 // Every fault in every state: where it leads, how soon, and that the force never leaves the ramp.
-// docs/lab/safety.md shows the table that comes out; BONEMILL_WRITE_DOCS=1 writes it there.
+// docs/explanation/safety.md shows the table that comes out; BONEMILL_WRITE_DOCS=1 writes it there.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -224,7 +224,7 @@ std::string matrix() {
 }
 
 TEST(FaultMatrix, DocsHoldTheTable) {
-    const std::string page = test::sourceDir() + std::string("/docs/lab/safety.md");
+    const std::string page = test::sourceDir() + std::string("/docs/explanation/safety.md");
     std::ifstream stream(page);
     std::string text{std::istreambuf_iterator<char>(stream), {}};
     const std::string begin = "<!-- fault matrix -->\n", end = "<!-- end of the fault matrix -->\n";

@@ -21,7 +21,7 @@ TEST(Definitions, EachHasItsOwnNameAndWords) {
 
 // The page has a row "| `id` | version |" for each.
 TEST(Definitions, EachStandsInThePageWithItsVersion) {
-    std::ifstream file(test::sourceDir() + "/docs/teach/assessment.md");
+    std::ifstream file(test::sourceDir() + "/docs/reference/assessment.md");
     std::ostringstream page;
     page << file.rdbuf();
     for (const Definition& definition : techniqueDefinitions()) {

@@ -77,7 +77,7 @@ TEST_F(MakeCase, IsASceneThatRunsWithTheSameVoxels) {
     EXPECT_NE(said.find("iso-value"), std::string::npos) << said;
     EXPECT_NE(said.find("wrote "), std::string::npos);
     const LoadedScene loaded = loadScene(folder_ / "case/case.textproto");
-    const Simulation simulation = makeSimulation(loaded);
+    const SceneSetup simulation = setUpScene(loaded);
     EXPECT_TRUE(simulation.bone->volume.spacing().isConstant(0.375e-3, 1e-9))
         << "a quarter of the burr's radius";
     EXPECT_TRUE(simulation.surroundings);
@@ -108,7 +108,7 @@ TEST_F(MakeCase, OfAllBoneBeginsWhereItCanBeMilledWithABurrThatFits) {
     EXPECT_EQ(said.find("coarse for a burr"), std::string::npos) << said;
     const LoadedScene loaded = loadScene(folder_ / "case/case.textproto");
     EXPECT_EQ(loaded.scene.task().rfind("Find your way. All of the bone can be milled", 0), 0u);
-    const Simulation simulation = makeSimulation(loaded);
+    const SceneSetup simulation = setUpScene(loaded);
     EXPECT_EQ(simulation.tools[0].name, "8 mm ball");
     EXPECT_DOUBLE_EQ(simulation.tools[0].burr.radius, 4e-3);
     const Eigen::Vector3d bone = simulation.X_WD.position - Eigen::Vector3d(0, 0, 4e-3);
@@ -137,7 +137,7 @@ TEST_F(MakeCase, TakesSegmentsByTheirNames) {
     EXPECT_EQ(loaded.scene.material(0).label_size(), 2) << "alone, and with the nerve in it";
     EXPECT_EQ(loaded.scene.material(1).label_size(), 1);
     EXPECT_EQ(loaded.scene.material(1).color().green(), 0.75);
-    EXPECT_TRUE(makeSimulation(loaded).tick.effects.protected_field);
+    EXPECT_TRUE(setUpScene(loaded).tick.effects.protected_field);
     EXPECT_EQ(textOfFile(folder_ / "case/labels.nrrd").find("DOE"), std::string::npos);
     request_.out = folder_ / "other";
     request_.label_words = {"nerve"};

@@ -146,7 +146,7 @@ TemporalScan* WellPneumatisedBone::scan_ = nullptr;
 Spaces* WellPneumatisedBone::spaces_ = nullptr;
 
 // 4 to 14 ml of air in normal mastoids, and 11.2 to 21 cm² of walls a ml in CT of such voxels: the sources
-// are in docs/teach/volumes.md.
+// are in docs/reference/phantoms.md.
 TEST_F(WellPneumatisedBone, HasAirAndWallsAsPublished) {
     EXPECT_GT(spaces_->volume_ml, 4);
     EXPECT_LT(spaces_->volume_ml, 14);

@@ -1,6 +1,6 @@
 // Compares the gradient law on voxels with closed forms and with quadrature over the exact surface, at many
-// rotations and voxel sizes. The bounds are those that docs/research/accuracy.md promises for contact patches
-// at least 8 voxels wide.
+// rotations and voxel sizes. The bounds are those that docs/explanation/accuracy.md promises for contact
+// patches at least 8 voxels wide.
 #include <gtest/gtest.h>
 
 #include "tests/support/contact_scene.h"

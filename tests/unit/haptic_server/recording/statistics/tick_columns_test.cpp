@@ -66,7 +66,7 @@ TEST(EffectFigures, ThoseOfARunHaveKeysOfTheirOwn) {
 
 // BONEMILL_WRITE_DOCS=1 writes the table instead of comparing it.
 TEST(TickColumns, DocsHoldTheTableOfEffects) {
-    const auto page = std::filesystem::path(test::sourceDir()) / "docs" / "research" / "simulate.md";
+    const auto page = std::filesystem::path(test::sourceDir()) / "docs/reference/simulate.md";
     std::ifstream stream(page);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     stream.close();

@@ -1,4 +1,4 @@
-// Reads real scans where BONEMILL_CT_DATA names a folder that holds them (docs/teach/volumes.md), and is
+// Reads real scans where BONEMILL_CT_DATA names a folder that holds them (docs/reference/volumes.md), and is
 // skipped elsewhere. The other files prove the same behaviour with made data.
 #include <gtest/gtest.h>
 

@@ -84,7 +84,7 @@ TEST_F(ScannedBoneOfAScene, FineVoxelsAreAsHardAtTheSurfaceAsTheScansOwn) {
             soft += bone.materials.ids[at] == kNoMaterial;
     });
     EXPECT_EQ(soft, 0u);
-    const Simulation simulation = makeSimulation(sceneOf(region, hard));
+    const SceneSetup simulation = setUpScene(sceneOf(region, hard));
     const BoneProperties& properties = *simulation.tick.effects.properties;
     Density softest = kMaxDensity;
     forEachIndex({Eigen::Vector3i::Zero(), bone.volume.dims().array() - 1}, [&](const Eigen::Vector3i& v) {

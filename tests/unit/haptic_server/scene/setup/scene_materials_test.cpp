@@ -56,7 +56,7 @@ const std::string kMaterials =
     "material { name: 'nerve' label: 5 is_protected: true }\n";
 
 TEST_F(SceneMaterials, ComeFromValuesAndLabels) {
-    const Simulation simulation = makeSimulation(
+    const SceneSetup simulation = setUpScene(
         sceneOf("labels.nrrd", kMaterials + "effects { protected_structures { warning_distance_mm: 2 } }"));
     EXPECT_TRUE(simulation.warnings.empty() ||
                 simulation.warnings.front().find("no voxel is of") == std::string::npos);
@@ -79,27 +79,27 @@ TEST_F(SceneMaterials, ComeFromValuesAndLabels) {
 }
 
 TEST_F(SceneMaterials, AreSeenFartherWhereTheSceneWarnsFarther) {
-    const Simulation simulation = makeSimulation(
+    const SceneSetup simulation = setUpScene(
         sceneOf("labels.nrrd", kMaterials + "effects { protected_structures { warning_distance_mm: 5 } }"));
     EXPECT_EQ(simulation.tick.effects.protected_field->reach(), 5e-3 + 1e-3 + 1e-3);
 }
 
 TEST_F(SceneMaterials, OfEqualStiffnessDoNotAskForTheEffect) {
-    const Simulation simulation = makeSimulation(
-        sceneOf("", "material { name: 'hard' from_value: 1500 specific_energy_j_per_mm3: 2 }"));
+    const SceneSetup simulation =
+        setUpScene(sceneOf("", "material { name: 'hard' from_value: 1500 specific_energy_j_per_mm3: 2 }"));
     EXPECT_FALSE(simulation.tick.effects.material_stiffness);
 }
 
 TEST_F(SceneMaterials, WithoutThemNothingIsKept) {
-    const Simulation simulation = makeSimulation(sceneOf("", ""));
+    const SceneSetup simulation = setUpScene(sceneOf("", ""));
     EXPECT_FALSE(simulation.tick.effects.properties);
     EXPECT_FALSE(simulation.tick.effects.protected_field);
     EXPECT_TRUE(simulation.tick.effects.materials.empty());
 }
 
 TEST_F(SceneMaterials, ThatNoVoxelHasAreSaidSo) {
-    const Simulation simulation =
-        makeSimulation(sceneOf("labels.nrrd", kMaterials + "material { name: 'vessel' label: 6 }"));
+    const SceneSetup simulation =
+        setUpScene(sceneOf("labels.nrrd", kMaterials + "material { name: 'vessel' label: 6 }"));
     EXPECT_TRUE(std::ranges::any_of(simulation.warnings, [](const std::string& warning) {
         return warning.find("no voxel is of material 'vessel'") != std::string::npos;
     }));
@@ -108,7 +108,7 @@ TEST_F(SceneMaterials, ThatNoVoxelHasAreSaidSo) {
 // Each of these runs, and means something else than people think.
 TEST_F(SceneMaterials, WhatASceneDoesNotMeanIsSaid) {
     const auto isSaid = [&](const std::string& text, int iso, const std::string& words) {
-        const Simulation simulation = makeSimulation(sceneOf("", text, iso));
+        const SceneSetup simulation = setUpScene(sceneOf("", text, iso));
         return std::ranges::any_of(simulation.warnings, [&](const std::string& warning) {
             return warning.find(words) != std::string::npos;
         });
@@ -135,7 +135,7 @@ TEST_F(SceneMaterials, WhatASceneDoesNotMeanIsSaid) {
 }
 
 TEST_F(SceneMaterials, LabelsOfAnotherGridAreResampledAndThatIsSaid) {
-    const Simulation simulation = makeSimulation(sceneOf("short.nrrd", kMaterials));
+    const SceneSetup simulation = setUpScene(sceneOf("short.nrrd", kMaterials));
     EXPECT_TRUE(std::ranges::any_of(simulation.remarks, [](const std::string& remark) {
         return remark.find("short.nrrd: labels of 20 x 18 x 15 voxels") != std::string::npos &&
                remark.find("cover 93.8 %") != std::string::npos;
@@ -158,8 +158,8 @@ TEST_F(SceneMaterials, ComeFromSegmentsThatOverlap) {
     const std::string kCanal = "material { name: 'c' segment: 'canal' }\n",
                       kNerve = "material { name: 'n' segment: 'facial nerve' }\n";
     for (const bool is_nerve_later : {true, false}) {
-        const Simulation simulation =
-            makeSimulation(sceneOf("a.seg.nrrd", is_nerve_later ? kCanal + kNerve : kNerve + kCanal));
+        const SceneSetup simulation =
+            setUpScene(sceneOf("a.seg.nrrd", is_nerve_later ? kCanal + kNerve : kNerve + kCanal));
         const BoneProperties& properties = *simulation.tick.effects.properties;
         forEachIndex({Eigen::Vector3i::Zero(), {19, 17, 15}}, [&](const Eigen::Vector3i& v) {
             const int expected = !label(v, 0) ? 0 : isNerve(v) || !is_nerve_later ? 2 : 1;
@@ -167,12 +167,11 @@ TEST_F(SceneMaterials, ComeFromSegmentsThatOverlap) {
         });
     }
     expectUserError(
-        [&] { makeSimulation(sceneOf("a.seg.nrrd", kCanal + "material { name: 'n'\nsegment: 'dura' }")); },
+        [&] { setUpScene(sceneOf("a.seg.nrrd", kCanal + "material { name: 'n'\nsegment: 'dura' }")); },
         {"s.textproto:5: field `material[1].segment[0]`", "a.seg.nrrd", "canal, facial nerve"});
-    expectUserError([&] { makeSimulation(sceneOf("a.seg.nrrd", "material { name: 'n'\nlabel: 1 }")); },
+    expectUserError([&] { setUpScene(sceneOf("a.seg.nrrd", "material { name: 'n'\nlabel: 1 }")); },
                     {"s.textproto:4: field `material[0].label[0]`", "several layers"});
-    expectUserError([&] { makeSimulation(sceneOf("labels.nrrd", kCanal)); },
-                    {"labels.nrrd: names no segments"});
+    expectUserError([&] { setUpScene(sceneOf("labels.nrrd", kCanal)); }, {"labels.nrrd: names no segments"});
 }
 
 // A DICOM segmentation on pixels of 0.25 mm and slices of 0.75 mm: resampled, it is where it was drawn.
@@ -195,7 +194,7 @@ TEST_F(SceneMaterials, ComeFromADicomSegmentationOnAGridOfItsOwn) {
                                        "material { name: 'n' segment: 'nerve' is_protected: true }\n"
                                        "material { name: 'b' segment: 'beside' color { red: 0.25 } }\n"
                                        "material { name: 'none' label: 1 }\n");
-    const Simulation simulation = makeSimulation(loaded);
+    const SceneSetup simulation = setUpScene(loaded);
     const BoneProperties& properties = *simulation.tick.effects.properties;
     forEachIndex({Eigen::Vector3i::Zero(), {19, 17, 13}}, [&](const Eigen::Vector3i& v) {
         ASSERT_EQ(properties.material(v), v.y() < 9 ? 1 : 2) << v.transpose();
@@ -209,16 +208,16 @@ TEST_F(SceneMaterials, ComeFromADicomSegmentationOnAGridOfItsOwn) {
 }
 
 TEST_F(SceneMaterials, LabelsThatAreNotThereAreNamedWithTheirLine) {
-    expectUserError([&] { makeSimulation(sceneOf("none.nrrd", kMaterials)); },
+    expectUserError([&] { setUpScene(sceneOf("none.nrrd", kMaterials)); },
                     {"s.textproto:2: field `volume.label_path`: ", "none.nrrd"});
 }
 
 TEST_F(SceneMaterials, ProtectionOfNothingIsRefused) {
     expectUserError(
         [&] {
-            makeSimulation(sceneOf("labels.nrrd",
-                                   "material { name: 'nerve' label: 77 is_protected: true }\n"
-                                   "effects {\n virtual_fixture { } }"));
+            setUpScene(sceneOf("labels.nrrd",
+                               "material { name: 'nerve' label: 77 is_protected: true }\n"
+                               "effects {\n virtual_fixture { } }"));
         },
         {"s.textproto:5: field `effects.virtual_fixture` finds nothing to protect"});
 }

@@ -33,7 +33,7 @@ class SceneTask : public testing::Test {
                "material { name: 'rest' label: 1 } material { name: 'edge' label: 5 is_protected: true }\n"
                "assessment { "
             << assessment << " }";
-        return makeSimulation(loadScene(folder_ / "s.textproto")).task;
+        return setUpScene(loadScene(folder_ / "s.textproto")).task;
     }
     int64_t voxelsOf(const VoxelIds& map, uint8_t id) const {
         int64_t count = 0;

@@ -134,7 +134,7 @@ class ComparedReplay : public ComparisonTest {
   protected:
     ComparedReplay()
         : scene_(recording_.scene()),
-          simulation_(makeSimulation(scene_)),
+          simulation_(setUpScene(scene_)),
           bones_(recording_.readBones(*simulation_.bone)),
           keyframes_(bones_.keyframes),
           events_(recording_),
@@ -187,7 +187,7 @@ class ComparedReplay : public ComparisonTest {
     }
 
     LoadedScene scene_;
-    Simulation simulation_;
+    SceneSetup simulation_;
     Recording::Bones bones_;
     Keyframes keyframes_;
     ReplayEvents events_;

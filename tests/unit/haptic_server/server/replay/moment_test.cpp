@@ -29,7 +29,7 @@ TEST(Moment, IsTheBoneOfThatTickAndTheScansBoneStaysAsItIs) {
     const test::RecordedSession session = test::recordSession(folder.path());
     const Recording recording(session.journal);
     const LoadedScene scene = recording.scene();
-    const Simulation simulation = makeSimulation(scene);
+    const SceneSetup simulation = setUpScene(scene);
     const uint64_t scanned = hashOf(*simulation.bone);
     const RecordedMoment moment = momentOf(recording, simulation, scene, 0.9);
     const uint64_t tick = recording.tickAt(0.9);

@@ -19,7 +19,7 @@ class PlayerTest : public testing::Test {
         : session_(test::recordSession(folder_.path())),
           recording_(session_.journal),
           scene_(recording_.scene()),
-          simulation_(makeSimulation(scene_)),
+          simulation_(setUpScene(scene_)),
           bones_(recording_.readBones(*simulation_.bone)),
           keyframes_(bones_.keyframes),
           events_(recording_),
@@ -79,7 +79,7 @@ class PlayerTest : public testing::Test {
     test::RecordedSession session_;
     Recording recording_;
     LoadedScene scene_;
-    Simulation simulation_;
+    SceneSetup simulation_;
     Recording::Bones bones_;
     Keyframes keyframes_;
     ReplayEvents events_;

@@ -17,7 +17,7 @@ class RecordedScene : public testing::Test {
     std::string refusal() const {
         try {
             const Recording recording(session_.journal);
-            const Simulation simulation = makeSimulation(recording.scene());
+            const SceneSetup simulation = setUpScene(recording.scene());
             recording.readBones(*simulation.bone);
         } catch (const UserError& error) {
             return error.what();
@@ -67,7 +67,7 @@ TEST_F(RecordedScene, ABoneThatIsNotThereIsNotTheScans) {
 
 TEST_F(RecordedScene, ItsBonesTakeNoMoreMemoryThanTheyMay) {
     const Recording recording(session_.journal);
-    const Simulation simulation = makeSimulation(recording.scene());
+    const SceneSetup simulation = setUpScene(recording.scene());
     EXPECT_NO_THROW(recording.readBones(*simulation.bone, 1'000'000));
     EXPECT_THROW(recording.readBones(*simulation.bone, 1'000), UserError);
 }
@@ -75,7 +75,7 @@ TEST_F(RecordedScene, ItsBonesTakeNoMoreMemoryThanTheyMay) {
 TEST_F(RecordedScene, NobodyGoesOnWithAnotherVolume) {
     const Recording recording(session_.journal);
     const LoadedScene scene = recording.scene();
-    const Simulation simulation = makeSimulation(scene);
+    const SceneSetup simulation = setUpScene(scene);
     EXPECT_NO_THROW(momentOf(recording, simulation, scene, 0.5));
     std::ofstream(folder_ / "slab.nrrd", std::ios::app) << 'x';
     EXPECT_THROW(momentOf(recording, simulation, scene, 0.5), UserError);

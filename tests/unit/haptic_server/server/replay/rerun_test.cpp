@@ -18,13 +18,13 @@ struct Loaded {
     explicit Loaded(const std::filesystem::path& journal)
         : recording(journal),
           scene(recording.scene()),
-          simulation(makeSimulation(scene)),
+          simulation(setUpScene(scene)),
           bones(recording.readBones(*simulation.bone)),
           rerun(recording, simulation, bones.checkpoints, *simulation.bone, bones.keyframes.front()) {}
 
     Recording recording;
     LoadedScene scene;
-    Simulation simulation;
+    SceneSetup simulation;
     Recording::Bones bones;
     Rerun rerun;
 };

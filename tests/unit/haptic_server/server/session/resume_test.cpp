@@ -29,7 +29,7 @@ class Resume : public testing::Test {
         return unfinished ? unfinished->path.filename().string() : "";
     }
     ResumedSession resumed() const {
-        const Simulation simulation = makeSimulation(loadScene(session_.scene));
+        const SceneSetup simulation = setUpScene(loadScene(session_.scene));
         return ResumeReading(findUnfinished(folder_.path(), 1).value()).take(*simulation.bone);
     }
     // Up to the newest bone that is milled, and that too.

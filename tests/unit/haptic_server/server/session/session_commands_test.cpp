@@ -10,8 +10,9 @@ using test::SessionCommandsTest;
 
 TEST_F(SessionCommandsTest, WhoOnlyLooksChoosesNoSceneAndBeginsNoAttempt) {
     for (const topics::Command& command : {choiceOf("tooth"), startOf("Ann"), stop()})
-        EXPECT_EQ(order(command, topics::Viewer::VIEWER),
-                  "refused: a viewer only looks; to do this, join again as operator (docs/lab/security.md)");
+        EXPECT_EQ(
+            order(command, topics::Viewer::VIEWER),
+            "refused: a viewer only looks; to do this, join again as operator (docs/howto/security.md)");
     EXPECT_FALSE(lesson_.takeOrder());
     EXPECT_FALSE(lesson_.isAttemptRunning());
 }
@@ -175,8 +176,9 @@ TEST_F(SessionCommandsTest, NotesAreForWhoMayCommandAndNotTooOften) {
     note.mutable_add_remark()->set_note("here");
     erase.set_erase_remark(1);
     for (const topics::Command& command : {note, erase})
-        EXPECT_EQ(order(command, topics::Viewer::VIEWER),
-                  "refused: a viewer only looks; to do this, join again as operator (docs/lab/security.md)");
+        EXPECT_EQ(
+            order(command, topics::Viewer::VIEWER),
+            "refused: a viewer only looks; to do this, join again as operator (docs/howto/security.md)");
     EXPECT_EQ(commands_.remarks().count(), 0u);
     EXPECT_EQ(order(note, topics::Viewer::EXAMINER), "done");
     EXPECT_EQ(order(erase), "done");

@@ -30,7 +30,7 @@ struct Seen {
     double shade;            // 0 to 1
 };
 
-std::vector<Seen> shadedVertices(const LoadedScene& loaded, const Simulation& simulation) {
+std::vector<Seen> shadedVertices(const LoadedScene& loaded, const SceneSetup& simulation) {
     ShownBone shown(loaded.scene, simulation, simulation.bone->volume);
     const VertexLook look = shown.look();
     if (!look.shade) return {};
@@ -105,7 +105,7 @@ LoadedScene scannedBody(const test::TemporaryFolder& folder, double (*distance)(
 double ofBody(double (*distance)(const Vector3d& p)) {
     const test::TemporaryFolder folder;
     const LoadedScene loaded = scannedBody(folder, distance);
-    const Simulation simulation = makeSimulation(loaded);
+    const SceneSetup simulation = setUpScene(loaded);
     const std::vector<Seen> seen = shadedVertices(loaded, simulation);
     EXPECT_GT(seen.size(), 1000u);
     return shareOfChange(seen, 1e-3);
@@ -139,7 +139,7 @@ TEST(ShadeChange, TheMastoidOfARealHeadHasNoStripes) {
         GTEST_SKIP() << "invesalius-examples is not installed";
     if (!std::filesystem::exists(resolvePath(loaded, loaded.scene.volume().label_path())))
         GTEST_SKIP() << "deploy/make-phantoms has not run";
-    const Simulation simulation = makeSimulation(loaded);
+    const SceneSetup simulation = setUpScene(loaded);
     const double share = shareOfChange(shadedVertices(loaded, simulation), 1e-3);
     RecordProperty("share_percent", std::to_string(100 * share));
     EXPECT_LE(share, 0.02);

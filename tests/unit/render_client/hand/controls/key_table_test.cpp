@@ -42,7 +42,7 @@ TEST(KeyTable, ReleasesControlAndForeignKeysDoNothing) {
 }
 
 TEST(KeyTable, TheManualListsEveryKey) {
-    std::ifstream file(test::sourceDir() + "/docs/teach/viewer.md");
+    std::ifstream file(test::sourceDir() + "/docs/reference/viewer.md");
     const std::string manual{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     ASSERT_FALSE(manual.empty());
     const auto is_listed = [&](std::string_view label) {

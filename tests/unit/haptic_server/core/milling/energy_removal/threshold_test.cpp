@@ -41,7 +41,7 @@ TEST(Threshold, DoesNotKnowVoxelsAndTicks) {
 }
 
 // Over whole strokes, from R/h = 8 to 4: cuts as deep as some voxels hardly know them, thin ones do
-// (docs/teach/effects.md).
+// (docs/reference/effects.md).
 TEST(Threshold, KnowsTheVoxelsInThinCutsOnly) {
     for (const auto& [depth, most] : {std::pair{0.8e-3, 0.05}, {0.3e-3, 0.25}}) {
         const Stroke stroke{depth, 0.15, 6e-3, 0.5};

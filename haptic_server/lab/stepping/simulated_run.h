@@ -1,0 +1,57 @@
+// A run from the scanned bone on, by a hand that the caller has: the tick of a live session, without a
+// device, a clock or other processes. Equal hands give equal bits.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "haptic_server/core/tick/haptic_tick.h"
+#include "haptic_server/lab/stepping/stepped_run.h"
+
+namespace bonemill {
+
+// What a run has done so far: restoring it runs these ticks again, and so comes to the same bits. It never
+// changes; 72 bytes a tick.
+class RunCheckpoint {
+  public:
+    uint64_t ticks() const noexcept { return ticks_->size(); }
+
+  private:
+    friend class SimulatedRun;
+    struct Done {
+        HandStep hand;
+        uint32_t tool = 0;
+    };
+    std::shared_ptr<const std::vector<Done>> ticks_;
+};
+
+class SimulatedRun final : public SteppedRun {
+  public:
+    // Whoever wants no checkpoint spares the memory for it. Throws UserError.
+    SimulatedRun(const LoadedScene& loaded, size_t first_tool = 0, bool keeps_inputs = true);
+    ~SimulatedRun() override;
+
+    // The bone as scanned, and no tick: some hundredth of a second to some seconds, by the bone's size.
+    void reset();
+    // Throws UserError if inputs are not kept.
+    RunCheckpoint checkpoint() const;
+    // Takes as long as its ticks did, or those from here on if this run has come this far by the same ones.
+    void restore(const RunCheckpoint& checkpoint);
+
+    size_t tool() const noexcept override { return tools_.chosen(); }
+    void chooseTool(size_t tool) override;
+
+  private:
+    const TickRecord& tick(const HandStep& hand) override;
+    void makeTick();
+
+    size_t first_tool_;
+    bool keeps_inputs_;
+    ToolSwitch tools_;
+    AccuracySwitch accuracy_;
+    std::unique_ptr<HapticTick> tick_;
+    std::vector<RunCheckpoint::Done> done_;
+};
+
+}  // namespace bonemill
