@@ -95,3 +95,19 @@ make_phantoms() {
             fail "the phantom $name could not be made: $(tail -n 1 "$logs/phantoms.log")"
     done < <(missing_phantoms "$scene")
 }
+
+# Makes what the scene of this name or file lacks, or each of our own. The server asks for it, too, when somebody chooses a
+# scene that lacks its phantom.
+prepare_scenes() {
+    local name names=("$operand")
+    logs=$state
+    if [[ -z $operand ]]; then
+        find_scene tooth_corridor
+        mapfile -t names < <(makeable_scenes)
+    fi
+    for name in "${names[@]}"; do
+        find_scene "$name"
+        make_phantoms
+    done
+    say "what ${operand:-each scene} reads is there"
+}

@@ -173,8 +173,7 @@ TEST_F(Window, WhatIsCopiedIsOnTheDisplaysClipboard) {
     start("me", "instructor");
     key("m");
     PanelTwin panel(display_, session_, Viewer::INSTRUCTOR);
-    panel.click("Tuning");
-    panel.click("Copy");
+    for (const char* label : {"Tuning", "Copy"}) panel.click(label);
     const std::string text = "coupling { damping_time_ms: 1.5 }\naccuracy { preset: BALANCED }";
     waitFor("the scene text on the clipboard", [&] { return display_.clipboard() == text; });
 }
