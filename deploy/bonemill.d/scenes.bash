@@ -85,10 +85,12 @@ makeable_scenes() {
 }
 
 make_phantoms() {
-    local file name
+    local file name made=" "
     while read -r file; do
         name=$(phantom_of "$file") ||
             fail "$scene_name needs $data/$file.nrrd, which is no phantom: the first lines of $scene say where it comes from"
+        [[ $made != *" $name "* ]] || continue  # a scan and its labels are made at once
+        made+="$name "
         say "making the phantom $name, once: some seconds"
         # Two sessions that start side by side do not write the same file.
         flock "$state/phantoms.lock" "$share/make-phantoms" --bin "$bin" --out "$data" "$name" >>"$logs/phantoms.log" 2>&1 9>&- ||
