@@ -5,6 +5,7 @@ usage() {
     cat <<'TEXT'
 Usage: bonemill COMMAND [options]
   start [SCENE]    start a session on this PC with the best hand it finds: haptic arm, SpaceMouse, gamepad or mouse
+  prepare [SCENE]  make the phantoms that scenes read, before a class
   list             sessions that run, and scenes that can be started
   sessions         the last attempts of all classes: when, what, who, score
   stop [N|all]     end a session
@@ -52,6 +53,10 @@ usage_of() {  # COMMAND
             session_options
             network_options
             echo "Ctrl-C, closing the window, or bonemill stop ends everything in order." ;;
+        prepare)
+            echo "Usage: bonemill prepare [SCENE]"
+            echo "Makes the phantoms that the scene reads, or without a word those of all scenes, as far as they are not there:"
+            echo "some 30 s for all. Without it each is made when a session first comes to its scene." ;;
         host)
             echo "Usage: bonemill host [SCENE] --interface I [--profile lab|classroom] [options] [-- WORDS FOR haptic_server]"
             echo "The profile is lab unless said otherwise; the other PCs type: bonemill watch THIS-PC"

@@ -55,26 +55,61 @@ find_scene() {
     scene_name=$(basename -- "$scene" .textproto)
 }
 
-# Prints which phantoms the scene reads that are not there, as file names.
+# missing_phantoms SCENE: prints which phantoms the scene reads that are not there, as file names.
 missing_phantoms() {
     local path
     while read -r path; do
-        path=$(realpath -m -- "$(dirname -- "$scene")/$path")
+        path=$(realpath -m -- "$(dirname -- "$1")/$path")
         [[ $path != "$data"/* || -e $path ]] || basename -- "$path" .nrrd
-    done < <(sed -nE 's/^ *(label_)?path: *"([^"/][^"]*)".*/\2/p' "$scene")
+    done < <(sed -nE 's/^ *(label_)?path: *"([^"/][^"]*)".*/\2/p' "$1")
+}
+
+# phantom_of FILE: the name under which make-phantoms makes it; fails where it is no phantom.
+phantom_of() {
+    local name=${1%_labels}
+    [[ $1 != skull_labels ]] || name=$1
+    case $name in
+        tooth | bone_block | clay_block | vertebra | temporal_bone | third_molar | skull_labels) echo "$name" ;;
+        *) return 1 ;;
+    esac
+}
+
+# Prints the names of the scenes beside this one that lack phantoms and nothing else.
+makeable_scenes() {
+    local each file
+    for each in "$(dirname -- "$scene")"/*.textproto; do
+        [[ -n $(missing_phantoms "$each") ]] || continue
+        while read -r file; do phantom_of "$file" >/dev/null || continue 2; done < <(missing_phantoms "$each")
+        basename -- "$each" .textproto
+    done
 }
 
 make_phantoms() {
-    local file name
+    local file name made=" "
     while read -r file; do
-        [[ $file == skull_labels ]] && name=$file || name=${file%_labels}
-        case $name in
-            tooth | bone_block | clay_block | vertebra | temporal_bone | third_molar | skull_labels) ;;
-            *) fail "$scene_name needs $data/$file.nrrd, which is no phantom: the first lines of $scene say where it comes from" ;;
-        esac
+        name=$(phantom_of "$file") ||
+            fail "$scene_name needs $data/$file.nrrd, which is no phantom: the first lines of $scene say where it comes from"
+        [[ $made != *" $name "* ]] || continue  # a scan and its labels are made at once
+        made+="$name "
         say "making the phantom $name, once: some seconds"
         # Two sessions that start side by side do not write the same file.
         flock "$state/phantoms.lock" "$share/make-phantoms" --bin "$bin" --out "$data" "$name" >>"$logs/phantoms.log" 2>&1 9>&- ||
             fail "the phantom $name could not be made: $(tail -n 1 "$logs/phantoms.log")"
-    done < <(missing_phantoms)
+    done < <(missing_phantoms "$scene")
+}
+
+# Makes what the scene of this name or file lacks, or each of our own. The server asks for it, too, when somebody chooses a
+# scene that lacks its phantom.
+prepare_scenes() {
+    local name names=("$operand")
+    logs=$state
+    if [[ -z $operand ]]; then
+        find_scene tooth_corridor
+        mapfile -t names < <(makeable_scenes)
+    fi
+    for name in "${names[@]}"; do
+        find_scene "$name"
+        make_phantoms
+    done
+    say "what ${operand:-each scene} reads is there"
 }

@@ -156,9 +156,10 @@ find_recording() {
     [[ -f $recording ]] || fail "there is no recording $(basename -- "$recording") (bonemill list shows the last ones)"
 }
 
-# find_against: the other attempt, as a whole path. Without it the replay goes on alone.
+# find_against: the other attempt, as a whole path.
 find_against() {
     [[ -n ${option[against]:-} ]] || return 0
     option[against]=$(path_of_recording "${option[against]}")
-    [[ -f ${option[against]} ]] || say "there is no file ${option[against]} to compare with (bonemill sessions lists attempts): the replay goes on alone"
+    [[ -f ${option[against]} ]] ||
+        fail "there is no file ${option[against]} to compare with: bonemill sessions lists attempts, bonemill list recordings"
 }

@@ -8,6 +8,7 @@ declare -A title=([server]=haptic_server [device]=device_daemon [viewer]=render_
 declare -A pid=() started_s=() due_s=() restarts=([server]=0 [device]=0 [viewer]=0)
 end_code="" recording="" clip=""
 roles=()
+makeable=()  # scenes whose phantoms are made when somebody chooses them
 
 run_session() {
     find_scene "${operand:-tooth_corridor}"
@@ -18,6 +19,7 @@ run_session() {
     say "session $number of $scene_name; logs in $logs"
     [[ -z $class_folder ]] || say "the class' table and reports: $class_folder"
     make_phantoms
+    mapfile -t makeable < <(makeable_scenes)
     ask_real_time
     roles=(server device)
     go_on
@@ -104,6 +106,7 @@ command_of() {
             if [[ -n $recording ]]; then replay_words; return; fi
             words=("$bin/haptic_server" --scene "$scene" --session "$number" --until-device-leaves --resume)
             mapfile -t -O "${#words[@]}" words < <(network_words)
+            [[ ${#makeable[@]} -eq 0 ]] || words+=(--launcher "$self" "${makeable[@]/#/--makes=}")
             [[ -z $class_folder ]] || words+=(--export-dir "$class_folder")
             [[ $flags != *" --instructor-only "* ]] || words+=(--instructor-only)
             words+=("${extra[@]}") ;;

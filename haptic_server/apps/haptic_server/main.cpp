@@ -60,6 +60,10 @@ void addServerOptions(CLI::App& app, ServerOptions& server) {
     app.add_option(
         "--scenes", server.scene_folders,
         "folder of scenes that clients can choose from, may be given again; default: that of --scene");
+    app.add_option("--launcher", server.maker.program,
+                   "bonemill: makes what the scenes of --makes lack when one is chosen (bonemill prepare)");
+    app.add_option("--makes", server.maker.ids, "name of a scene for --launcher, may be given again")
+        ->allow_extra_args(false);
     app.add_option("--session", server.session, "session number: names the device link and the topics");
     app.add_option("--domain", server.domain, "DDS domain, 0 to 230");
     dds::addNetworkOptions(app, server.network);

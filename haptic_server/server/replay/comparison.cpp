@@ -39,9 +39,9 @@ void Comparison::run(const std::stop_token& stop) {
     takeLowPriority(kNiceBeside);
     bool is_arrived = true;
     while (!stop.stop_requested()) {
-        const std::optional<Wish> wish = awaitWish(stop, is_arrived);
+        std::optional<Wish> wish = awaitWish(stop, is_arrived);
         try {
-            if (wish) open(*wish);
+            if (wish) open(std::move(*wish));
             is_arrived = !companion_ || follow(stop);
         } catch (const std::exception& error) {
             giveUp(printableLine(error.what(), kMostProblem));
@@ -61,9 +61,12 @@ std::optional<Comparison::Wish> Comparison::awaitWish(const std::stop_token& sto
     return std::exchange(wish_, std::nullopt);
 }
 
-void Comparison::open(const Wish& wish) {
+void Comparison::open(Wish wish) {
     takeAway();
-    if (!wish.isNone()) begin(wish);
+    if (wish.isNone()) return;
+    if (!wish.attempt)
+        wish.attempt = openCompared({resultOfName(folders_, wish.result), 0}, folders_, shown_.recording);
+    begin(std::move(*wish.attempt));
 }
 
 void Comparison::takeAway() {
@@ -83,11 +86,9 @@ void Comparison::giveUp(const std::string& problem) {
     state_->set_is_on_its_way(false);
 }
 
-void Comparison::begin(const Wish& wish) {
-    AttemptName name = wish.attempt;
-    if (!wish.result.empty()) name.file = resultOfName(folders_, wish.result);
-    companion_ = std::make_unique<Companion>(openCompared(name, folders_, shown_.recording), shown_.recording,
-                                             shown_.simulation, shown_.scene, shown_.scanned);
+void Comparison::begin(ComparedAttempt attempt) {
+    companion_ = std::make_unique<Companion>(std::move(attempt), shown_.recording, shown_.simulation,
+                                             shown_.scene, shown_.scanned);
     spdlog::info("compared with {}: {:.1f} s", companion_->text(), companion_->lengthS());
     const std::lock_guard lock(mutex_);
     bone_ = companion_->bone();
@@ -109,13 +110,12 @@ bool Comparison::follow(const std::stop_token& stop) {
     return is_arrived;
 }
 
-void Comparison::wish(Wish wish) {
+void Comparison::wish(Wish wish, const std::string& name) {
     {
         const std::lock_guard lock(mutex_);
         state_.reset();
         if (!wish.isNone()) {
-            state_.emplace().set_attempt(
-                printableLine(wish.result.empty() ? wish.attempt.file.filename().string() : wish.result));
+            state_.emplace().set_attempt(name);
             state_->set_is_on_its_way(true);
         }
         wish_ = std::move(wish);
@@ -123,8 +123,9 @@ void Comparison::wish(Wish wish) {
     changed_.notify_all();
 }
 
-void Comparison::compareWith(AttemptName name) {
-    wish({std::move(name), ""});
+void Comparison::compareWith(ComparedAttempt attempt) {
+    const std::string name = attempt.text;
+    wish({std::move(attempt), ""}, name);
 }
 
 // A viewer may name a result, never a file: whatever it says, nothing else of this PC is opened.
@@ -135,7 +136,7 @@ Answer Comparison::compareWithResult(const std::string& name) {
             "--classes and --recordings");
     if (name.find('/') != std::string::npos || name.find('\0') != std::string::npos)
         return Answer::refused("'" + repeatedText(name) + "' is no name of a result");
-    wish({{}, name});
+    wish({{}, name}, printableLine(name));
     return Answer::done();
 }
 

@@ -37,7 +37,7 @@ class Comparison {
     void run(const std::stop_token& stop);
 
     // These do not wait: what comes of it describe() says. Any thread.
-    void compareWith(AttemptName name);
+    void compareWith(ComparedAttempt attempt);
     Answer compareWithResult(const std::string& name);
     Answer compareWithNone();
     Answer showDifference(bool is_shown);
@@ -58,17 +58,17 @@ class Comparison {
 
   private:
     struct Wish {
-        AttemptName attempt;
+        std::optional<ComparedAttempt> attempt;
         std::string result;  // the name of a result; empty: `attempt` counts
-        bool isNone() const { return result.empty() && attempt.file.empty(); }
+        bool isNone() const { return result.empty() && !attempt; }
     };
-    void wish(Wish wish);
+    void wish(Wish wish, const std::string& name = "");
     std::optional<Wish> awaitWish(const std::stop_token& stop, bool is_arrived);
-    void open(const Wish& wish);
+    void open(Wish wish);
     void giveUp(const std::string& problem);
     void takeAway();
     bool isCompared() const { return state_ && state_->problem().empty(); }
-    void begin(const Wish& wish);
+    void begin(ComparedAttempt attempt);
     bool follow(const std::stop_token& stop);
 
     const Shown shown_;

@@ -32,12 +32,25 @@ constexpr size_t kRingRecords = 8192, kRingCuts = 8192;
 constexpr auto kRecordPeriod = 4ms, kLookBeside = 4ms;
 constexpr int64_t kLookEveryNs = 20 * kNsPerMillisecond;
 
+// A viewer's choice that cannot be compared leaves the replay alone; what was asked for at the start is
+// wrong.
+std::optional<ComparedAttempt> openAgainst(const ReplayOptions& options, const Recording& shown) {
+    if (options.against.file.empty()) return std::nullopt;
+    try {
+        return openCompared(options.against, options.folders, shown);
+    } catch (const UserError& error) {
+        throw UserError("--against: " + std::string(error.what()) +
+                        " (`bonemill sessions` lists attempts; without --against the replay goes alone)");
+    }
+}
+
 // The recorded scene, with the bone as its files have it now. Its threads stand around the player as those of
 // a live session stand around the tick (session/scene_run.h).
 class ReplayServer {
   public:
     explicit ReplayServer(const ReplayOptions& options)
         : recording_(options.journal),
+          against_(openAgainst(options, recording_)),
           scene_(recording_.scene()),
           simulation_(setUpScene(scene_)),
           bones_(recording_.readBones(*simulation_.bone)),
@@ -75,7 +88,7 @@ class ReplayServer {
         order.set_seek_s(options.at_s);
         player_.carryOut(order);
         if (options.is_paused) player_.play(false);
-        if (!options.against.file.empty()) comparison_.compareWith(options.against);
+        if (against_) comparison_.compareWith(std::move(*against_));
     }
 
     int run() {
@@ -187,6 +200,7 @@ class ReplayServer {
 
     StopSignals stop_signals_;
     Recording recording_;
+    std::optional<ComparedAttempt> against_;  // until it is handed on
     LoadedScene scene_;
     SceneSetup simulation_;
     Recording::Bones bones_;

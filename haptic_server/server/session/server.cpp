@@ -144,6 +144,7 @@ class Server {
             next_options_ = results_.next(order_.file);
             loading_ = std::async(std::launch::async, [this, options = next_options_] {
                 requireFilesCanBeWritten(options);
+                makeWhatIsMissing(options.scene);
                 Loaded loaded = load(options);
                 return std::make_unique<SceneRun>(options, std::move(loaded.scene),
                                                   std::move(loaded.simulation), std::nullopt, parts());
@@ -151,6 +152,12 @@ class Server {
         } catch (const std::exception& error) {
             refuseChange(error.what());
         }
+    }
+
+    void makeWhatIsMissing(const std::string& file) const {
+        for (const ListedScene& scene : lesson_.scenes())
+            if (scene.file == file && scene.choice.is_made_first() && lacksFiles(scene))
+                makeMissing(scene, options_.maker);
     }
 
     void endChange() {
@@ -261,7 +268,7 @@ void beginFrom(ServerOptions& options) {
 }
 
 std::string listScenesOf(const ServerOptions& options) {
-    return sceneTable(listScenes(foldersOf(options)));
+    return sceneTable(listScenes(foldersOf(options), options.maker));
 }
 
 int runServer(const ServerOptions& given) {
@@ -275,10 +282,10 @@ int runServer(const ServerOptions& given) {
     dds::setNetwork(options.network, dds::NetworkPart::kServer, options.session);
     if (options.class_table.empty() && std::filesystem::is_directory(options.export_dir))
         options.class_table = (std::filesystem::path(options.export_dir) / "class.csv").string();
-    std::vector<ListedScene> scenes = listScenes(foldersOf(options));
+    std::vector<ListedScene> scenes = listScenes(foldersOf(options), options.maker);
     if (options.scene.empty()) {
-        const auto first = std::find_if(scenes.begin(), scenes.end(),
-                                        [](const ListedScene& s) { return s.choice.problem().empty(); });
+        const auto first = std::ranges::find_if(
+            scenes, [](const ListedScene& s) { return s.choice.problem().empty() && s.missing.empty(); });
         if (first == scenes.end())
             throw UserError("no scene in --scenes can be loaded:\n" + sceneTable(scenes));
         options.scene = first->file;

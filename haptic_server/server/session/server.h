@@ -9,6 +9,7 @@
 #include "common/dds/network.h"
 #include "common/rt/realtime.h"
 #include "haptic_server/recording/statistics/bone_files.h"
+#include "haptic_server/teaching/lessons/scene_folder.h"
 
 namespace bonemill {
 
@@ -16,6 +17,7 @@ struct ServerOptions {
     std::string scene;     // the first one; empty: the first of the folders that can be loaded
     int scene_number = 1;  // in the names of its files
     std::vector<std::string> scene_folders;  // of scenes to choose from; none: the folder of `scene`
+    SceneMaker maker;                        // of what scenes to choose from lack
     uint32_t session = 1;
     uint32_t domain = 0;
     dds::NetworkOptions network;

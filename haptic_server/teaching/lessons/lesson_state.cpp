@@ -54,6 +54,9 @@ std::optional<topics::Lesson> LessonState::takeChanged() {
 void LessonState::enterScene(const std::string& file) {
     const std::lock_guard lock(mutex_);
     lesson_.set_scene_id(idOfScene(scenes_, file));
+    for (size_t n = 0; n < scenes_.size(); ++n)
+        if (lesson_.scenes(int(n)).is_made_first())
+            lesson_.mutable_scenes(int(n))->set_is_made_first(lacksFiles(scenes_[n]));
     has_changed_ = true;
 }
 

@@ -14,6 +14,7 @@
 #include "common/config/scene_file.h"
 #include "common/config/scene_tools.h"
 #include "common/files/require_file.h"
+#include "common/process/run_captured.h"
 #include "common/text/foreign_text.h"
 #include "common/text/text_encoding.h"
 
@@ -48,18 +49,26 @@ std::string pictureOf(const fs::path& file) {
     return bytes.rfind(kBegin, 0) == 0 ? bytes : "";
 }
 
-// Says what the scene names and is not there, or nothing. Everybody in the session reads it: folders of this
-// PC stay private.
-std::string missingOf(const LoadedScene& loaded) {
-    for (const NamedFile& file : filesOf(loaded)) {
-        std::error_code error;
-        if (!fs::exists(file.path, error))
-            return file.name + " " + file.path.filename().string() + ": no such file or folder";
-    }
-    return "";
+bool isThere(const fs::path& path) {
+    std::error_code error;
+    return fs::exists(path, error);
 }
 
-void describe(const fs::path& file, ListedScene& listed) {
+// Everybody in the session reads what is wrong with a scene: folders of this PC stay private.
+void noteMissing(const LoadedScene& loaded, const SceneMaker& maker, ListedScene& listed) {
+    topics::SceneChoice& choice = listed.choice;
+    const bool is_makeable = std::ranges::count(maker.ids, choice.id()) > 0;
+    for (const NamedFile& file : filesOf(loaded)) {
+        if (isThere(file.path)) continue;
+        listed.missing.push_back(file.path);
+        if (is_makeable)
+            choice.set_is_made_first(true);
+        else if (choice.problem().empty())
+            choice.set_problem(file.name + " " + file.path.filename().string() + ": no such file or folder");
+    }
+}
+
+void describe(const fs::path& file, const SceneMaker& maker, ListedScene& listed) {
     const LoadedScene loaded = loadScene(file);
     topics::SceneChoice& choice = listed.choice;
     for (NamedFile& read : filesOf(loaded)) {
@@ -71,7 +80,7 @@ void describe(const fs::path& file, ListedScene& listed) {
     choice.set_task(scene.task());
     choice.set_expected_s(kSecondsPerMinute * scene.expected_minutes());
     for (const std::string& tool : toolNamesOf(scene)) choice.add_tools(tool);
-    choice.set_problem(missingOf(loaded));
+    noteMissing(loaded, maker, listed);
 }
 
 std::string withoutFolder(std::string text, const fs::path& file) {
@@ -82,7 +91,7 @@ std::string withoutFolder(std::string text, const fs::path& file) {
     return text;
 }
 
-ListedScene listed(const fs::path& file) {
+ListedScene listed(const fs::path& file, const SceneMaker& maker) {
     ListedScene scene{.choice = {}, .file = file.string()};
     scene.files = {{"the scene file", file},
                    {"the scene's picture", fs::path(file).replace_extension(".png")},
@@ -91,7 +100,7 @@ ListedScene listed(const fs::path& file) {
     scene.choice.set_title(scene.choice.id());
     scene.choice.set_picture(pictureOf(fs::path(file).replace_extension(".png")));
     try {
-        describe(file, scene);
+        describe(file, maker, scene);
     } catch (const std::exception& error) {
         scene.choice.set_problem(withoutFolder(error.what(), file));
     }
@@ -132,7 +141,7 @@ std::string accuracyFiguresOf(const std::string& scene_file) {
     return std::filesystem::path(scene_file).replace_extension(".accuracy.json").string();
 }
 
-std::vector<ListedScene> listScenes(const std::vector<std::string>& folders) {
+std::vector<ListedScene> listScenes(const std::vector<std::string>& folders, const SceneMaker& maker) {
     std::vector<ListedScene> scenes;
     for (const std::string& folder : folders)
         for (const fs::path& file : sceneFilesOf(folder)) {
@@ -146,9 +155,21 @@ std::vector<ListedScene> listScenes(const std::vector<std::string>& folders) {
             else if (scenes.size() == kMaxListedScenes)
                 spdlog::warn("{}: is not listed: there are {} already", file.string(), kMaxListedScenes);
             else
-                scenes.push_back(listed(file));
+                scenes.push_back(listed(file, maker));
         }
     return scenes;
+}
+
+bool lacksFiles(const ListedScene& scene) {
+    return !std::ranges::all_of(scene.missing, isThere);
+}
+
+void makeMissing(const ListedScene& scene, const SceneMaker& maker) {
+    const Captured made = runCaptured({maker.program, "prepare", scene.file});
+    if (made.exit_code == 0 && !lacksFiles(scene)) return;
+    const std::string why = made.err.substr(0, made.err.find_last_not_of('\n') + 1);
+    throw UserError("what " + scene.choice.id() +
+                    " reads could not be made: " + printableLine(why.substr(why.rfind('\n') + 1)));
 }
 
 std::string sceneTable(const std::vector<ListedScene>& scenes) {
@@ -161,6 +182,7 @@ std::string sceneTable(const std::vector<ListedScene>& scenes) {
                       choice.title().c_str());
         table += line;
         if (!choice.problem().empty()) table += "    cannot be chosen: " + choice.problem() + "\n";
+        if (choice.is_made_first()) table += "    what it reads is made when it is chosen: some seconds\n";
     }
     return table;
 }

@@ -5,6 +5,7 @@
 // it and never ends the program.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -30,7 +31,14 @@ std::string accuracyFiguresOf(const std::string& scene_file);
 struct ListedScene {
     topics::SceneChoice choice;
     std::string file;
-    std::vector<NamedFile> files = {};  // all that the scene reads
+    std::vector<NamedFile> files = {};                // all that the scene reads
+    std::vector<std::filesystem::path> missing = {};  // of these, when it was listed
+};
+
+// A program that makes what scenes of these ids read: PROGRAM prepare SCENE_FILE.
+struct SceneMaker {
+    std::string program;
+    std::vector<std::string> ids = {};
 };
 
 // How many are listed at most; viewers take no more.
@@ -40,7 +48,14 @@ inline constexpr size_t kMaxPictureBytes = 64u << 10;
 // Lists `*.textproto` of each folder by name, in the order of the folders. Of two files of one name the first
 // counts. What a scene names is looked for, not read: title, task, tools, time, and the picture `NAME.png`
 // beside it. Throws UserError for a folder that cannot be read.
-std::vector<ListedScene> listScenes(const std::vector<std::string>& folders);
+// What a scene lacks and `maker` makes is no problem.
+std::vector<ListedScene> listScenes(const std::vector<std::string>& folders, const SceneMaker& maker = {});
+
+// Something that the scene lacked when it was listed is not there now, either.
+bool lacksFiles(const ListedScene& scene);
+
+// Makes what it lacks, which takes seconds. Throws UserError with the maker's last words.
+void makeMissing(const ListedScene& scene, const SceneMaker& maker);
 
 // One line per scene, and one more for what is wrong with it.
 std::string sceneTable(const std::vector<ListedScene>& scenes);

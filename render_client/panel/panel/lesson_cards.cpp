@@ -94,7 +94,9 @@ void LessonCards::buildTop() {
     if (!is_clock_alone) ImGui::PushTextWrapPos();
     if (attempt_s) sayClock(*attempt_s);
     if (is_changing) {
-        ImGui::Text("Changing to %s \u2026", sceneTitle(lesson, lesson.changing_to()).c_str());
+        const topics::SceneChoice* const next = sceneOf(lesson, lesson.changing_to());
+        ImGui::Text("Changing to %s%s \u2026", sceneTitle(lesson, lesson.changing_to()).c_str(),
+                    next && next->is_made_first() ? ", whose bone is made first: some seconds" : "");
     } else if (!is_clock_alone) {
         ImGui::TextColored(colourOfCard(kHudLabelColour), "%s", sceneTitle(lesson, scene->id()).c_str());
         ImGui::TextUnformatted(scene->task().c_str());
@@ -126,14 +128,11 @@ void LessonCards::buildSummary(const topics::Attempt& attempt) {
     }
     ImGui::PopTextWrapPos();
     if (button("Close")) draft_.closeSummary();
-    ImGui::SameLine();
     if (const std::string stem = resultStemOf(attempt, session_); !stem.empty()) {
-        if (button("Report")) wishes_.open_file = stem + ".html";
-        ImGui::SameLine();
-        if (session_.has_launcher && button("Replay")) wishes_.replay_of = stem + ".json";
-        if (session_.has_launcher) ImGui::SameLine();
+        if (nextButton("Report")) wishes_.open_file = stem + ".html";
+        if (session_.has_launcher && nextButton("Replay")) wishes_.replay_of = stem + ".json";
     }
-    if (button("All attempts as CSV")) wishes_.save_attempts = true;
+    if (nextButton("All attempts as CSV")) wishes_.save_attempts = true;
     ImGui::End();
 }
 
@@ -143,6 +142,15 @@ void LessonCards::buildHandle() {
     ImGui::Begin("##lesson", nullptr, kCard);
     if (button(panelTitle(session_).c_str())) controls_.act(Action::kPanel, session_, wishes_);
     ImGui::End();
+}
+
+// Beside the button before it, or below it where the card has no more room.
+bool LessonCards::nextButton(const char* label) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float left = ImGui::GetItemRectMax().x + style.ItemSpacing.x - ImGui::GetWindowPos().x;
+    const float width = ImGui::CalcTextSize(label).x + 2 * style.FramePadding.x;
+    if (left + width <= ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+    return button(label);
 }
 
 bool LessonCards::button(const char* label) {

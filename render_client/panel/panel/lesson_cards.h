@@ -31,6 +31,7 @@ class LessonCards {
     void sayClock(double attempt_s);
     void buildSummary(const topics::Attempt& attempt);
     void buildHandle();
+    bool nextButton(const char* label);
     bool button(const char* label);
 
     ViewerControls& controls_;

@@ -103,6 +103,7 @@ void PanelContent::buildScene(const topics::Lesson& lesson, const topics::SceneC
     if (is_chosen && !scene.task().empty()) say(scene.task(), HudTone::kPlain);
     if (is_chosen && !details.empty()) sayQuietly(details);
     if (!is_possible) say(scene.problem(), HudTone::kWarning);
+    if (scene.is_made_first()) sayQuietly("A click makes its bone first: some seconds");
     ImGui::PopTextWrapPos();
     ImGui::EndGroup();
     ImGui::EndGroup();

@@ -67,6 +67,7 @@ double coveredShare(const Picture& picture) {
 }
 
 TEST_F(LessonPicture, TheListOfScenes) {
+    lesson_.mutable_scenes(1)->set_is_made_first(true);
     switchPanel();
     EXPECT_EQ(test::goldenProblem(draw(), "lesson_scenes"), "");
 }
@@ -79,7 +80,10 @@ TEST_F(LessonPicture, SessionsToChooseFrom) {
 }
 
 TEST_F(LessonPicture, TheSummaryOfAnAttempt) {
+    session_.class_folder = "/class";
+    session_.has_launcher = true;
     endAttempt();
+    lesson_.mutable_attempts(2)->mutable_verdict()->set_results("third");
     EXPECT_EQ(test::goldenProblem(draw(), "lesson_summary"), "");
 }
 

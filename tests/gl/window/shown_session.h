@@ -38,6 +38,15 @@ class ShownSession {
         status_.mutable_device()->set_kind(uint32_t(kind));
     }
 
+    // The contact law can be tuned, and is.
+    void tune() {
+        const std::lock_guard lock(mutex_);
+        info_.mutable_tunable()->mutable_coupling()->set_damping_time_ms(2);
+        info_.set_revision(info_.revision() + 1);
+        status_.mutable_tuning()->mutable_coupling()->set_damping_time_ms(1.5);
+        has_other_info_ = true;
+    }
+
     void teach(const topics::Lesson& lesson) {
         const std::lock_guard lock(mutex_);
         lesson_ = lesson;
@@ -80,8 +89,13 @@ class ShownSession {
             publisher_.publishStatus(status());
             publisher_.publishToolState(tool());
             publishLesson();
+            publishInfo();
             std::this_thread::sleep_for(std::chrono::milliseconds(30));
         }
+    }
+    void publishInfo() {
+        const std::lock_guard lock(mutex_);
+        if (std::exchange(has_other_info_, false)) publisher_.publishSceneInfo(info_);
     }
     void publishLesson() {
         const std::lock_guard lock(mutex_);
@@ -100,7 +114,7 @@ class ShownSession {
         if (!command.has_select_tool()) return;
         info_.set_tool_index(command.select_tool());
         info_.set_revision(info_.revision() + 1);
-        publisher_.publishSceneInfo(info_);
+        has_other_info_ = true;
     }
 
     Publisher publisher_;  // of the constructor, then of the thread
@@ -109,6 +123,7 @@ class ShownSession {
     topics::Status status_;
     std::vector<topics::Command> commands_;
     std::optional<topics::Lesson> lesson_;  // to be published
+    bool has_other_info_ = false;           // likewise
     uint32_t last_checkpoint_ = 0;
     std::atomic<bool> stop_ = false;
     std::thread thread_;

@@ -11,7 +11,6 @@
 #include <regex>
 #include <thread>
 
-#include "render_client/hand/window/glfw_window.h"
 #include "render_client/panel/panel/qr_code.h"
 #include "tests/gl/golden.h"
 #include "tests/gl/window/lesson_twin.h"
@@ -217,7 +216,7 @@ class TeacherDay : public testing::Test {
         look();
         click("Copy the link");
         look();
-        const std::string link = GlfwWindow(60, 60, "reader", "").clipboard();
+        const std::string link = display_->clipboard();
         twin_->setInvitation({.name = guest, .link = link, .problem = {}});
         return link;
     }

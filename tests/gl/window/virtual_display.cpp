@@ -12,6 +12,7 @@ namespace {
 
 constexpr char kServer[] = "/usr/bin/Xvfb";
 constexpr char kHands[] = "/usr/bin/xdotool";
+constexpr char kClipboard[] = "/usr/bin/xclip";
 constexpr int kPatience_ms = 30000;
 
 void require(const char* program, const char* package) {
@@ -35,6 +36,7 @@ std::string readLine(int descriptor) {
 VirtualDisplay::VirtualDisplay(int width, int height) {
     require(kServer, "xvfb");
     require(kHands, "xdotool");
+    require(kClipboard, "xclip");
     int ends[2];
     if (pipe(ends) != 0) throw std::runtime_error("no pipe for Xvfb");
     const std::string screen = std::to_string(width) + "x" + std::to_string(height) + "x24";
@@ -54,6 +56,10 @@ void VirtualDisplay::type(const std::vector<std::string>& words) const {
     command.insert(command.end(), words.begin(), words.end());
     const Finished finished = run(command);
     if (finished.exit_code != 0) throw std::runtime_error("xdotool " + words[0] + ": " + finished.err);
+}
+
+std::string VirtualDisplay::clipboard() const {
+    return run({kClipboard, "-out", "-selection", "clipboard"}).out;
 }
 
 }  // namespace bonemill::test

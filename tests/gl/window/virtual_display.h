@@ -1,4 +1,4 @@
-// Starts a display in memory (Xvfb) and gives hands for it (xdotool).
+// Starts a display in memory (Xvfb), gives hands for it (xdotool), and reads its clipboard (xclip).
 #pragma once
 
 #include <memory>
@@ -17,6 +17,8 @@ class VirtualDisplay {
 
     // Runs xdotool with these words, such as {"key", "x"}, and returns when the display has taken it.
     void type(const std::vector<std::string>& words) const;
+    // What another program than ours pastes; empty: nothing was copied.
+    std::string clipboard() const;
 
   private:
     std::unique_ptr<Process> server_;

@@ -115,6 +115,7 @@ class PanelTwin : test::ControlledPanel {
     PanelTwin(const VirtualDisplay& display, test::ShownSession& shown, Viewer::Role role)
         : display_(display), shown_(shown) {
         session_.role = role;
+        session_.tool = &tool_;  // the panel's last part shows it
         switchPanel();
         lookAtSession();
     }
@@ -156,6 +157,7 @@ class PanelTwin : test::ControlledPanel {
 
     const VirtualDisplay& display_;
     test::ShownSession& shown_;
+    const topics::ToolState tool_;
 };
 
 TEST_F(Window, IsNoLargerThanTheScreenHasRoomFor) {
@@ -164,6 +166,16 @@ TEST_F(Window, IsNoLargerThanTheScreenHasRoomFor) {
         EXPECT_EQ(window.pixelWidth(), std::min(width, kWidth));
         EXPECT_EQ(window.pixelHeight(), std::min(height, kHeight));
     }
+}
+
+TEST_F(Window, WhatIsCopiedIsOnTheDisplaysClipboard) {
+    session_.tune();
+    start("me", "instructor");
+    key("m");
+    PanelTwin panel(display_, session_, Viewer::INSTRUCTOR);
+    for (const char* label : {"Tuning", "Copy"}) panel.click(label);
+    const std::string text = "coupling { damping_time_ms: 1.5 }\naccuracy { preset: BALANCED }";
+    waitFor("the scene text on the clipboard", [&] { return display_.clipboard() == text; });
 }
 
 TEST_F(Window, EveryModeByKeyLooksAsItDid) {

@@ -123,11 +123,14 @@ TEST_F(BonemillClass, ReplaysAnAttemptBesideAnother) {
                                                       " --against " + recordings + "/2_b.mcap\n")))
         << by_name;
     EXPECT_TRUE(has(eventsOf({"replay", "1_a.mcap", "--against", result}), " --against " + result + "\n"));
-    Process alone(rig_.words({"replay", "1_a.mcap", "--against", "none.mcap", "--no-viewer"}));
-    EXPECT_TRUE(test::waitFor([&] { return has(alone.outSoFar(), "Ctrl-C ends it"); })) << alone.outSoFar();
-    EXPECT_TRUE(has(alone.outSoFar(), "none.mcap to compare with")) << alone.outSoFar();
-    alone.signal(SIGTERM);
-    EXPECT_EQ(alone.wait().exit_code, 0) << "the replay goes on";
+    for (const char* other : {"none.mcap", "/nowhere/r.json"})
+        test::expectRefusal(rig_.call({"replay", "1_a.mcap", "--against", other}),
+                            std::string(other) + " to compare with: bonemill sessions lists");
+    rig_.letSay("bonemill_lab", "2026-11-28 bonemill_lab error: --against: /b.mcap: is of another scene\n");
+    rig_.letLeave("bonemill_lab", 2);
+    const Finished foreign = rig_.call({"replay", "1_a.mcap", "--against", "2_b.mcap"});
+    EXPECT_EQ(foreign.exit_code, 2);
+    EXPECT_EQ(foreign.err, "bonemill: bonemill_lab: --against: /b.mcap: is of another scene\n");
 }
 
 // The words' ends are the stand-ins' to say: the viewer leaves when the clip is written.

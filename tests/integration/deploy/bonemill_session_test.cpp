@@ -62,6 +62,23 @@ class BonemillSession : public testing::Test {
     const std::string session_ = std::to_string(testSession());
 };
 
+// In a home where no scene has its phantom.
+TEST_F(BonemillSession, OneOrderMakesThePhantomOfAnotherSceneAndChangesToIt) {
+    std::filesystem::create_symlink(test::binDir() + "/make_phantom", rig_.programFile("make_phantom"));
+    const std::string domain = std::to_string(testDomain());
+    Process session(rig_.words({"start", "minimal", "--session", session_, "--device", "simulated",
+                                "--no-viewer", "--domain", domain}));
+    ASSERT_TRUE(haveMet("device", "haptic_server answers", 1)) << session.outSoFar() << logOf("server");
+    const std::string phantom = rig_.folder() / "data/bonemill/build/data/clay_block.nrrd";
+    ASSERT_FALSE(std::filesystem::exists(phantom));
+    const auto changed = test::run(
+        {"render_client", "--command", "scene freeform", "--session", session_, "--domain", domain});
+    EXPECT_EQ(changed.out, "scene freeform: done\n") << changed.err << logOf("server");
+    EXPECT_TRUE(std::filesystem::exists(phantom));
+    session.signal(SIGINT);
+    EXPECT_EQ(session.wait().exit_code, 0) << session.errSoFar();
+}
+
 TEST_F(BonemillSession, GoesOnWhenServerOrDaemonIsKilledAndEndsInOrder) {
     Process session(startWords());
     ASSERT_TRUE(haveMet("device", "haptic_server answers", 1)) << session.errSoFar() << logOf("server");

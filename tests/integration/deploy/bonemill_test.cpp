@@ -276,6 +276,14 @@ TEST_F(Bonemill, AMissingPhantomIsMade) {
     EXPECT_TRUE(
         has(startOf("haptic_server"), rig_.folder() / "data/bonemill/deploy/scenes/tooth_caries.textproto"));
     expectRefusal(rig_.call({"start", "tooth_wall"}), "which is no phantom");
+    const std::string server = startOf("haptic_server");
+    EXPECT_TRUE(has(server, " --launcher " + rig_.programFile("bonemill") + " --makes=")) << server;
+    EXPECT_TRUE(has(server, " --makes=third_molar ")) << server;
+    for (const char* other : {"tooth_wall", "tooth_cavity", "skull "})
+        EXPECT_FALSE(has(server, std::string("--makes=") + other)) << "no phantom, or there: " << server;
+    EXPECT_TRUE(has(rig_.call({"prepare", "third_molar"}).out, "what third_molar reads is there"));
+    EXPECT_EQ(test::readFile(rig_.folder() / "data/bonemill/build/data/third_molar.nrrd"), "made\n");
+    expectRefusal(rig_.call({"prepare", "tooth_wall"}), "which is no phantom");
 }
 
 TEST_F(Bonemill, AWrongSceneIsAnsweredWithThoseThatExist) {

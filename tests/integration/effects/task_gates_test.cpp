@@ -30,19 +30,43 @@ class TaskGates : public testing::Test {
                                      "--out", folder_ / "build/data", name});
         ASSERT_EQ(made.exit_code, 0) << made.err;
     }
+    std::string shipped(const std::string& name) const {
+        return folder_ / ("deploy/scenes/" + name + ".textproto");
+    }
+    std::string trainingPedicle(const std::string& seed, const std::string& side,
+                                const std::string& difficulty) const {
+        const auto made = test::run({test::sourceDir() + "/deploy/make-training-bone", "pedicle", "--bin",
+                                     test::binDir(), "--out", folder_ / "bones", "--seed", seed, "--side",
+                                     side, "--difficulty", difficulty});
+        EXPECT_EQ(made.exit_code, 0) << made.err;
+        return made.out.substr(0, made.out.find('\n'));
+    }
+    struct Attempt {
+        Assessment assessment;
+        std::vector<double> forces;  // on the hand in ticks that remove bone, N, the lowest first
+    };
     // `astray`: what is added to the hand's way while the pedal is down or the burr is in the bone, mm in W.
     Assessment attempt(const std::string& name,
                        const Eigen::Vector3d& astray_mm = Eigen::Vector3d::Zero()) const {
-        const LoadedScene loaded = loadScene(folder_ / ("deploy/scenes/" + name + ".textproto"));
+        return attemptAt(shipped(name), astray_mm).assessment;
+    }
+    static Attempt attemptAt(const std::string& scene_file,
+                             const Eigen::Vector3d& astray_mm = Eigen::Vector3d::Zero()) {
+        const LoadedScene loaded = loadScene(scene_file);
         SceneSetup simulation = setUpScene(loaded);
         const VoxelVolume scanned = simulation.bone->volume.withoutSpareBricks();
         TaskRun task(loaded.scene, simulation);
         std::vector<DeviceInput> path =
             test::scenePath(loaded.scene.simulated_operator(), simulation.tick.dt);
         for (DeviceInput& input : path) input.X_WT_device.position += astray_mm * kMillimetre;
-        for (const TickRecord& record : runPath(simulation.fixedTick(), *simulation.bone, path))
+        Attempt attempt;
+        for (const TickRecord& record : runPath(simulation.fixedTick(), *simulation.bone, path)) {
             task.add(record);
-        return task.judgeBone(scanned, simulation.bone->volume).assessment;
+            if (record.removed > 0) attempt.forces.push_back(Eigen::Vector3d(record.f_hand_W).norm());
+        }
+        std::ranges::sort(attempt.forces);
+        attempt.assessment = task.judgeBone(scanned, simulation.bone->volume).assessment;
+        return attempt;
     }
     static std::vector<std::string> broken(const Assessment& assessment) {
         std::vector<std::string> all;
@@ -84,6 +108,21 @@ TEST_F(TaskGates, ThePediclesHandPassesAndOneThatBreaksIntoTheCanalFailsByTheBre
     const auto names = broken(medial);
     EXPECT_NE(std::ranges::find(names, "breach.grade"), names.end());
     EXPECT_GE(findFigure(medial.figures, "breach.depth")->value, 2);
+}
+
+// In its own bone and in each kind of training bone, as a person presses.
+TEST_F(TaskGates, ThePediclesHandPressesWithHalfANewtonToTwo) {
+    makePhantom("vertebra");
+    for (const std::string& scene :
+         {shipped("pedicle"), trainingPedicle("1", "left", "easy"), trainingPedicle("3", "right", "middle"),
+          trainingPedicle("4", "left", "hard")}) {
+        SCOPED_TRACE(scene);
+        const Attempt attempt = attemptAt(scene);
+        expectPassed(attempt.assessment);
+        ASSERT_GT(attempt.forces.size(), 3000u);
+        EXPECT_GE(attempt.forces[attempt.forces.size() / 20], 0.5);
+        EXPECT_LE(attempt.forces[attempt.forces.size() * 19 / 20], 2);
+    }
 }
 
 TEST_F(TaskGates, TheThirdMolarsHandPassesAndOneThatStraysToTheTongueFailsByThePlate) {

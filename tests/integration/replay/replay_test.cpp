@@ -233,7 +233,7 @@ TEST_F(ComparedReplay, TheOtherBoneComesBesideTheFirstWhereItIsWished) {
         [&](const SceneSubscriber& s) { return s.isComplete() && watcher.nodesFrom(first).empty(); }));
 }
 
-TEST_F(ComparedReplay, WhatCannotBeComparedIsSaidAndTheReplayGoesOn) {
+TEST_F(ComparedReplay, WhatCannotBeComparedIsRefusedInOneLine) {
     std::filesystem::create_directories(folder_ / "other");
     const test::RecordedSession foreign = test::recordSession(
         folder_ / "other", {.ticks = 100, .has_orders = false, .scene_text = "loop { rate_hz: 500 }"});
@@ -243,18 +243,11 @@ TEST_F(ComparedReplay, WhatCannotBeComparedIsSaidAndTheReplayGoesOn) {
           {folder_ / "broken.mcap", "broken.mcap"},
           {foreign.journal,
            "in another version than what is replayed: compare attempts of the same scene"}}) {
-        Process server(this->server({"--against", file, "--speed", "0.5"}));
-        Watcher watcher;
-        EXPECT_TRUE(watcher.sees([&, part = part](const SceneSubscriber& s) {
-            return s.status() && s.status()->replay().comparison().problem().find(part) != std::string::npos;
-        })) << file
-            << server.errSoFar();
-        EXPECT_TRUE(watcher.sees([](const SceneSubscriber& s) {
-            return s.toolState() && s.toolState()->session_s() > 0.5 &&
-                   s.toolState()->p_wt_expert_m().empty();
-        }));
-        server.signal(SIGTERM);
-        EXPECT_EQ(server.wait().exit_code, 0);
+        const test::Finished finished = test::run(server({"--against", file}));
+        EXPECT_EQ(finished.exit_code, 2) << file;
+        for (const std::string& word :
+             {std::string("error: --against: "), part, std::string("lists attempts")})
+            EXPECT_NE(finished.err.find(word), std::string::npos) << finished.err;
     }
 }
 

@@ -277,6 +277,36 @@ TEST_F(SceneChange, TheSimulatedHandBeginsAnewWithAnAttemptAndRestsAfterIt) {
     EXPECT_LT(force.largest_step, 0.3);
 }
 
+TEST_F(SceneChange, WhatASceneLacksIsMadeWhenItIsChosen) {
+    for (const char* name : {"late", "lost", "never"}) writeScene(name, std::string(name) + ".nrrd", 2);
+    test::writeFile(folder_ / "launcher",
+                    "#!/bin/bash\ncd \"${0%/*}\"\n[[ $1 == prepare ]] || exit 3\n"
+                    "if [[ $2 == */late.textproto ]]; then cp slab.nrrd late.nrrd; exit; fi\n"
+                    "echo 'bonemill: it is no phantom' >&2\nexit 2\n");
+    std::filesystem::permissions(folder_ / "launcher", std::filesystem::perms::owner_all);
+    std::vector<std::string> words = server();
+    words.insert(words.end(), {"--launcher", folder_ / "launcher", "--makes=late", "--makes=never"});
+    Process server_process(words);
+    const auto lessonOf = [&](const char* id) {
+        for (const topics::SceneChoice& scene : one_.subscriber.lesson()->scenes())
+            if (scene.id() == id) return scene;
+        return topics::SceneChoice();
+    };
+    ASSERT_TRUE(one_.pollUntil([&] { return one_.subscriber.lesson() && one_.subscriber.status(); }));
+    EXPECT_TRUE(lessonOf("late").is_made_first());
+    EXPECT_EQ(lessonOf("late").problem(), "");
+    EXPECT_NE(lessonOf("lost").problem(), "") << "nobody makes it";
+    EXPECT_EQ(answerTo([](topics::Command& c) { c.set_choose_scene("never"); }),
+              "refused: what never reads could not be made: bonemill: it is no phantom");
+    EXPECT_EQ(answerTo([](topics::Command& c) { c.set_choose_scene("late"); }), "done");
+    EXPECT_TRUE(one_.pollUntil([&] {
+        return one_.subscriber.lesson() && one_.subscriber.lesson()->scene_id() == "late" &&
+               !lessonOf("late").is_made_first() && lessonOf("never").is_made_first();
+    }));
+    server_process.signal(SIGTERM);
+    EXPECT_EQ(server_process.wait().exit_code, 0);
+}
+
 TEST_F(SceneChange, ScenesAreListedAndTheFirstGoodOneIsTaken) {
     test::writeFile(folder_ / "0.textproto", "volum { }");
     const test::Finished list = test::run({"haptic_server", "--scenes", folder_.path(), "--list-scenes"});

@@ -169,6 +169,7 @@ function choiceOf(scene: wire.SceneChoice): SceneChoiceView {
     expectedS: scene.expectedS,
     picture: scene.picture.length > 0 ? scene.picture.slice() : undefined,
     problem: scene.problem,
+    isMadeFirst: scene.isMadeFirst,
   };
 }
 

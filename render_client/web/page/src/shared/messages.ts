@@ -148,6 +148,7 @@ export interface SceneChoiceView {
   expectedS: number;
   picture?: Uint8Array;  // PNG
   problem: string;
+  isMadeFirst: boolean;
 }
 
 // Of one of LessonView.scenes.

@@ -33,7 +33,7 @@ export function lessonSection(acts: SessionActs): Section {
     key: () => {
       const lesson = session.lesson;
       if (!lesson || lesson.scenes.length === 0) return undefined;
-      return [lesson.scenes.map((scene) => [scene.id, scene.title, scene.problem, scene.task, scene.picture?.length]), lesson.sceneId,
+      return [lesson.scenes.map((scene) => [scene.id, scene.title, scene.problem, scene.isMadeFirst, scene.task, scene.picture?.length]), lesson.sceneId,
         lesson.isRunning, lesson.trainee, lesson.attempts.length, permission(acts)];
     },
     content: () => {
@@ -75,7 +75,8 @@ function sceneCard(acts: SessionActs, scene: SceneChoiceView): HTMLElement {
   const about = [scene.tools.join(', '), scene.expectedS > 0 ? `about ${Math.round(scene.expectedS / 60)} min` : ''];
   card.append(make('strong', { text: scene.title || scene.id }), say(scene.task), say(about.filter(Boolean).join(' · ')));
   if (scene.problem) card.append(say(scene.problem, 'warning'));
-  else if (!is_chosen) card.append(orderButton(acts, 'Choose', 'changes to this scene', { action: 'chooseScene', value: scene.id }));
+  if (scene.isMadeFirst) card.append(say('Its bone is made first: some seconds'));
+  if (!scene.problem && !is_chosen) card.append(orderButton(acts, 'Choose', 'changes to this scene', { action: 'chooseScene', value: scene.id }));
   return card;
 }
 

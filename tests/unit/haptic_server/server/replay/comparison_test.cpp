@@ -201,7 +201,7 @@ class ComparedReplay : public ComparisonTest {
 };
 
 TEST_F(ComparedReplay, TheOtherToolGoesAlongWhereverTheReplayIsLed) {
-    comparison_.compareWith({other_.journal, 0});
+    comparison_.compareWith(openCompared({other_.journal, 0}, {}, recording_));
     const AttemptClock clock(recording_, other_recording_, {"P2", 0, 500, UINT64_MAX, {}});
     for (const uint64_t tick : {1500u, 250u, 2999u, 700u, 0u}) {
         seek(tick);
@@ -214,7 +214,7 @@ TEST_F(ComparedReplay, TheOtherToolGoesAlongWhereverTheReplayIsLed) {
 }
 
 TEST_F(ComparedReplay, PlayedFromItsBeginningItComesToTheSameBits) {
-    comparison_.compareWith({other_.journal, 1});
+    comparison_.compareWith(openCompared({other_.journal, 1}, {}, recording_));
     ASSERT_TRUE(waitFor([&] { return comparison_.otherTool().has_value(); }));
     topics::ReplayOrder order;
     order.set_speed(4);
@@ -225,7 +225,8 @@ TEST_F(ComparedReplay, PlayedFromItsBeginningItComesToTheSameBits) {
 }
 
 TEST_F(ComparedReplay, WhatGoesWrongIsSaidAndTheReplayGoesOn) {
-    comparison_.compareWith({folder_ / "none.mcap", 0});
+    writeResult("gone", "none.mcap", "P2", 1.5);
+    EXPECT_EQ(comparison_.compareWithResult("gone").outcome, topics::DONE);
     ASSERT_TRUE(waitFor([&] { return !now().problem().empty(); }));
     EXPECT_NE(now().problem().find("none.mcap"), std::string::npos);
     EXPECT_FALSE(comparison_.otherTool());
@@ -246,7 +247,7 @@ TEST_F(ComparedReplay, WhatGoesWrongIsSaidAndTheReplayGoesOn) {
 }
 
 TEST_F(ComparedReplay, TheColoursFollowBothBones) {
-    comparison_.compareWith({other_.journal, 0});
+    comparison_.compareWith(openCompared({other_.journal, 0}, {}, recording_));
     comparison_.showDifference(true);
     ASSERT_TRUE(waitFor([&] { return comparison_.paint() && comparison_.otherTool(); }));
     seek(2999);

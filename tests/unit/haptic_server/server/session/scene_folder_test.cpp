@@ -44,6 +44,23 @@ TEST_F(SceneFolder, SaysWhatATraineeWantsToKnow) {
     EXPECT_EQ(idOfScene(scenes, folder_ / "c.textproto"), "");
 }
 
+TEST_F(SceneFolder, WhatAMakerMakesIsNoProblem) {
+    write("late.textproto", "volume { path: 'late.nrrd' }");
+    write("lost.textproto", "volume { path: 'lost.nrrd' }");
+    const auto scenes = listScenes({folder_.path()}, {"maker", {"late"}});
+    ASSERT_EQ(scenes.size(), 2u);
+    EXPECT_TRUE(scenes[0].choice.is_made_first());
+    EXPECT_EQ(scenes[0].choice.problem(), "");
+    EXPECT_FALSE(scenes[1].choice.is_made_first());
+    EXPECT_NE(scenes[1].choice.problem(), "");
+    EXPECT_NE(sceneTable(scenes).find("made when it is chosen"), std::string::npos);
+    EXPECT_TRUE(lacksFiles(scenes[0]));
+    EXPECT_THROW(makeMissing(scenes[0], {"/bin/true", {}}), UserError) << "it is still not there";
+    write("late.nrrd", "");
+    EXPECT_FALSE(lacksFiles(scenes[0]));
+    EXPECT_NO_THROW(makeMissing(scenes[0], {"/bin/true", {}}));
+}
+
 TEST_F(SceneFolder, ABrokenSceneIsListedWithItsProblem) {
     write("bad.textproto", "volume { pth: 'x' }");
     write("lost.textproto", "volume { path: 'lost.nrrd' }");

@@ -48,6 +48,13 @@ TEST_F(LessonClicks, TheMouseAloneOpensThePanelAndChooses) {
     EXPECT_TRUE(wishes_.commands.empty()) << "it has a problem";
 }
 
+TEST_F(LessonClicks, ASceneWhoseBoneIsMadeFirstTakesOneClick) {
+    lesson_.mutable_scenes(1)->set_is_made_first(true);
+    switchPanel();
+    click("Pedicle of a vertebra");
+    EXPECT_EQ(command().choose_scene(), "pedicle");
+}
+
 TEST_F(LessonClicks, ARowIsClickedAnywhereAndOnlyByAWholeClick) {
     switchPanel();
     layOut();
@@ -240,6 +247,23 @@ TEST_F(LessonClicks, TheSummaryComesWithTheEndOfAnAttemptAndGoes) {
     lesson_.mutable_attempts(3)->set_number(5);
     lesson_.set_start_stamp_ns(2);
     EXPECT_FALSE(isThere("Close")) << "one ended as the next one began";
+}
+
+TEST_F(LessonClicks, WhatASummarysRowOfButtonsHasNoRoomForIsBelowIt) {
+    session_.class_folder = "/class";
+    lesson_.mutable_attempts(0)->mutable_verdict()->set_results("first");
+    switchPanel();
+    click("Attempt 1");
+    for (const bool can_replay : {false, true}) {
+        session_.has_launcher = can_replay;
+        for (int n = 0; n < 3; ++n) ControlledPanel::layOut(1280, 800);
+        const double row = panel_.find("Close")->y, last = panel_.find("All attempts as CSV")->y;
+        EXPECT_EQ(panel_.find("Report")->y, row);
+        EXPECT_EQ(panel_.find("Replay").has_value(), can_replay);
+        EXPECT_EQ(last > row, can_replay);
+    }
+    clickAt("All attempts as CSV");
+    EXPECT_TRUE(wishes_.save_attempts);
 }
 
 TEST(LessonDraft, TheAttemptsClockCountsWithoutPauses) {
