@@ -272,10 +272,10 @@ void defineRuns(py::module_& module) {
              "removes, 2 adds.")
         .def(
             "run", runHand, py::arg("positions_m"), py::arg("orientations_wxyz") = py::none(),
-            py::arg("buttons") = py::none(),
+            py::arg("buttons") = py::none(), py::arg("t_s") = py::none(),
             "Runs a tick for each row and returns their columns by name, each an array with one row a tick.\n"
-            "positions_m: (N, 3), m, W. orientations_wxyz: (N, 4). buttons: one number, or (N,). Releases "
-            "the GIL.")
+            "positions_m: (N, 3), m, W. orientations_wxyz: (N, 4). buttons: one number, or (N,).\n"
+            "t_s: (N,), a period apart by default. Releases the GIL.")
         .def("voxels", voxelsOf,
              "Densities of all voxels, uint16, shape (x, y, z); bone from iso_density on. The same array at "
              "each call,\n"
