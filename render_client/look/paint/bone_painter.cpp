@@ -39,13 +39,13 @@ FilmPainter::FilmPainter(const GlApi& gl) : gl_(gl), texture_(gl) {
     gl_.check("making the film's texture");
 }
 
-Eigen::AlignedBox3f FilmPainter::update(const EffectPicture& picture) {
+std::vector<Eigen::AlignedBox3f> FilmPainter::update(const EffectPicture& picture) {
     SurfaceFilm& film = *picture.film;
     const Eigen::Vector4f strength(picture.shows_blood, picture.shows_water, picture.shows_burns,
                                    picture.shows_bruises);
     if (!film.takeDue() && strength == strength_) return {};
-    Eigen::AlignedBox3f changed = film.takeChanged();
-    if (strength != strength_) changed.extend(film.shownBox());
+    std::vector<Eigen::AlignedBox3f> changed = film.takeChanged();
+    if (strength != strength_) changed.push_back(film.shownBox());
     strength_ = strength;
     blood_colour_ = picture.blood_colour;
     period_ = film.extent();
@@ -133,7 +133,7 @@ const Program& BonePainter::shading(const SurfaceMaps& maps) {
 
 void BonePainter::drawOpaque(const Frame& frame, const NodeStore& nodes, const BoneLayer& layer,
                              GLuint shadow_texture) {
-    const Place place{frame, nodes, layer, shadow_texture};
+    const Place place{{frame, layer, shadow_texture}, nodes};
     if (frame.cuts_V.any()) beginMarking();
     drawSurface(place, {{1, 0}, kInsideSolid});
     if (!frame.cuts_V.any()) return;
@@ -145,7 +145,7 @@ void BonePainter::drawOpaque(const Frame& frame, const NodeStore& nodes, const B
 void BonePainter::drawTransparent(const Frame& frame, const NodeStore& nodes, const BoneLayer& layer,
                                   GLuint shadow_texture, double opacity,
                                   const std::function<void()>& draw_tool) {
-    const Place place{frame, nodes, layer, shadow_texture};
+    const Place place{{frame, layer, shadow_texture}, nodes};
     drawFarWall(place);
     if (frame.cuts_V.any()) markOpened(place);
     draw_tool();
@@ -167,7 +167,17 @@ void BonePainter::drawSurface(const Place& place, const Look& look) {
     gl_.Disable(GL_STENCIL_TEST);
     gl_.CullFace(GL_BACK);
     gl_.Disable(GL_CULL_FACE);
-    shade(place, look);
+    beginShading(place, look);
+    drawFullScreen();
+    endShading();
+}
+
+void BonePainter::shadeAgain(const Frame& frame, const BoneLayer& layer, GLuint shadow_texture,
+                             const std::vector<PixelBox>& parts) {
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, layer.picture);
+    beginShading({frame, layer, shadow_texture}, {{1, 0}, kInsideSolid});
+    drawParts(gl_, parts, [&] { drawFullScreen(); });
+    endShading();
 }
 
 void BonePainter::gather(const Place& place) {
@@ -184,12 +194,12 @@ void BonePainter::gather(const Place& place) {
     gl_.BindFramebuffer(GL_FRAMEBUFFER, place.layer.picture);
 }
 
-void BonePainter::shade(const Place& place, const Look& look) {
-    const Frame& frame = place.frame;
-    const Program& shading = this->shading(place.layer.maps);
+void BonePainter::beginShading(const Canvas& canvas, const Look& look) {
+    const Frame& frame = canvas.frame;
+    const Program& shading = this->shading(canvas.layer.maps);
     shading.use();
-    frame.setLight(gl_, shading, place.shadow_texture);
-    place.layer.maps.setUniforms(shading);
+    frame.setLight(gl_, shading, canvas.shadow_texture);
+    canvas.layer.maps.setUniforms(shading);
     shading.set("tangents", frame.tangents);
     shading.set("shift", frame.shift);
     shading.set("model_from_camera", Eigen::Matrix4f(frame.X_CV.inverse()));
@@ -203,7 +213,9 @@ void BonePainter::shade(const Place& place, const Look& look) {
     gl_.Disable(GL_DEPTH_TEST);
     gl_.Enable(GL_BLEND);
     gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    drawFullScreen();
+}
+
+void BonePainter::endShading() const {
     gl_.Disable(GL_BLEND);
     gl_.Enable(GL_DEPTH_TEST);
 }

@@ -108,6 +108,7 @@ struct KeyLight {
     float shadow_texel;                  // m
     float reach;     // m from the eye to where an endoscope's light is as bright; 0: it is the room's
     float strength;  // against the room's, where it has no reach
+    bool is_at_eye;  // what lies behind the eye casts no shadow
 };
 
 // The part of the tool that casts a shadow where there is no shadow map: the burr as a ball and a piece of
