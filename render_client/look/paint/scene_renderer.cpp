@@ -193,8 +193,8 @@ void SceneRenderer::drawBone(const Shown& shown, const PixelBox& part) {
     gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->bone());
     setScissor(gl_, part);
     gl_.Clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
-    passes_.drawBackground({part});
-    bone_.drawOpaque(frame, shown.nodes, targets_->keptLayer(), shadow_->texture());
+    passes_.drawBackground({part.grown(kScissorRim)});
+    bone_.drawOpaque(frame, shown.nodes, targets_->keptLayer(), part, shadow_->texture());
     structures_.draw(frame, shown.view.structures, shadow_->texture());
     if (shown.view.shows_strokes) strokes_.draw(frame, shown.view);
 }
@@ -205,10 +205,11 @@ void SceneRenderer::drawLook(const Shown& shown, const PixelTiles& parts) {
     Frame frame = shown.frame;
     const PixelBox around = parts.bounds();
     frame.cull_from_V = around.zoom(targets_->width(), targets_->height()) * frame.cull_from_V;
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->bone());
-    passes_.drawBackground(parts.boxes());
-    bone_.shadeAgain(frame, targets_->keptLayer(), shadow_->texture(), parts.boxes());
-    setScissor(gl_, around);
+    std::vector<PixelBox> boxes = parts.boxes();
+    for (PixelBox& box : boxes) box = box.grown(kScissorRim);
+    bone_.shadeAgain(frame, targets_->keptLayer(), shadow_->texture(), boxes,
+                     [&](const PixelBox& part) { passes_.drawBackground({part}); });
+    setScissor(gl_, around.grown(kScissorRim));
     structures_.drawAgain(frame, shown.view.structures, shadow_->texture());
     if (shown.view.shows_strokes) strokes_.draw(frame, shown.view);
 }
@@ -218,7 +219,7 @@ void SceneRenderer::drawTool(const Shown& shown, const PixelTiles& parts) {
     copyParts(gl_, targets_->bone(), targets_->scene(), parts.boxes(),
               GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->scene());
-    setScissor(gl_, parts.bounds());
+    setScissor(gl_, parts.bounds().grown(kScissorRim));
     gl_.Enable(GL_DEPTH_TEST);
     tool_.drawTool(frame, view, tool, shadow_->texture());
     drawOver(frame, view, tool);
