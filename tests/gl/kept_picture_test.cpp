@@ -189,6 +189,7 @@ TEST_P(KeptPicture, IsTheOneThatIsDrawnWholeWhileABurrMills) {
     wish.mutable_bleeding()->set_delay_s(0);
     wish.mutable_bleeding()->set_seep_per_s(2);
     wish.mutable_browning();
+    wish.mutable_burr_spin();
     const Eigen::Vector3d half = Eigen::Vector3d::Constant(kBallRadius);
     topics::SceneInfo info = test::makeSceneInfo("milled ball", kBallCenter - half, kBallCenter + half);
     *info.mutable_tool() = test::makeToolMesh(1e-3, 4e-4, 0.006);
@@ -213,6 +214,7 @@ TEST_P(KeptPicture, IsTheOneThatIsDrawnWholeWhileABurrMills) {
     Pose end = start;
     end.position += Eigen::Vector3d(6e-3, 0, -2e-3);
     session.stroke(scene_, start, end, 1, {.spin_speed = 1500});
+    session.wait(scene_, end, 0.5, {.spin_speed = 0, .is_pedal_down = false});
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, KeptPicture, testing::Values(Quality::kQuick, Quality::kFull),

@@ -125,16 +125,18 @@ Eigen::AlignedBox3d boneIn(const FrameView& view) {
 
 }  // namespace
 
-Eigen::AlignedBox3f ToolShadow::box(const Eigen::Vector3f& key_direction) const {
-    Eigen::AlignedBox3f box;
+std::vector<Eigen::AlignedBox3f> ToolShadow::boxes(const Eigen::Vector3f& key_direction) const {
+    constexpr int kPieces = 4;
     const float room = 1.1f * std::max(burr_radius, shaft_radius) + 0.1f * reach;  // the shadow widens
-    for (const Eigen::Vector3f& end : {burr, shaft})
-        for (const float along : {0.0f, -reach}) {
-            const Eigen::Vector3f p = end + along * key_direction;
-            box.extend(Eigen::Vector3f(p.array() - room));
-            box.extend(Eigen::Vector3f(p.array() + room));
-        }
-    return box;
+    std::vector<Eigen::AlignedBox3f> boxes(kPieces);
+    for (int piece = 0; piece < kPieces; ++piece)
+        for (const Eigen::Vector3f& end : {burr, shaft})
+            for (const int side : {piece, piece + 1}) {
+                const Eigen::Vector3f p = end - reach * float(side) / kPieces * key_direction;
+                boxes[size_t(piece)].extend(Eigen::Vector3f(p.array() - room));
+                boxes[size_t(piece)].extend(Eigen::Vector3f(p.array() + room));
+            }
+    return boxes;
 }
 
 DepthRange Frame::neededRange(const FrameView& view, const Eigen::AlignedBox3f& tool_T) {

@@ -118,8 +118,8 @@ struct ToolShadow {
     Eigen::Vector3f shaft;  // the piece's end
     float burr_radius, shaft_radius;
     float reach;  // m along the light, beyond it there is none
-    // Returns what the tool and its shadow take (C).
-    Eigen::AlignedBox3f box(const Eigen::Vector3f& key_direction) const;
+    // Returns boxes that hold the tool and its shadow (C), one after the other away from the light.
+    std::vector<Eigen::AlignedBox3f> boxes(const Eigen::Vector3f& key_direction) const;
 };
 
 // The tool's outline where it is not.

@@ -93,6 +93,10 @@ void PixelTiles::add(const PixelTiles& other) {
     for (size_t n = 0; n < has_.size(); ++n) has_[n] |= other.has_[n];
 }
 
+void PixelTiles::keep(const PixelTiles& other) {
+    for (size_t n = 0; n < has_.size(); ++n) has_[n] &= other.has_[n];
+}
+
 bool PixelTiles::isEmpty() const {
     return std::ranges::none_of(has_, [](uint8_t is_in) { return is_in != 0; });
 }

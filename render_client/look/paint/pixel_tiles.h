@@ -49,7 +49,8 @@ class PixelTiles {
     static PixelTiles whole(int width, int height);
 
     void add(const PixelBox& box);
-    void add(const PixelTiles& other);  // of the same picture
+    void add(const PixelTiles& other);   // of the same picture
+    void keep(const PixelTiles& other);  // only what both have
     bool isEmpty() const;
     bool operator==(const PixelTiles&) const = default;
 

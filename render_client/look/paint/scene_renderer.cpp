@@ -227,11 +227,10 @@ void SceneRenderer::drawTool(const Shown& shown, const PixelTiles& parts) {
 
 void SceneRenderer::finish(const Frame& frame, const PixelTiles& parts) {
     passes_.compose(frame, *targets_, parts.boxes());
-    if (!frame.tool_shadow) return;
-    std::vector<PixelBox> shadowed;
-    for (const PixelBox& part : parts.boxes())
-        if (const PixelBox box = shadowPixels(frame).within(part); !box.isEmpty()) shadowed.push_back(box);
-    if (!shadowed.empty()) passes_.drawToolShadow(frame, *targets_, shadowed);
+    PixelTiles shadowed(targets_->width(), targets_->height());
+    for (const PixelBox& box : shadowPixels(frame)) shadowed.add(box);
+    shadowed.keep(parts);
+    if (!shadowed.isEmpty()) passes_.drawToolShadow(frame, *targets_, shadowed.boxes());
 }
 
 void SceneRenderer::showFinished(const PictureArea& area, GLuint target) const {
@@ -248,8 +247,12 @@ PixelBox SceneRenderer::pixelsOf(const Frame& frame, const Eigen::AlignedBox3f& 
     return PixelBox::around(box, frame.clip_from_camera * X_CB, targets_->width(), targets_->height());
 }
 
-PixelBox SceneRenderer::shadowPixels(const Frame& frame) const {
-    return pixelsOf(frame, frame.tool_shadow->box(frame.key.direction), Eigen::Matrix4f::Identity());
+std::vector<PixelBox> SceneRenderer::shadowPixels(const Frame& frame) const {
+    std::vector<PixelBox> pixels;
+    if (!frame.tool_shadow) return pixels;
+    for (const Eigen::AlignedBox3f& box : frame.tool_shadow->boxes(frame.key.direction))
+        pixels.push_back(pixelsOf(frame, box, Eigen::Matrix4f::Identity()));
+    return pixels;
 }
 
 PixelTiles SceneRenderer::movingPixels(const Frame& frame, const FrameView& view, const ToolMesh& tool) {
@@ -261,7 +264,7 @@ PixelTiles SceneRenderer::movingPixels(const Frame& frame, const FrameView& view
         for (const Eigen::AlignedBox3f& box :
              ParticlePainter::boxes(frame, view.effects->particles, targets_->height()))
             moving.add(pixelsOf(frame, box, X_CC));
-    if (frame.tool_shadow) moving.add(shadowPixels(frame));
+    for (const PixelBox& box : shadowPixels(frame)) moving.add(box);
     if (frame.X_CT) addTool(frame, tool.box(view.shows_handpiece), *frame.X_CT, moving);
     for (const Ghost& ghost : frame.ghosts) addTool(frame, tool.box(), ghost.X_CT, moving);
     return moving;
@@ -272,17 +275,22 @@ void SceneRenderer::addTool(const Frame& frame, const Eigen::AlignedBox3f& tool_
     for (const Eigen::AlignedBox3f& slice : sliced(tool_T, kToolSlices)) tiles.add(pixelsOf(frame, slice, X_CT));
 }
 
-// Says how what moves stands, in numbers; nothing while particles fly or the burr's flutes turn.
+// Says how what moves stands, in numbers; nothing while the burr's flutes turn.
 std::vector<float> SceneRenderer::stillLike(const Frame& frame, const FrameView& view, const ToolMesh& tool) {
-    const bool has_effects = view.effects && (view.effects->turn || !view.effects->particles.empty());
-    if (has_effects) return {};
+    const auto turn = view.effects ? view.effects->turn : std::nullopt;
+    if (turn && turn->sweep != 0) return {};
     std::vector<float> numbers{float(view.burr_work),         float(view.burr_load),
                                float(view.burr_radius),       float(tool.revision()),
-                               float(view.pointers_W.size()), float(view.pull.has_value())};
+                               float(view.pointers_W.size()), float(view.pull.has_value()),
+                               turn ? turn->angle : 0,        turn ? turn->flutes : 0};
     const auto append = [&numbers](const auto& matrix) {
         const auto f = matrix.template cast<float>().eval();
         numbers.insert(numbers.end(), f.data(), f.data() + f.size());
     };
+    for (const Particle& particle : view.effects ? view.effects->particles : Particles{}) {
+        append(particle.p_V), append(particle.streak_V), append(particle.colour);
+        numbers.insert(numbers.end(), {particle.radius, particle.gloss});
+    }
     numbers.push_back(float(frame.X_CT.has_value()));
     if (frame.X_CT) append(*frame.X_CT);
     for (const Ghost& ghost : frame.ghosts) append(ghost.X_CT), append(ghost.colour);

@@ -102,7 +102,7 @@ class SceneRenderer {
     void finish(const Frame& frame, const PixelTiles& parts);
     void showFinished(const PictureArea& area, GLuint target) const;
     PixelBox pixelsOf(const Frame& frame, const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& X_CB) const;
-    PixelBox shadowPixels(const Frame& frame) const;
+    std::vector<PixelBox> shadowPixels(const Frame& frame) const;
     PixelTiles movingPixels(const Frame& frame, const FrameView& view, const ToolMesh& tool);
     void addTool(const Frame& frame, const Eigen::AlignedBox3f& tool_T, const Eigen::Matrix4f& X_CT,
                  PixelTiles& tiles) const;
