@@ -80,15 +80,16 @@ class KeptPicture : public testing::TestWithParam<Quality> {
         for (int y = 0; y < kKeptHeight; ++y)
             for (int x = 0; x < kKeptWidth; ++x) {
                 int off = 0;
-                for (size_t i = 0; i < 3; ++i) off = std::max(off, std::abs(kept.at(x, y)[i] - whole.at(x, y)[i]));
+                for (size_t i = 0; i < 3; ++i)
+                    off = std::max(off, std::abs(kept.at(x, y)[i] - whole.at(x, y)[i]));
                 if (off == 0) continue;
                 ++count;
                 most = std::max(most, off);
                 around = around.joined({x, y, x + 1, y + 1});
             }
         return std::to_string(count) + " pixels by up to " + std::to_string(most) + ", around " +
-               std::to_string(around.x0) + " " + std::to_string(around.y0) + " to " + std::to_string(around.x1) +
-               " " + std::to_string(around.y1);
+               std::to_string(around.x0) + " " + std::to_string(around.y0) + " to " +
+               std::to_string(around.x1) + " " + std::to_string(around.y1);
     }
 
     OsmesaContext context_;

@@ -75,19 +75,20 @@ class BonePainter {
     explicit BonePainter(const GlApi& gl);
 
     // Both draw into the layer's picture, whose depth and stencil are clear, and leave it bound, with depth
-    // test and depth writes on. drawOpaque() draws that part, and leaves the scissor around it. draw_tool draws opaque
-    // things. They throw GlError with the compiler's log
-    // when the driver refuses the surface's shader with what it is to show for the first time.
+    // test and depth writes on. drawOpaque() draws that part, and leaves the scissor around it. draw_tool
+    // draws opaque things. They throw GlError with the compiler's log when the driver refuses the surface's
+    // shader with what it is to show for the first time.
     void drawOpaque(const Frame& frame, const NodeStore& nodes, const BoneLayer& layer, const PixelBox& part,
                     GLuint shadow_texture);
     void drawTransparent(const Frame& frame, const NodeStore& nodes, const BoneLayer& layer,
                          GLuint shadow_texture, double opacity, const std::function<void()>& draw_tool);
 
-    // Shades those parts of the layer once more, over what draw_under draws of each, as drawOpaque() left it without
-    // cut-planes: the bone has kept its shape there. Leaves the layer's picture bound, and its depth as it is. Parts
-    // may overlap.
+    // Shades those parts of the layer once more, over what draw_under draws of each, as drawOpaque() left it
+    // without cut-planes: the bone has kept its shape there. Leaves the layer's picture bound, and its depth
+    // as it is. Parts may overlap.
     void shadeAgain(const Frame& frame, const BoneLayer& layer, GLuint shadow_texture,
-                    const std::vector<PixelBox>& parts, const std::function<void(const PixelBox&)>& draw_under);
+                    const std::vector<PixelBox>& parts,
+                    const std::function<void(const PixelBox&)>& draw_under);
 
     // From now on bone has these colours (vertexColoursOf()).
     void setPalette(const std::vector<Eigen::Vector4f>& colours);

@@ -57,7 +57,8 @@ Eigen::Vector3d directionOf(LightRig light) {
 }
 
 // The light's shadow map covers the first sphere, and along the light all of the second: what stands between
-// the light and what it covers casts a shadow, too. Its depth grows in steps, so that it rests while the tool moves.
+// the light and what it covers casts a shadow, too. Its depth grows in steps, so that it rests while the tool
+// moves.
 KeyLight aimKeyLight(const Camera& camera, LightRig light, const Sphere& lit_W, const Sphere& casters_W) {
     const Eigen::Vector3d key_C = directionOf(light).normalized();
     const double half_size = std::max(lit_W.radius, kSmallestBone);
@@ -72,10 +73,12 @@ KeyLight aimKeyLight(const Camera& camera, LightRig light, const Sphere& lit_W, 
     Eigen::Matrix4d shadow_from_camera = Eigen::Matrix4d::Identity();
     shadow_from_camera.topLeftCorner<3, 3>() = R_LC.array().colwise() * scale;
     shadow_from_camera.topRightCorner<3, 1>() = -(R_LC * center_C).array() * scale;
-    return {key_C.cast<float>(), shadow_from_camera.cast<float>(),
+    return {key_C.cast<float>(),
+            shadow_from_camera.cast<float>(),
             float(2 * half_size / ShadowMap::kSize),
             light == LightRig::kEndoscope ? float(kReach * camera.focus) : 0,
-            light == LightRig::kMicroscope ? kMicroscopeStrength : 1, light != LightRig::kRoom};
+            light == LightRig::kMicroscope ? kMicroscopeStrength : 1,
+            light != LightRig::kRoom};
 }
 
 }  // namespace

@@ -101,7 +101,8 @@ void FramePasses::drawOcclusion(const Frame& frame, const RenderTargets& targets
     occlusion_.set("radius", float(kOcclusionRadius) * frame.bone_radius);
     occlusion_.set("max_radius", kOcclusionPicture);
     for (const PixelBox& part : parts) {
-        setScissor(gl_, {part.x0 / 2 - 1, part.y0 / 2 - 1, part.x1 / 2 + 2, part.y1 / 2 + 2});  // half the size
+        setScissor(gl_,
+                   {part.x0 / 2 - 1, part.y0 / 2 - 1, part.x1 / 2 + 2, part.y1 / 2 + 2});  // half the size
         drawFullScreen();
     }
     gl_.Viewport(0, 0, targets.width(), targets.height());

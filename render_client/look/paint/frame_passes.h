@@ -23,7 +23,8 @@ class FramePasses {
     using Parts = std::vector<PixelBox>;
     // Fills the bound framebuffer; leaves the depth test on.
     void drawBackground(const Parts& parts) const;
-    // Makes the half-size occlusion from this depth texture of the targets. Leaves the viewport that of the picture.
+    // Makes the half-size occlusion from this depth texture of the targets. Leaves the viewport that of the
+    // picture.
     void drawOcclusion(const Frame& frame, const RenderTargets& targets, GLuint depth_texture,
                        const Parts& parts) const;
     // Makes the finished picture (without figures).

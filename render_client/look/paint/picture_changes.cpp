@@ -62,7 +62,8 @@ PictureChanges::Dirty PictureChanges::next(const Frame& frame, int width, int he
     dirty.bone = pixels(changed.bone_V);
     for (const Eigen::AlignedBox3f& box_V : changed.look_V) dirty.look.add(pixels(box_V));
     if (moved) dirty.moving.add(*moved);
-    if (stands_still && dirty.bone.isEmpty() && dirty.look.isEmpty()) dirty.moving = PixelTiles(width, height);
+    if (stands_still && dirty.bone.isEmpty() && dirty.look.isEmpty())
+        dirty.moving = PixelTiles(width, height);
     return dirty;
 }
 

@@ -13,8 +13,8 @@ inline void setScissor(const GlApi& gl, const PixelBox& part) {
     gl.Scissor(part.x0, part.y0, part.width(), part.height());
 }
 
-// Of a pixel at the scissor's rim llvmpipe does not draw every sample. What is drawn anew where a pixel has several
-// is drawn one pixel further, where it changes nothing.
+// Of a pixel at the scissor's rim llvmpipe does not draw every sample. What is drawn anew where a pixel has
+// several is drawn one pixel further, where it changes nothing.
 constexpr int kScissorRim = 1;
 
 // Draws each of the parts, with the scissor around it.

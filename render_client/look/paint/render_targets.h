@@ -14,8 +14,8 @@
 namespace bonemill {
 
 // A frame passes through these buffers: the bone alone, the scene with the tool, its resolved copy, half-size
-// occlusion, the finished picture. Bone and finished picture are kept for the next frame. In full quality bone and
-// scene have several samples per pixel; in quick quality the scene is its own resolved copy.
+// occlusion, the finished picture. Bone and finished picture are kept for the next frame. In full quality
+// bone and scene have several samples per pixel; in quick quality the scene is its own resolved copy.
 class RenderTargets {
   public:
     static constexpr int kWantedSamples = 4;
@@ -53,9 +53,10 @@ class RenderTargets {
   private:
     void makeSampled();
     void makePlain();
-    void makeSampledLayer(const GlFramebuffer& layer, const GlRenderbuffer& colour, const GlRenderbuffer& depth,
-                          GLsizei samples, const char* what) const;
-    void makeSampledSurface(const GlFramebuffer& surface, const GlRenderbuffer& depth, const char* what) const;
+    void makeSampledLayer(const GlFramebuffer& layer, const GlRenderbuffer& colour,
+                          const GlRenderbuffer& depth, GLsizei samples, const char* what) const;
+    void makeSampledSurface(const GlFramebuffer& surface, const GlRenderbuffer& depth,
+                            const char* what) const;
     void makeFinished();
     void makeResolved();
     void makeSurface(const GlFramebuffer& surface, const GlTexture& depth, const char* what) const;

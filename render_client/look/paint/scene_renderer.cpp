@@ -21,14 +21,7 @@ bool showsBehindBone(const FrameView& view) {
 }  // namespace
 
 SceneRenderer::SceneRenderer(const GlApi& gl)
-    : gl_(gl),
-      bone_(gl),
-      tool_(gl),
-      markers_(gl),
-      passes_(gl),
-      structures_(gl),
-      strokes_(gl),
-      drawn_(gl) {}
+    : gl_(gl), bone_(gl), tool_(gl), markers_(gl), passes_(gl), structures_(gl), strokes_(gl), drawn_(gl) {}
 
 void SceneRenderer::setPalette(const std::vector<Eigen::Vector4f>& colours) {
     bone_.setPalette(colours);
@@ -77,8 +70,8 @@ void SceneRenderer::prepareTargets(const PictureArea& area, Quality quality) {
     changes_.forget();
 }
 
-PictureChanges::Changed SceneRenderer::takeChanges(const Frame& frame, const FrameView& view, NodeStore& nodes,
-                                                   const ToolMesh& tool) {
+PictureChanges::Changed SceneRenderer::takeChanges(const Frame& frame, const FrameView& view,
+                                                   NodeStore& nodes, const ToolMesh& tool) {
     return {nodes.takeChanged().merged(structures_.takeChanged(view.structures)),
             std::exchange(look_changed_, {}), movingPixels(frame, view, tool), stillLike(frame, view, tool)};
 }
@@ -104,8 +97,8 @@ void SceneRenderer::drawOver(const Frame& frame, const FrameView& view, const To
     markers_.draw(frame, view);
 }
 
-// The tool is seen through the bone: nothing can be kept. Transparent bone casts no shadow: what is seen through it
-// would be dark.
+// The tool is seen through the bone: nothing can be kept. Transparent bone casts no shadow: what is seen
+// through it would be dark.
 void SceneRenderer::drawThrough(const Shown& shown) {
     const auto& [frame, view, nodes, tool] = shown;
     const PixelTiles whole = PixelTiles::whole(targets_->width(), targets_->height());
@@ -127,9 +120,10 @@ void SceneRenderer::drawThrough(const Shown& shown) {
     finish(frame, whole);
 }
 
-// The bone of the last picture is kept. Where it has changed it is drawn anew, where it only looks different it is
-// shaded anew (a cap and what is blended over bone cannot be), and where something moves before it, it is copied back. In quick quality what moves takes no part in
-// the occlusion, which would have to be made anew in every picture, far around it.
+// The bone of the last picture is kept. Where it has changed it is drawn anew, where it only looks different
+// it is shaded anew (a cap and what is blended over bone cannot be), and where something moves before it, it
+// is copied back. In quick quality what moves takes no part in the occlusion, which would have to be made
+// anew in every picture, far around it.
 void SceneRenderer::drawKept(const Shown& shown, PictureChanges::Changed changed) {
     const Frame& frame = shown.frame;
     const int width = targets_->width(), height = targets_->height();
@@ -270,9 +264,10 @@ PixelTiles SceneRenderer::movingPixels(const Frame& frame, const FrameView& view
     return moving;
 }
 
-void SceneRenderer::addTool(const Frame& frame, const Eigen::AlignedBox3f& tool_T, const Eigen::Matrix4f& X_CT,
-                            PixelTiles& tiles) const {
-    for (const Eigen::AlignedBox3f& slice : sliced(tool_T, kToolSlices)) tiles.add(pixelsOf(frame, slice, X_CT));
+void SceneRenderer::addTool(const Frame& frame, const Eigen::AlignedBox3f& tool_T,
+                            const Eigen::Matrix4f& X_CT, PixelTiles& tiles) const {
+    for (const Eigen::AlignedBox3f& slice : sliced(tool_T, kToolSlices))
+        tiles.add(pixelsOf(frame, slice, X_CT));
 }
 
 // Says how what moves stands, in numbers; nothing while the burr's flutes turn.
@@ -308,8 +303,7 @@ std::vector<float> SceneRenderer::stillLike(const Frame& frame, const FrameView&
 }
 
 void SceneRenderer::drawParticles(const Frame& frame, const FrameView& view) {
-    if (particles_)
-        particles_->draw(frame, view.effects->particles, targets_->height(), shadow_->texture());
+    if (particles_) particles_->draw(frame, view.effects->particles, targets_->height(), shadow_->texture());
 }
 
 std::optional<Eigen::Vector3d> SceneRenderer::pick(int x, int y) const {

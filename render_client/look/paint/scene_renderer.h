@@ -95,7 +95,8 @@ class SceneRenderer {
     void drawThrough(const Shown& shown);
     void drawKept(const Shown& shown, PictureChanges::Changed changed);
     void updateShadow(const Shown& shown, const Eigen::AlignedBox3f& changed_V, PictureChanges::Dirty& dirty);
-    void addShadowed(const Shown& shown, const std::vector<Eigen::AlignedBox3f>& boxes, PixelTiles& tiles) const;
+    void addShadowed(const Shown& shown, const std::vector<Eigen::AlignedBox3f>& boxes,
+                     PixelTiles& tiles) const;
     void drawBone(const Shown& shown, const PixelBox& part);
     void drawLook(const Shown& shown, const PixelTiles& parts);
     void drawTool(const Shown& shown, const PixelTiles& parts);

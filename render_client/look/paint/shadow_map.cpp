@@ -11,8 +11,8 @@ namespace {
 
 constexpr GLenum kEyePlane = 3;  // number of the clip plane after those of the cuts
 constexpr int kCasterSlices = 8;
-// Texels beside a caster's that a surface looks at: keyVisibility() goes up to 4 texels along the normal, and 1.3
-// aside, and reads between two.
+// Texels beside a caster's that a surface looks at: keyVisibility() goes up to 4 texels along the normal,
+// and 1.3 aside, and reads between two.
 constexpr int kLooksAside = 8;
 
 std::vector<float> standOf(const Frame& frame, const ToolMesh& tool) {

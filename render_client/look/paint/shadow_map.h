@@ -1,8 +1,8 @@
-// What the key light sees: the nearest of bone and tool along it. While view and light rest, only what changed
-// is drawn anew.
+// What the key light sees: the nearest of bone and tool along it. While view and light rest, only what
+// changed is drawn anew.
 //
-// It belongs to the thread of the context. The frames are V (volume), T (tool), C (camera) and the light's clip
-// space; the units are m and texels.
+// It belongs to the thread of the context. The frames are V (volume), T (tool), C (camera) and the light's
+// clip space; the units are m and texels.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -25,12 +25,12 @@ class ShadowMap {
 
     GLuint texture() const { return texture_.name(); }
 
-    // Draws all anew, the bone only if it casts a shadow. This and update() want the scissor test enabled, and
-    // leave the viewport the map's.
+    // Draws all anew, the bone only if it casts a shadow. This and update() want the scissor test enabled,
+    // and leave the viewport the map's.
     void draw(const Frame& frame, const NodeStore& nodes, const ToolMesh& tool, bool has_bone);
 
-    // Draws what changed since the last picture of the same view: bone within the box, and the tool. Returns the
-    // boxes (the light's clip space) in which a surface may be in another shadow now.
+    // Draws what changed since the last picture of the same view: bone within the box, and the tool. Returns
+    // the boxes (the light's clip space) in which a surface may be in another shadow now.
     std::vector<Eigen::AlignedBox3f> update(const Frame& frame, const NodeStore& nodes, const ToolMesh& tool,
                                             const Eigen::AlignedBox3f& changed_V);
 

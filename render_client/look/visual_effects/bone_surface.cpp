@@ -11,8 +11,8 @@ constexpr float kSurfaceFound = 0.6e-3f;  // m: farther off there is no surface
 constexpr float kLevel = 0.06f;           // sine of the slope on which a drop rests
 constexpr float kOverhang = -0.85f;       // cosine to `up` of a surface that holds no drop
 
-constexpr int kBuckets = 8;                  // per axis of a leaf
-constexpr float kFocusStep = 0.002f;         // m that the focus moves before leaves are looked for again
+constexpr int kBuckets = 8;           // per axis of a leaf
+constexpr float kFocusStep = 0.002f;  // m that the focus moves before leaves are looked for again
 constexpr float kNearRadius = BoneSurface::kFocusRadius + kFocusStep;
 constexpr int kCells = 11;  // per axis of the grid around the focus
 constexpr float kCellSize = 2 * kNearRadius / kCells;

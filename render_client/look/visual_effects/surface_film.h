@@ -55,7 +55,8 @@ class SurfaceFilm {
 
   private:
     static constexpr size_t kSliceBytes = size_t(kCells) * kCells * kLayers;
-    static constexpr int kBlock = 8, kBlocks = kCells / kBlock;  // cells per axis of a block, and blocks of the grid
+    static constexpr int kBlock = 8,
+                         kBlocks = kCells / kBlock;  // cells per axis of a block, and blocks of the grid
     static constexpr size_t kTexels = size_t(kCells) * kCells * kCells;
 
     Eigen::Array3i cellOf(const Eigen::Vector3f& p_V) const;

@@ -1,7 +1,8 @@
+#include "render_client/look/paint/picture_changes.h"
+
 #include <gtest/gtest.h>
 
 #include "render_client/look/camera/camera.h"
-#include "render_client/look/paint/picture_changes.h"
 
 namespace bonemill {
 namespace {
