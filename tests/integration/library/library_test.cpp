@@ -111,7 +111,7 @@ TEST_F(Library, ShowsItsBone) {
 
 TEST_F(Library, TellsWhatItsEffectsDo) {
     SimulationOptions options;
-    options.settings = {"effects.spindle={}"};
+    options.settings = {"effects.spindle={}", "tool[0].speed_rpm=10000", "tool[1].speed_rpm=10000"};
     Simulation simulation(scene(), options);
     run(simulation, 0, kTicks);
     std::set<std::string> names;
