@@ -23,7 +23,7 @@ py::array rowsOf(std::vector<Entry>&& entries, size_t width = sizeof(Entry) / si
     const auto* const data = reinterpret_cast<const Value*>(owned->data());
     const py::capsule owner(owned.get(),
                             [](void* vector) { delete static_cast<std::vector<Entry>*>(vector); });
-    owned.release();
+    static_cast<void>(owned.release());  // the capsule's now
     if (width == 1) return py::array_t<Value>(rows, data, owner);
     return py::array_t<Value>({rows, py::ssize_t(width)}, data, owner);
 }

@@ -98,7 +98,7 @@ py::tuple meshOf(Run& run) {
                           rowsOf<uint32_t>(std::move(surface.triangles)));
 }
 
-py::tuple toolMeshOf(py::object self) {
+py::tuple toolMeshOf(const py::object& self) {
     const InUse in_use(self.cast<Run&>().isUsed());
     SteppedRun& run = self.cast<Run&>().run();
     const TriangleSurface& surface = run.setup().tools[run.tool()].surface;

@@ -1,8 +1,9 @@
 #include "haptic_server/lab/stepping/simulated_run.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "common/base/user_error.h"
@@ -76,7 +77,8 @@ RunCheckpoint SimulatedRun::checkpoint() const {
 void SimulatedRun::restore(const RunCheckpoint& checkpoint) {
     if (!keeps_inputs_) throw UserError("this run keeps no inputs, so it restores no checkpoint");
     const auto is_same = [](const RunCheckpoint::Done& a, const RunCheckpoint::Done& b) {
-        return std::memcmp(&a, &b, sizeof a) == 0;
+        using Bits = std::array<uint64_t, sizeof a / sizeof(uint64_t)>;
+        return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
     };
     const std::vector<RunCheckpoint::Done>& wanted = *checkpoint.ticks_;
     if (checkpoint.scene_hash_ != sceneHashOf(loaded().scene))
