@@ -173,6 +173,10 @@ void GlfwWindow::showCrosshair(bool is_wanted) {
         glfwSetCursor(window_, is_wanted ? crosshair_ : nullptr);
 }
 
+void GlfwWindow::setVisible(bool is_visible) {
+    is_visible ? glfwShowWindow(window_) : glfwHideWindow(window_);
+}
+
 void GlfwWindow::show() {
     glfwSwapBuffers(window_);
 }

@@ -44,6 +44,9 @@ class GlfwWindow {
     // The cursor is a crosshair, or the usual arrow.
     void showCrosshair(bool is_wanted);
 
+    // Takes the window off the desktop, or puts it there again.
+    void setVisible(bool is_visible);
+
     // Shows the picture; waits for the display's next refresh.
     void show();
 
