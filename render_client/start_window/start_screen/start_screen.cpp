@@ -90,11 +90,17 @@ void StartScreen::frame(double seconds) {
     ImGui::SetNextWindowPos(ImVec2(0, 0));
     ImGui::SetNextWindowSize(ImVec2(float(width_), float(height_)));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
-    ImGui::Begin("start", nullptr,
+    // Each begins with the keyboard at its own first control.
+    ImGui::Begin(desk_.isBusy() ? "waiting" : desk_.hasList() ? "start" : "looking", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus);
     ImGui::PopStyleVar();
-    desk_.isBusy() ? buildWaiting() : buildAll();
+    if (desk_.isBusy())
+        buildWaiting();
+    else if (desk_.hasList())
+        buildAll();
+    else
+        say("Looking for scenes ...");
     ImGui::End();
     stage_.end();
 }
@@ -123,10 +129,6 @@ void StartScreen::buildAll() {
 
 void StartScreen::buildCards() {
     const float scale = stage_.scale(), gap = ImGui::GetStyle().ItemSpacing.x;
-    if (!desk_.hasList()) {
-        say("Looking for scenes ...");
-        return;
-    }
     if (desk_.list().scenes.empty())
         say("This PC only watches: the package bonemill brings scenes to mill.");
     const float room = ImGui::GetContentRegionAvail().x;
@@ -134,19 +136,19 @@ void StartScreen::buildCards() {
     const ImVec2 size((room - float(columns - 1) * gap) / float(columns), kCardHeight * scale);
     int column = 0;
     bool was_own = false;
-    for (const SceneCard* const card : inOrder(desk_.list().scenes)) {
+    const auto cards = inOrder(desk_.list().scenes);
+    for (const SceneCard* const card : cards) {
         if (card->is_own && !was_own) heading("Your own cases"), column = 0;
         was_own = card->is_own;
         if (column % columns != 0) ImGui::SameLine();
         ++column;
         buildCard(*card, size);
+        if (card == cards.front()) ImGui::SetItemDefaultFocus();
     }
-    has_cards_ = true;
 }
 
 void StartScreen::buildCard(const SceneCard& card, const ImVec2& size) {
     const ImVec2 low = ImGui::GetCursorScreenPos();
-    if (!has_cards_ && places_.empty()) ImGui::SetKeyboardFocusHere();
     const bool is_clicked = ImGui::InvisibleButton(card.file.c_str(), size);
     notePlace(places_, card.name);
     const bool is_lit = ImGui::IsItemHovered() || ImGui::IsItemFocused();
@@ -192,7 +194,7 @@ void StartScreen::drawCard(const SceneCard& card, const ImVec2& low, const ImVec
 // What went wrong, or what can be done here.
 void StartScreen::buildFoot() {
     if (desk_.problem().empty()) {
-        say("A click starts a scene; arrows and Enter do, too. What is clicked is what bonemill --help says.");
+        say("A click starts a scene, and so do arrows and Enter. The same in a terminal: bonemill --help");
         return;
     }
     ImGui::PushTextWrapPos();

@@ -69,7 +69,6 @@ class StartScreen {
     ControlPlaces places_;
     CardPictures pictures_;
     int width_ = 1, height_ = 1;
-    bool has_cards_ = false;                 // the first of them has the keyboard
     std::array<char, 128> host_{}, class_{};  // as typed so far, zero-terminated
 };
 
