@@ -37,7 +37,7 @@ void addWindowOptions(CLI::App& app, WindowOptions& options) {
 class StartWindow {
   public:
     explicit StartWindow(const WindowOptions& options)
-        : window_(options.width, options.height, "bonemill", "Without a display: bonemill --help"),
+        : window_(options.width, options.height, "bonemill: start", "Without a display: bonemill --help"),
           desk_(options.launcher, options.network),
           screen_(desk_),
           painter_(window_.gl()) {
