@@ -17,6 +17,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kMinFrame{15};  // where the display does not make the program wait
 constexpr std::chrono::milliseconds kHidden{100};   // a session has the processors
+// Where nobody does anything, pictures are rare: they cost a processor without a graphics card.
+constexpr std::chrono::milliseconds kStill{500}, kRare{200};
 
 struct WindowOptions {
     std::string launcher;
@@ -29,7 +31,8 @@ void addWindowOptions(CLI::App& app, WindowOptions& options) {
         ->type_name("FILE")
         ->required()
         ->check(CLI::ExistingFile);
-    app.add_option("network", options.network, "options of the network, which all commands are given; after --");
+    app.add_option("network", options.network,
+                   "options of the network, which all commands are given; after --");
     app.add_option("--width", options.width, "of the window, pixels")->check(CLI::Range(640, 16384));
     app.add_option("--height", options.height, "of the window, pixels")->check(CLI::Range(480, 16384));
 }
@@ -65,10 +68,12 @@ class StartWindow {
         const auto events = window_.takeEvents();
         const int width = window_.pixelWidth(), height = window_.pixelHeight();
         if (!is_visible_ || width < 1 || height < 1) return;  // hidden or minimised
+        const Clock::time_point now = Clock::now();
+        if (!events.empty()) last_event_ = now;
+        if (now - last_event_ > kStill && now - last_picture_ < kRare) return;
         screen_.setPicture(width, height, textScale(width, height, 1, window_.contentScale()));
         for (const WindowEvent& event : events) screen_.handle(event);
-        const std::chrono::duration<double> seconds =
-            Clock::now() - std::exchange(last_picture_, Clock::now());
+        const std::chrono::duration<double> seconds = now - std::exchange(last_picture_, now);
         screen_.layOut(seconds.count());
         painter_.paint(screen_, width, height);
         window_.show();
@@ -79,7 +84,7 @@ class StartWindow {
     StartScreen screen_;
     StartPainter painter_;
     bool is_visible_ = true;
-    Clock::time_point last_picture_ = Clock::now();
+    Clock::time_point last_picture_ = Clock::now(), last_event_ = last_picture_;
 };
 
 int showWindow(int argc, char** argv) {

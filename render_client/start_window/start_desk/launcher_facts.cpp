@@ -60,7 +60,8 @@ std::string deviceWordOf(const std::string& command) {
 }
 
 FoundHand handOf(const Fields& fields) {
-    FoundHand hand{.kind = fields[1], .is_ready = fields[2] == "ready", .text = fields[3], .word = {}, .command = {}};
+    FoundHand hand{
+        .kind = fields[1], .is_ready = fields[2] == "ready", .text = fields[3], .word = {}, .command = {}};
     if (fields.size() < 5) return hand;
     if (hand.is_ready)
         hand.word = deviceWordOf(fields[4]);

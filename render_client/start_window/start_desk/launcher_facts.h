@@ -1,5 +1,6 @@
 // What bonemill says of this PC, of scenes and of sessions, in the lines that it prints for programs
-// (--tab-separated; `bonemill COMMAND --help` says what is in them). Lines that make no sense are passed over.
+// (--tab-separated; `bonemill COMMAND --help` says what is in them). Lines that make no sense are passed
+// over.
 //
 // Plain values, for any thread; reading scenes is for start-up and lists only.
 #pragma once

@@ -1,5 +1,5 @@
-// The words that bonemill is given for what is clicked: the very ones that somebody would type. Plain functions, for any
-// thread.
+// The words that bonemill is given for what is clicked: the very ones that somebody would type. Plain
+// functions, for any thread.
 #pragma once
 
 #include <string>

@@ -1,7 +1,7 @@
 // All that the window to begin in knows: what bonemill says, what was chosen, and the command that runs.
 //
-// It asks bonemill beside the window, and starts bonemill's own commands; poll() takes what has come of it. It belongs to
-// the thread of the window.
+// It asks bonemill beside the window, and starts bonemill's own commands; poll() takes what has come of it.
+// It belongs to the thread of the window.
 #pragma once
 
 #include <chrono>
@@ -21,7 +21,8 @@ namespace bonemill {
 class RepeatedQuestion {
   public:
     using Clock = std::chrono::steady_clock;
-    RepeatedQuestion(std::vector<std::string> words, Clock::duration every) : words_(std::move(words)), every_(every) {}
+    RepeatedQuestion(std::vector<std::string> words, Clock::duration every)
+        : words_(std::move(words)), every_(every) {}
 
     // Asks when it is time, and returns the answer when it has come: once.
     std::optional<std::string> poll();

@@ -14,8 +14,8 @@ namespace {
 constexpr size_t kMostAttempts = 5, kMostRecordings = 3;
 
 const FoundHand* bestOf(const DoctorFacts& facts) {
-    const auto best = std::ranges::find_if(facts.hands,
-                                           [](const FoundHand& hand) { return hand.is_ready && !hand.word.empty(); });
+    const auto best = std::ranges::find_if(
+        facts.hands, [](const FoundHand& hand) { return hand.is_ready && !hand.word.empty(); });
     return best == facts.hands.end() ? nullptr : &*best;
 }
 
@@ -56,8 +56,8 @@ bool StartScreen::choice(const std::string& label, bool is_chosen) {
 template <size_t Size>
 bool StartScreen::isTyped(const char* label, const char* hint, std::array<char, Size>& text) {
     ImGui::SetNextItemWidth(-1);
-    const bool is_entered = ImGui::InputTextWithHint(label, hint, text.data(), text.size(),
-                                                     ImGuiInputTextFlags_EnterReturnsTrue);
+    const bool is_entered =
+        ImGui::InputTextWithHint(label, hint, text.data(), text.size(), ImGuiInputTextFlags_EnterReturnsTrue);
     notePlace(places_, label);
     return is_entered;
 }
@@ -148,8 +148,10 @@ void StartScreen::buildThisPc() {
         say("looking ...");
         return;
     }
-    for (const auto& [part, title] :
-         {std::pair{"Programs", "Programs"}, {"Real time", "Real time"}, {"Network", "Network"}, {"Display", "Graphics"}})
+    for (const auto& [part, title] : {std::pair{"Programs", "Programs"},
+                                      {"Real time", "Real time"},
+                                      {"Network", "Network"},
+                                      {"Display", "Graphics"}})
         buildPart(part, title);
     buildHandsState();
 }
@@ -165,8 +167,8 @@ void StartScreen::buildPart(const char* part, const char* title) {
     }
     const std::string state = open.empty() ? "good" : is_missing ? "something is missing" : "could be better";
     ImGui::PushStyleColor(ImGuiCol_Text, open.empty() ? kGood : kOpen);
-    const bool is_open = ImGui::TreeNodeEx(part, open.empty() ? ImGuiTreeNodeFlags_Leaf : 0, "%s: %s", title,
-                                           state.c_str());
+    const bool is_open =
+        ImGui::TreeNodeEx(part, open.empty() ? ImGuiTreeNodeFlags_Leaf : 0, "%s: %s", title, state.c_str());
     ImGui::PopStyleColor();
     notePlace(places_, title);
     if (!is_open) return;

@@ -91,7 +91,10 @@ void StartScreen::frame(double seconds) {
     ImGui::SetNextWindowSize(ImVec2(float(width_), float(height_)));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
     // Each begins with the keyboard at its own first control.
-    ImGui::Begin(desk_.isBusy() ? "waiting" : desk_.hasList() ? "start" : "looking", nullptr,
+    ImGui::Begin(desk_.isBusy()    ? "waiting"
+                 : desk_.hasList() ? "start"
+                                   : "looking",
+                 nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus);
     ImGui::PopStyleVar();
@@ -129,8 +132,7 @@ void StartScreen::buildAll() {
 
 void StartScreen::buildCards() {
     const float scale = stage_.scale(), gap = ImGui::GetStyle().ItemSpacing.x;
-    if (desk_.list().scenes.empty())
-        say("This PC only watches: the package bonemill brings scenes to mill.");
+    if (desk_.list().scenes.empty()) say("This PC only watches: the package bonemill brings scenes to mill.");
     const float room = ImGui::GetContentRegionAvail().x;
     const int columns = std::max(1, int((room + gap) / (kLeastCardWidth * scale + gap)));
     const ImVec2 size((room - float(columns - 1) * gap) / float(columns), kCardHeight * scale);

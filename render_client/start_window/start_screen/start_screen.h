@@ -1,8 +1,8 @@
-// The screen of the window to begin in: at the left how one starts, in the middle a card for each scene, at the right
-// what was and what is in the network, and how this PC is.
+// The screen of the window to begin in: at the left how one starts, in the middle a card for each scene, at
+// the right what was and what is in the network, and how this PC is.
 //
-// It needs no OpenGL; StartPainter draws it. Positions are pixels from the picture's upper left corner. It belongs to the
-// render thread.
+// It needs no OpenGL; StartPainter draws it. Positions are pixels from the picture's upper left corner. It
+// belongs to the render thread.
 #pragma once
 
 #include <array>

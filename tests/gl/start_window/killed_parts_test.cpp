@@ -1,5 +1,5 @@
-// Whichever part of a session that the window has started is killed, and whenever: nothing of it stays, neither a
-// process, nor memory, nor a port.
+// Whichever part of a session that the window has started is killed, and whenever: nothing of it stays,
+// neither a process, nor memory, nor a port.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/sem.h>
@@ -19,9 +19,10 @@ namespace bonemill {
 namespace {
 
 constexpr int kWidth = 800, kHeight = 600;
-constexpr int kRounds = 10;  // or BONEMILL_KILL_ROUNDS
+constexpr int kRounds = 10;                   // or BONEMILL_KILL_ROUNDS
 constexpr int kLatest = 6000, kAfter = 2000;  // ms
-const std::vector<std::string> kParts{"start_window", "bonemill", "haptic_server", "device_daemon", "render_client"};
+const std::vector<std::string> kParts{"start_window", "bonemill", "haptic_server", "device_daemon",
+                                      "render_client"};
 
 int wantedRounds() {
     const char* const wanted = std::getenv("BONEMILL_KILL_ROUNDS");

@@ -105,7 +105,8 @@ std::vector<int> StartRig::processes() const {
 
 void StartRig::await(const std::string& what, const std::function<bool()>& holds) const {
     if (!waitFor(holds))
-        throw std::runtime_error("waited in vain for " + what + "\n" + window_->outSoFar() + window_->errSoFar());
+        throw std::runtime_error("waited in vain for " + what + "\n" + window_->outSoFar() +
+                                 window_->errSoFar());
 }
 
 }  // namespace bonemill::test

@@ -1,5 +1,5 @@
-// bonemill without a word on a display in memory, with a home folder and programs of its own, and a twin of its window that
-// knows where everything is.
+// bonemill without a word on a display in memory, with a home folder and programs of its own, and a twin of
+// its window that knows where everything is.
 #pragma once
 
 #include <functional>

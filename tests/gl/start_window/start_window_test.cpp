@@ -18,7 +18,9 @@ class RealStart : public testing::Test {
   protected:
     // Removed bone, mm^3; nothing: no session of this number is heard.
     std::optional<double> removed(uint32_t session) {
-        if (!observer_) observer_.emplace(SubscriberOptions{.domain = testDomain(), .session = session, .name = "observer"});
+        if (!observer_)
+            observer_.emplace(
+                SubscriberOptions{.domain = testDomain(), .session = session, .name = "observer"});
         observer_->poll();
         return observer_->status() ? std::optional(observer_->status()->removed_mm3()) : std::nullopt;
     }
@@ -29,7 +31,8 @@ class RealStart : public testing::Test {
         return *session;
     }
     bool isShown() {
-        return test::run({"/usr/bin/xdotool", "search", "--onlyvisible", "--name", "^bonemill: start$"}).exit_code == 0;
+        return test::run({"/usr/bin/xdotool", "search", "--onlyvisible", "--name", "^bonemill: start$"})
+                   .exit_code == 0;
     }
 
     test::StartRig rig_{kScreenWidth, kScreenHeight};

@@ -16,7 +16,8 @@ class FakeLauncher {
         writeFile(file(), R"(#!/bin/bash
 folder=${0%/*}
 case $1 in
-    list) if [[ -e $folder/list ]]; then cat "$folder/list"; else exec ")" + sourceDir() +
+    list) if [[ -e $folder/list ]]; then cat "$folder/list"; else exec ")" +
+                              sourceDir() +
                               R"(/deploy/bonemill" "$@"; fi; exit ;;
     sessions | doctor) cat "$folder/$1" 2>/dev/null; exit ;;
     watch) [[ "$*" != *" --list "* ]] || { cat "$folder/found" 2>/dev/null; exit; } ;;

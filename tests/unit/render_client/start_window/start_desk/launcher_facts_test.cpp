@@ -13,10 +13,11 @@ using Words = std::vector<std::string>;
 
 TEST(LauncherFacts, AListTellsScenesSessionsRecordingsAndInterfaces) {
     const std::string file = test::sourceDir() + "/deploy/scenes/tooth_corridor.textproto";
-    const ListFacts facts = listFactsOf("scene\ttooth_corridor\t" + file +
-                                        "\t/a.png\ttooth jaw\t/b.nrrd\ncase\tmine\t/nowhere.textproto\t\t\t\n"
-                                        "session\t2\tskull\tauto\t12:00:01\nrecording\t/r.mcap\t2026-01-02 03:04\t7\n"
-                                        "interface\teth0\nscene\tshort\nunknown\tline\n\n");
+    const ListFacts facts =
+        listFactsOf("scene\ttooth_corridor\t" + file +
+                    "\t/a.png\ttooth jaw\t/b.nrrd\ncase\tmine\t/nowhere.textproto\t\t\t\n"
+                    "session\t2\tskull\tauto\t12:00:01\nrecording\t/r.mcap\t2026-01-02 03:04\t7\n"
+                    "interface\teth0\nscene\tshort\nunknown\tline\n\n");
     ASSERT_EQ(facts.scenes.size(), 2u);
     const SceneCard& shipped = facts.scenes[0];
     EXPECT_EQ(shipped.title, "Straight bore, molar");
@@ -36,11 +37,11 @@ TEST(LauncherFacts, AListTellsScenesSessionsRecordingsAndInterfaces) {
 }
 
 TEST(LauncherFacts, TheDoctorTellsWhatIsMissingAndWhichHandIsBest) {
-    const DoctorFacts facts =
-        doctorFactsOf("Real time\tok\tlocked memory\nNetwork\tMISSING\tlink: no cable\tplug it in\tand on\n"
-                      "hand\tTouch\tnot ready\tyou may not write to it\tsudo cp rules\n"
-                      "hand\tgamepad\tready\tPad\tbonemill start --device gamepad:/dev/input/event3\n"
-                      "hand\tpedal or keys\tready\tKeys\tbonemill start --pedal /dev/input/event4\nhand\tshort\n");
+    const DoctorFacts facts = doctorFactsOf(
+        "Real time\tok\tlocked memory\nNetwork\tMISSING\tlink: no cable\tplug it in\tand on\n"
+        "hand\tTouch\tnot ready\tyou may not write to it\tsudo cp rules\n"
+        "hand\tgamepad\tready\tPad\tbonemill start --device gamepad:/dev/input/event3\n"
+        "hand\tpedal or keys\tready\tKeys\tbonemill start --pedal /dev/input/event4\nhand\tshort\n");
     ASSERT_EQ(facts.findings.size(), 2u);
     EXPECT_TRUE(facts.findings[0].is_ok);
     EXPECT_TRUE(facts.findings[1].is_needed);
@@ -53,7 +54,8 @@ TEST(LauncherFacts, TheDoctorTellsWhatIsMissingAndWhichHandIsBest) {
 }
 
 TEST(LauncherFacts, SessionsOfOtherPCsAreFound) {
-    const std::vector<FoundSession> found = foundSessionsOf("3\tskull\t14:05:09\tlab-pc-2\tlab\teth0\nhalf\ta line\n");
+    const std::vector<FoundSession> found =
+        foundSessionsOf("3\tskull\t14:05:09\tlab-pc-2\tlab\teth0\nhalf\ta line\n");
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(watchWords(found[0], {"--domain", "4"}),
               (Words{"watch", "--session", "3", "--domain", "4", "--profile", "lab", "--interface", "eth0"}));
@@ -73,8 +75,7 @@ TEST(LauncherWords, AreThoseThatSomebodyWouldType) {
               (Words{"host", "skull", "--interface", "eth1", "--class", "Group 3"}))
         << "what was said at the start holds";
     card.is_own = true;
-    EXPECT_EQ(commandLineOf(startWords(card, {}, {})),
-              "bonemill start '/home/me/my cases/skull.textproto'");
+    EXPECT_EQ(commandLineOf(startWords(card, {}, {})), "bonemill start '/home/me/my cases/skull.textproto'");
 }
 
 }  // namespace

@@ -40,7 +40,8 @@ class StartScreenTest : public testing::Test {
         for (const char* name : {"tooth_corridor", "pedicle", "minimal"})
             lines += std::string("scene\t") + name + "\t" + test::sourceDir() + "/deploy/scenes/" + name +
                      ".textproto\t\t\t\n";
-        launcher_.put("list", lines + "session\t2\tskull\tauto\t12:00:01\ninterface\teth0\ninterface\teth1\n");
+        launcher_.put("list",
+                      lines + "session\t2\tskull\tauto\t12:00:01\ninterface\teth0\ninterface\teth1\n");
     }
 
     test::FakeLauncher launcher_;
