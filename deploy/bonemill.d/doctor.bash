@@ -46,8 +46,9 @@ as_table() {
             line = "hand\t" kind "\t" state "\t" substr($0, 20 + RLENGTH); next
         }
         section == "Devices" && match($0, /^ +type +/) { commands = "\t" substr($0, RLENGTH + 1); next }
+        section == "Devices" && line != "" && match($0, /^             +/) { line = line ": " substr($0, RLENGTH + 1); next }
         match($0, /^ +(ok|better|MISSING) +/) { tell(); line = section "\t" $1 "\t" substr($0, RLENGTH + 1); next }
-        line != "" && section != "Devices" && match($0, /^             +/) { commands = commands "\t" substr($0, RLENGTH + 1); next }
+        line != "" && match($0, /^             +/) { commands = commands "\t" substr($0, RLENGTH + 1); next }
         { tell() }
         END { tell() }'
 }

@@ -38,6 +38,7 @@ std::optional<std::string> RepeatedQuestion::poll() {
     child_->poll();
     if (!child_->exitCode()) return std::nullopt;
     due_ = Clock::now() + every_;
+    problem_ = *child_->exitCode() == 0 ? "" : firstErrorOf(*child_);
     return std::exchange(child_, nullptr)->out();
 }
 
@@ -64,6 +65,7 @@ void StartDesk::poll() {
     if (const auto lines = list_question_.poll()) {
         list_ = listFactsOf(*lines);
         has_list_ = true;
+        if (!list_question_.problem().empty()) problem_ = list_question_.problem();
     }
     if (!has_list_) return;  // the cards come first
     if (const auto lines = attempts_question_.poll()) attempts_ = pastAttemptsOf(*lines);

@@ -26,6 +26,8 @@ class RepeatedQuestion {
 
     // Asks when it is time, and returns the answer when it has come: once.
     std::optional<std::string> poll();
+    // Why the last answer is none; empty: it is one.
+    const std::string& problem() const { return problem_; }
     void askNow() { due_ = {}; }
     void drop() { child_.reset(); }
 
@@ -34,6 +36,7 @@ class RepeatedQuestion {
     Clock::duration every_;
     Clock::time_point due_{};
     std::unique_ptr<ChildBeside> child_;
+    std::string problem_;
 };
 
 class StartDesk {

@@ -63,12 +63,15 @@ bool StartScreen::isTyped(const char* label, const char* hint, std::array<char, 
 }
 
 void StartScreen::buildChoices() {
-    heading("The hand");
-    buildHands();
-    heading("For whom");
-    buildCompany();
+    const bool has_scenes = !desk_.list().scenes.empty();  // a PC that only watches has none
+    if (has_scenes) {
+        heading("The hand");
+        buildHands();
+        heading("For whom");
+        buildCompany();
+    }
     heading("More");
-    if (button("New case from a scan")) desk_.makeCase();
+    if (has_scenes && button("New case from a scan")) desk_.makeCase();
     if (button("Handbook")) desk_.openHandbook();
 }
 

@@ -29,11 +29,13 @@ int wantedRounds() {
     return wanted ? std::max(1, std::atoi(wanted)) : kRounds;
 }
 
-// The link's memory lies there, and nobody lives on it.
-bool isMemoryLeft(uint32_t session) {
+// The link's memory or semaphores lie there, and nobody lives on it. Another test may have the session by
+// now.
+bool isLinkLeft(uint32_t session) {
     const int id = shmget(linkKeyOf(session), 0, 0);
     shmid_ds status{};
-    return id >= 0 && shmctl(id, IPC_STAT, &status) == 0 && status.shm_nattch == 0;
+    if (id < 0) return semget(linkKeyOf(session), 0, 0) >= 0;
+    return shmctl(id, IPC_STAT, &status) == 0 && status.shm_nattch == 0;
 }
 
 // Of the ports that this test's domain has, as /proc/net/udp tells them: "  12: 0100007F:1CE8 ...".
@@ -73,7 +75,7 @@ class KilledParts : public testing::Test {
     }
     void expectNothingLeft() {
         EXPECT_TRUE(test::waitFor([&] { return rig_.processes().empty(); })) << test::run({"ps", "-ef"}).out;
-        EXPECT_TRUE(test::waitFor([&] { return !isMemoryLeft(number_); })) << "session " << number_;
+        EXPECT_TRUE(test::waitFor([&] { return !isLinkLeft(number_); })) << "session " << number_;
         EXPECT_TRUE(test::waitFor([] { return takenPorts().empty(); })) << takenPorts().size();
         EXPECT_EQ(test::run(rig_.words({"list"})).out.rfind("No session runs.", 0), 0u);
     }

@@ -19,7 +19,7 @@ class BonemillPc : public testing::Test {
 };
 
 TEST_F(BonemillPc, EveryCommandThatReachesASessionTakesItsDomain) {
-    for (const char* command : {"start", "host", "watch", "invite", "replay", "doctor"}) {
+    for (const char* command : {"start", "host", "watch", "invite", "replay", "doctor", "window"}) {
         expectRefusal(rig_.call({command, "--domain", "231"}), "--domain 231: give a number from 0 to 230");
         const std::string help = rig_.call({command, "--help"}).out;
         EXPECT_NE(help.find("--domain D"), std::string::npos) << command;

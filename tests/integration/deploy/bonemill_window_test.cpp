@@ -69,7 +69,6 @@ TEST_F(BonemillWindow, ScenesCasesAndSessionsAreListed) {
         << list;
     EXPECT_TRUE(has(list, "session\t")) << list;
     EXPECT_NE(list.find("\town\tauto\t"), std::string::npos) << list;
-    EXPECT_EQ(linesOf(list) - 1, linesOf(tell({"list"})) - 1);
 }
 
 TEST_F(BonemillWindow, TheDoctorTellsWhatItHasLookedAt) {
@@ -83,7 +82,9 @@ TEST_F(BonemillWindow, TheDoctorTellsWhatItHasLookedAt) {
     EXPECT_TRUE(has(doctor, "Programs\tok\tbuilt, in ")) << doctor;
     EXPECT_TRUE(has(doctor, "Network\tok\ton this PC alone, nothing is needed\n")) << doctor;
     EXPECT_TRUE(has(doctor, "Real time\t")) << doctor;
-    EXPECT_TRUE(has(doctor, "hand\tgamepad\tnot ready\tyou may not read it\tsudo udevadm trigger\n"))
+    EXPECT_TRUE(
+        has(doctor,
+            "hand\tgamepad\tnot ready\tyou may not read it: Pad  /dev/input/event3\tsudo udevadm trigger\n"))
         << doctor;
     EXPECT_TRUE(has(doctor, "hand\tmouse\tready\tin a viewer's window\tbonemill start --device pointer\n"))
         << doctor;
@@ -92,7 +93,7 @@ TEST_F(BonemillWindow, TheDoctorTellsWhatItHasLookedAt) {
 }
 
 TEST_F(BonemillWindow, SessionsOfOtherPCsAreTold) {
-    const std::string own = test::run({"uname", "-n"}).out;
+    const std::string own = test::run({"/bin/uname", "-n"}).out;
     rig_.putProgram("render_client",
                     "#!/bin/sh\necho \"session 3: tooth corridor since 14:05:09 on lab-pc-2\"\n"
                     "echo \"session 4: skull since 14:05:09 on " +

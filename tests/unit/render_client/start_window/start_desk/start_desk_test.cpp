@@ -36,6 +36,11 @@ TEST_F(StartDeskTest, AsksBonemillForAllThatItKnows) {
     EXPECT_EQ(desk_.attempts()[0].trainee, "Ann");
 }
 
+TEST_F(StartDeskTest, ABonemillThatCannotListSaysWhy) {
+    test::writeFile(launcher_.file(), "#!/bin/sh\necho 'bonemill: no folder of yours' >&2\nexit 2\n");
+    EXPECT_TRUE(comesTo([&] { return desk_.problem() == "no folder of yours"; }));
+}
+
 TEST_F(StartDeskTest, GoesWhileASessionHasItsWindowAndComesBackAtItsEnd) {
     desk_.start(scene("skull"));
     EXPECT_TRUE(desk_.isBusy());
