@@ -44,6 +44,7 @@ class StartWindow {
           desk_(options.launcher, options.network),
           screen_(desk_),
           painter_(window_.gl()) {
+        window_.growWithText();
         screen_.stage().useClipboard([this] { return window_.clipboard(); },
                                      [this](const std::string& text) { window_.setClipboard(text); });
     }
