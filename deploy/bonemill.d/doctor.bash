@@ -6,9 +6,13 @@ fine() { printf '  ok       %s\n' "$1"; }
 advise() { printf '  better   %s\n             %s\n' "$1" "$2"; }
 
 doctor() {
-    read_words doctor "--interface --domain" "$@"
+    read_words doctor "--interface --domain --tab-separated" "$@"
     [[ -z $operand ]] || fail "doctor takes no word (see: bonemill doctor --help)"
     open_state
+    if [[ $flags == *" --tab-separated "* ]]; then look_at_all | as_table; else look_at_all; fi
+}
+
+look_at_all() {
     local can_start=true
     echo "Programs:"
     look_at_programs || can_start=false
@@ -29,6 +33,26 @@ doctor() {
     echo "A session can be started: bonemill start"
 }
 
+# as_table: what the doctor says, for programs. What is looked at, how it is (ok, better, MISSING), what it is, and what to
+# type, a line each. Of devices: "hand", its kind, how it is (ready, not ready), what it is, and what to type.
+as_table() {
+    awk '
+        function tell() { if (line != "") print line commands; line = commands = "" }
+        /^[A-Z].*:$/ { tell(); section = substr($0, 1, length($0) - 1); next }
+        { gsub(/\t/, " ") }
+        section == "Devices" && match(substr($0, 20), /^(ready|not ready) +/) {
+            tell(); kind = substr($0, 3, 17); sub(/ +$/, "", kind)
+            state = substr($0, 20, 9) ~ /^ready/ ? "ready" : "not ready"
+            line = "hand\t" kind "\t" state "\t" substr($0, 20 + RLENGTH); next
+        }
+        section == "Devices" && match($0, /^ +type +/) { commands = "\t" substr($0, RLENGTH + 1); next }
+        section == "Devices" && line != "" && match($0, /^             +/) { line = line ": " substr($0, RLENGTH + 1); next }
+        match($0, /^ +(ok|better|MISSING) +/) { tell(); line = section "\t" $1 "\t" substr($0, RLENGTH + 1); next }
+        line != "" && match($0, /^             +/) { commands = commands "\t" substr($0, RLENGTH + 1); next }
+        { tell() }
+        END { tell() }'
+}
+
 look_at_programs() {
     local message
     if message=$( (need_programs "${all_programs[@]}") 2>&1); then fine "built, in $bin"; return; fi
@@ -36,10 +60,13 @@ look_at_programs() {
     return 1
 }
 
+# The one that this PC's way to all others leads over; nothing where there is none.
+interface_to_others() { awk '$2 == "00000000" {print $1; exit}' /proc/net/route 2>/dev/null || true; }
+
 look_at_network() {
     local interface=${option[interface]:-}
     fine "on this PC alone, nothing is needed"
-    [[ -n $interface ]] || interface=$(awk '$2 == "00000000" {print $1; exit}' /proc/net/route 2>/dev/null || true)
+    [[ -n $interface ]] || interface=$(interface_to_others)
     if [[ -z $interface ]]; then
         advise "this PC has no way to others: fine, unless they shall watch" "then: bonemill doctor --interface NAME"
         return

@@ -11,7 +11,8 @@ handbook() {
     [[ -f $pages/index.html ]] || fail "the handbook is not on this PC: $how"
     page=$(find_page "$(realpath -- "$pages")" "$operand") || exit 2
     echo "$page"
-    if has_display && command -v xdg-open >/dev/null; then exec xdg-open "$page"; fi
+    # The browser goes on by itself.
+    if has_display && command -v xdg-open >/dev/null; then setsid --fork xdg-open "$page" >/dev/null 2>&1 </dev/null; fi
 }
 
 # find_page FOLDER WORD: WORD is a page as messages name it (docs/howto/start.md), or its name alone. Another word is looked

@@ -3,7 +3,7 @@
 
 usage() {
     cat <<'TEXT'
-Usage: bonemill COMMAND [options]
+Usage: bonemill [COMMAND] [options]
   start [SCENE]    start a session on this PC with the best hand it finds: haptic arm, SpaceMouse, gamepad or mouse
   prepare [SCENE]  make the phantoms that scenes read, before a class
   list             sessions that run, and scenes that can be started
@@ -13,8 +13,10 @@ Usage: bonemill COMMAND [options]
   host [SCENE]     start a session that other PCs watch
   invite NAME      let somebody join a session in a browser: prints a link and its QR code
   replay [FILE]    show a recorded session again, the last one or FILE
+  scan [FILE]      make a training case of a scan, in a window
   doctor           what this PC lacks, and what to type
   handbook [PAGE]  read how to use all this, in a browser
+  window           all of this in a window: so does bonemill without a word, on a desktop
 `bonemill COMMAND --help` says more, `bonemill --version` which one this is.
 TEXT
 }
@@ -67,6 +69,8 @@ usage_of() {  # COMMAND
             echo "  HOST              name or address of the PC with the session; without it: a session of this PC"
             echo "  --session N       number of the session (default: the one that runs here; 1 on another PC)"
             network_options
+            echo "  --list            print which sessions other PCs give, and end"
+            echo "  --tab-separated   with --list, for programs: number, scene, start, PC, profile, interface, a line each"
             echo "  --role R          viewer, operator or instructor"
             echo "  --name NAME       what the others read in their list of viewers"
             echo "  --window-size WxH size of the window" ;;
@@ -106,14 +110,29 @@ usage_of() {  # COMMAND
             echo "Usage: bonemill stop [N|all]"
             echo "Ends session N, or all sessions; without a word the one that runs. It waits until they have ended." ;;
         list)
-            echo "Usage: bonemill list"
+            echo "Usage: bonemill list [--tab-separated]"
             echo "Sessions that run: number, scene, device, start, processes, logs, class folder. Then the scenes that can be"
-            echo "started, and the last recordings." ;;
+            echo "started, and the last recordings."
+            echo "  --tab-separated   for programs, a line each, with its kind first: scene (or case, one of your own): name, file,"
+            echo "                    picture, phantoms that are made first, files that are missing; session: number, scene,"
+            echo "                    device, start; recording: file, time, MB; interface: name" ;;
+        scan)
+            echo "Usage: bonemill scan [FILE]"
+            echo "Opens the window in which a training case is made of a scan: FILE, a folder of DICOM, or what is chosen there."
+            echo "The cases lie in ~/.local/share/bonemill/cases, and bonemill's window offers them. The same, step by step and"
+            echo "without a window: deploy/make-case, installed as bonemill-make-case (docs/howto/cases.md)." ;;
+        window)
+            echo "Usage: bonemill [window] [options]"
+            echo "A window to begin in: scenes and your own cases to click, the last sessions, sessions of other PCs, and how this"
+            echo "PC is. What is clicked is what would be typed. The options go with all that is started."
+            network_options ;;
         doctor)
-            echo "Usage: bonemill doctor [--interface I] [--domain D]"
+            echo "Usage: bonemill doctor [--interface I] [--domain D] [--tab-separated]"
             echo "Says what this PC lacks, and what to type: programs, real time, network (of interface I, and a firewall's ports"
             echo "for domain D), display, OpenGL, devices, what was left running. It installs nothing. The exit code is 1 when no"
-            echo "session can be started." ;;
+            echo "session can be started."
+            echo "  --tab-separated   for programs, a line each: what is looked at, ok, better or MISSING, what it is, what to type;"
+            echo "                    of a device: hand, its kind, ready or not ready, what it is, what to type" ;;
         handbook)
             echo "Usage: bonemill handbook [PAGE]"
             echo "Opens the handbook in the browser, and prints where it lies: tutorials, how to, reference, explanation."

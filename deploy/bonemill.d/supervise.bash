@@ -257,10 +257,21 @@ end_session() {
     end_program device 5
     end_program server 20
     end_program viewer 5
+    clear_link
     rm -f -- "$state/$number.session"
     [[ -s $logs/bonemill.log ]] || rm -f -- "$logs/bonemill.log"
     say "session $number has ended; logs in $logs"
     exit "${end_code:-1}"
+}
+
+# A program that was killed, and that no other has followed, leaves its link: memory and semaphores on which nobody lives.
+# common/ipc/link_place.h has the key.
+clear_link() {
+    local key
+    key=$(printf '0x%08x' $((number ^ 0x424d0000)))
+    [[ $(ipcs -m 2>/dev/null | awk -v key="$key" '$1 == key {print $6}') != [1-9]* ]] || return 0
+    ipcrm -M "$key" 2>/dev/null || true
+    ipcrm -S "$key" 2>/dev/null || true
 }
 
 end_program() {  # ROLE LIMIT_S

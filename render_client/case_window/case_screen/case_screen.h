@@ -7,7 +7,6 @@
 
 #include <array>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,18 +15,13 @@
 #include "render_client/case_window/case_desk/folder_view.h"
 #include "render_client/hand/controls/window_event.h"
 #include "render_client/look/camera/camera.h"
+#include "render_client/panel/imgui/control_places.h"
 #include "render_client/panel/imgui/imgui_stage.h"
 
 struct ImVec2;
 struct ImVec4;
 
 namespace bonemill {
-
-// Where the controls of the screen are, by their label: tests click there. It belongs to the render thread.
-using ControlPlaces = std::map<std::string, PixelPoint>;
-
-// Notes the middle of the control that was built last, if it can be seen.
-void notePlace(ControlPlaces& places, const std::string& label);
 
 // A box over the screen in which a folder or file is looked for. It belongs to the render thread.
 class BrowseBox {

@@ -173,6 +173,19 @@ void GlfwWindow::showCrosshair(bool is_wanted) {
         glfwSetCursor(window_, is_wanted ? crosshair_ : nullptr);
 }
 
+void GlfwWindow::growWithText() {
+    int width = 0, height = 0;
+    glfwGetWindowSize(window_, &width, &height);
+    if (pixelWidth() > width) return;  // it counts in larger units than pixels, and has grown by that
+    const std::array<int, 2> room = monitorRoom();
+    glfwSetWindowSize(window_, std::min(int(float(width) * contentScale()), room[0]),
+                      std::min(int(float(height) * contentScale()), room[1]));
+}
+
+void GlfwWindow::setVisible(bool is_visible) {
+    is_visible ? glfwShowWindow(window_) : glfwHideWindow(window_);
+}
+
 void GlfwWindow::show() {
     glfwSwapBuffers(window_);
 }

@@ -44,6 +44,13 @@ class GlfwWindow {
     // The cursor is a crosshair, or the usual arrow.
     void showCrosshair(bool is_wanted);
 
+    // Where the desktop wants larger text the window becomes as much larger, as far as the first monitor has
+    // room.
+    void growWithText();
+
+    // Takes the window off the desktop, or puts it there again.
+    void setVisible(bool is_visible);
+
     // Shows the picture; waits for the display's next refresh.
     void show();
 

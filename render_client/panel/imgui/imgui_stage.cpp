@@ -231,6 +231,13 @@ void ImGuiStage::useClipboard(std::function<std::string()> read,
     io.SetClipboardTextFn = [](void* data, const char* text) { static_cast<Clipboard*>(data)->write(text); };
 }
 
+// What ImGui takes for the space bar presses a control.
+void ImGuiStage::goByKeys() {
+    makeCurrent();
+    ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+    ImGui::GetIO().KeyMap[ImGuiKey_Space] = int(Key::kEnter);
+}
+
 void ImGuiStage::dropInput() {
     makeCurrent();
     ImGui::GetIO().MouseWheel = 0;

@@ -33,6 +33,8 @@ class ImGuiStage {
     void feed(const WindowEvent& event);
     // What is copied and pasted goes through these; without them it stays within this context.
     void useClipboard(std::function<std::string()> read, std::function<void(const std::string&)> write);
+    // From now on arrows go from control to control, and Enter presses them.
+    void goByKeys();
     // Forgets what was scrolled and typed and no widget asked for.
     void dropInput();
     // The controls are built between these two. `seconds` have gone by since the last ones.

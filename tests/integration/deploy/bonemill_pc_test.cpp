@@ -19,7 +19,7 @@ class BonemillPc : public testing::Test {
 };
 
 TEST_F(BonemillPc, EveryCommandThatReachesASessionTakesItsDomain) {
-    for (const char* command : {"start", "host", "watch", "invite", "replay", "doctor"}) {
+    for (const char* command : {"start", "host", "watch", "invite", "replay", "doctor", "window"}) {
         expectRefusal(rig_.call({command, "--domain", "231"}), "--domain 231: give a number from 0 to 230");
         const std::string help = rig_.call({command, "--help"}).out;
         EXPECT_NE(help.find("--domain D"), std::string::npos) << command;
@@ -56,18 +56,29 @@ TEST_F(BonemillPc, TheHandbookOpensAtThePageThatAMessageNames) {
     std::filesystem::create_directories(pages / "howto");
     test::writeFile(pages / "index.html", "first");
     test::writeFile(pages / "howto/security.html", "who may come in");
-    rig_.putProgram("xdg-open", "#!/bin/sh\necho \"browser $1\"\n");
+    const std::string opened = rig_.folder() / "opened";
+    rig_.putProgram("xdg-open", "#!/bin/sh\necho \"$1\" >\"" + opened + "\"\n");
     const auto open = [&](const std::vector<std::string>& words) {
         std::vector<std::string> all{"/usr/bin/env", "PATH=" + rig_.folder() / "bin:" + std::getenv("PATH")};
         for (const std::string& word : rig_.words(words)) all.push_back(word);
         return test::run(all);
     };
     const std::string page = std::filesystem::canonical(pages / "howto/security.html");
-    for (const char* name : {"docs/howto/security.md", "howto/security", "security"})
-        EXPECT_EQ(open({"handbook", name}).out, page + "\nbrowser " + page + "\n") << name;
-    EXPECT_NE(open({"handbook"}).out.find("/handbook/index.html\nbrowser "), std::string::npos);
+    const auto isOpened = [&](const std::string& file) {
+        return test::waitFor([&] { return test::readFile(opened) == file + "\n"; });
+    };
+    for (const char* name : {"docs/howto/security.md", "howto/security", "security"}) {
+        test::writeFile(opened, "");
+        EXPECT_EQ(open({"handbook", name}).out, page + "\n") << name;
+        EXPECT_TRUE(isOpened(page)) << name;
+    }
+    const std::string first = std::filesystem::canonical(pages / "index.html");
+    EXPECT_EQ(open({"handbook"}).out, first + "\n");
+    EXPECT_TRUE(isOpened(first));
+    test::writeFile(opened, "");
     rig_.setDisplay(false);
     EXPECT_EQ(open({"handbook", "security"}).out, page + "\n");
+    EXPECT_EQ(test::readFile(opened), "");
     expectRefusal(open({"handbook", "May Come"}), "these have that word: howto/security");
     std::filesystem::create_directory(pages / "reference");
     test::writeFile(pages / "reference/security.html", "its words");

@@ -1,10 +1,13 @@
 // Runs deploy/bonemill with the real server and daemon: does a session survive the death of each, and does
 // nothing of it survive the end?
 #include <gtest/gtest.h>
+#include <sys/sem.h>
+#include <sys/shm.h>
 #include <unistd.h>
 
 #include <regex>
 
+#include "common/ipc/link_place.h"
 #include "tests/integration/deploy/bonemill_rig.h"
 #include "tests/support/dds_session.h"
 
@@ -102,6 +105,20 @@ TEST_F(BonemillSession, GoesOnWhenServerOrDaemonIsKilledAndEndsInOrder) {
     EXPECT_TRUE(isGone(second_daemon) && isGone(second_server));
     EXPECT_NE(logOf("device").find("stopping: force ramps to zero"), std::string::npos) << logOf("device");
     EXPECT_NE(logOf("server").find(" dropped, faults: "), std::string::npos) << logOf("server");
+}
+
+// It has made the link, and the server has not come yet that would have removed it.
+TEST_F(BonemillSession, ADaemonThatIsKilledAloneLeavesNoMemory) {
+    std::filesystem::remove(rig_.programFile("haptic_server"));  // no link to write through
+    rig_.putProgram("haptic_server", test::kStandIn);
+    const key_t key = linkKeyOf(testSession());
+    Process session(startWords());
+    ASSERT_TRUE(waitFor([&] { return shmget(key, 0, 0) >= 0; })) << logOf("device");
+    kill(pidOf("device_daemon"), SIGKILL);
+    session.signal(SIGTERM);
+    session.wait();
+    EXPECT_LT(shmget(key, 0, 0), 0);
+    EXPECT_LT(semget(key, 0, 0), 0);
 }
 
 TEST_F(BonemillSession, EndsWithTheScriptThatIsKilled) {

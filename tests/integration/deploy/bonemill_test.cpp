@@ -308,7 +308,7 @@ TEST_F(Bonemill, WrongUseIsRefused) {
         expectRefusal(rig_.call({"start", "--seconds", seconds}),
                       "--seconds " + seconds + ": give a number above 0");
     EXPECT_EQ(rig_.call({}).exit_code, 2);
-    for (const char* command : {"start", "host", "list", "stop", "watch", "doctor", "handbook"}) {
+    for (const char* command : {"start", "host", "list", "stop", "watch", "scan", "doctor", "handbook"}) {
         const Finished help = rig_.call({command, "--help"});
         EXPECT_EQ(help.exit_code, 0);
         EXPECT_EQ(help.out.rfind(std::string("Usage: bonemill ") + command, 0), 0u) << help.out;
