@@ -25,8 +25,8 @@ esac
 echo "$*" >>"$folder/told"
 [[ ! -e $folder/fails ]] || { cat "$folder/fails" >&2; exit 2; }
 echo "bonemill: close the window or press Ctrl-C to end"
-while [[ ! -e $folder/end ]]; do sleep 0.02; done
-rm "$folder/end"
+while [[ -d $folder && ! -e $folder/end ]]; do sleep 0.02; done
+rm -f "$folder/end"
 )");
         std::filesystem::permissions(file(), std::filesystem::perms::owner_all);
     }
