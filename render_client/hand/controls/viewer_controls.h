@@ -26,6 +26,7 @@ struct Wishes {
     bool hold_tool = false;               // with the mouse, from where it may begin
     std::optional<PixelPoint> centre_at;  // orbit around the surface there from now on
     std::optional<HudNotice> notice;      // why something was not done
+    bool full_screen = false;  // or, from there, the window of before
     bool save_picture = false;
     bool save_attempts = false;                 // of the lesson, as CSV
     bool make_clip = false;                     // of the moment of the replay

@@ -23,6 +23,7 @@ enum class Key : int {
     kDown,
     kHome,
     kEnd,
+    kF11,
     kF12,
 };
 

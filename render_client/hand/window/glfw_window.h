@@ -3,6 +3,7 @@
 // It belongs to the main thread. There is one window per process.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,11 +15,20 @@ struct GLFWwindow;
 
 namespace bonemill {
 
+// Where a window is, without its frame, in screen coordinates.
+struct WindowPlace {
+    int x = 0, y = 0;
+    int width = 0, height = 0;
+    bool operator==(const WindowPlace&) const = default;
+};
+
 class GlfwWindow {
   public:
-    // The size counts in screen coordinates, and is at most what the first monitor has room for. Throws
-    // UserError, ending with `advice`, when there is no display or no OpenGL 3.3.
-    GlfwWindow(int width, int height, const std::string& title, const std::string& advice);
+    // The size counts in screen coordinates, and is at most what the first monitor has room for. The window
+    // opens where one was `before`, if a monitor is there. Throws UserError, ending with `advice`, when there
+    // is no display or no OpenGL 3.3.
+    GlfwWindow(int width, int height, const std::string& title, const std::string& advice,
+               const std::optional<WindowPlace>& before = std::nullopt);
     GlfwWindow(const GlfwWindow&) = delete;
     GlfwWindow& operator=(const GlfwWindow&) = delete;
     ~GlfwWindow();
@@ -41,6 +51,12 @@ class GlfwWindow {
     // Returns how much larger than usual the display wants its text.
     float contentScale() const;
 
+    // Returns where the window is; of a full screen where it was before.
+    WindowPlace place() const;
+    bool isFullScreen() const;
+    // Fills the monitor that the window is on, or goes back to where it was.
+    void switchFullScreen();
+
     // The cursor is a crosshair, or the usual arrow.
     void showCrosshair(bool is_wanted);
 
@@ -61,6 +77,7 @@ class GlfwWindow {
     GLFWwindow* window_;
     GLFWcursor* crosshair_ = nullptr;  // null: the display has none
     bool shows_crosshair_ = false;
+    WindowPlace windowed_;  // of a full screen: where the window was
     GlApi gl_;
     std::vector<WindowEvent> events_;
     std::vector<std::string> dropped_;
