@@ -105,6 +105,20 @@ TEST_F(StructurePictures, BehindBoneAndExposed) {
     EXPECT_EQ(test::goldenProblem(draw(), "structures"), "");
 }
 
+// The tool's shadow moves over them.
+TEST_F(StructurePictures, KeptOnesAreThoseThatAreDrawnWhole) {
+    for (const StructureMode mode : {StructureMode::kExposedOnly, StructureMode::kThroughBone}) {
+        showBoth();
+        scene_->settings().structures.fill(mode);
+        for (int n = 0; n < 6; ++n) {
+            putBurr(3e-4 * n);
+            const Picture kept = draw();
+            scene_->drawWholeNext();
+            EXPECT_EQ(mostDifference(kept, draw()), 0) << n;
+        }
+    }
+}
+
 TEST_F(StructurePictures, OnlyWhereExposed) {
     showBoth();
     scene_->settings().structures.fill(StructureMode::kExposedOnly);

@@ -6,6 +6,7 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <iostream>
 #include <stdexcept>
 #include <utility>
@@ -42,6 +43,7 @@ struct Measured {
     LatencyHistogram render;  // from the start of the drawing to the finished picture
     uint64_t frames = 0;
     double seconds = 0;
+    double processor_s = 0;  // of all threads
 };
 
 Measured drawFor(std::chrono::seconds time, const ClientOptions& options, const GlApi& gl, RenderScene& scene,
@@ -49,6 +51,7 @@ Measured drawFor(std::chrono::seconds time, const ClientOptions& options, const 
     Measured measured;
     feed.watchCuts(&measured.cuts);
     const int64_t start_ns = monotonicNowNs();
+    const std::clock_t start_of_work = std::clock();
     const Clock::time_point end = Clock::now() + time;
     while (Clock::now() < end && !stopRequested()) {
         feed.subscriber().waitForData(kLongestFrame);
@@ -65,6 +68,7 @@ Measured drawFor(std::chrono::seconds time, const ClientOptions& options, const 
     }
     feed.watchCuts(nullptr);
     measured.seconds = secondsOfNs(monotonicNowNs() - start_ns);
+    measured.processor_s = double(std::clock() - start_of_work) / CLOCKS_PER_SEC;
     return measured;
 }
 
@@ -102,9 +106,11 @@ void measure(const ClientOptions& options, const GlApi& gl) {
     const Measured measured = drawFor(options.measure->time, options, gl, scene, feed);
     const UploadCount after = scene.uploads();
     std::printf(
-        "{\"width\":%d,\"height\":%d,\"nodes\":%zu,\"triangles\":%zu,\"frames\":%llu,\"frame_rate_hz\":%.2f,",
+        "{\"width\":%d,\"height\":%d,\"nodes\":%zu,\"triangles\":%zu,\"frames\":%llu,\"frame_rate_hz\":%.2f,"
+        "\"processor_ms_per_frame\":%.2f,",
         options.width, options.height, scene.nodeCount(), scene.triangleCount(),
-        (unsigned long long)measured.frames, double(measured.frames) / measured.seconds);
+        (unsigned long long)measured.frames, double(measured.frames) / measured.seconds,
+        millisecondsOfNs(1e9 * measured.processor_s / double(std::max<uint64_t>(measured.frames, 1))));
     printTimes("upload_ms", measured.upload);
     std::printf(",");
     printTimes("render_ms", measured.render);

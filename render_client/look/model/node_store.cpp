@@ -147,7 +147,7 @@ void NodeStore::set(const NodeMesh& mesh) {
               mesh.step,
               GLsizei(mesh.indices.size()),
               std::move(sorted.parts),
-              {}};
+              mesh};
     gl_.BindVertexArray(node.layout.name());
     gl_.BindBuffer(GL_ARRAY_BUFFER, node.vertices.name());
     const size_t vertex_bytes = mesh.vertices.size() * sizeof(PackedVertex);
@@ -165,8 +165,7 @@ void NodeStore::set(const NodeMesh& mesh) {
     gl_.EnableVertexAttribArray(1);
     if (!mesh.materials.empty()) uploadMaterials(mesh.materials, node);
     gl_.BindVertexArray(0);
-    if (tracks_changes_) changed_.extend(changeTo(mesh, node.box));
-    if (tracks_changes_ || mesh.revision != 0) node.mesh = mesh;
+    changed_.extend(changeTo(mesh, node.box));
     nodes_.insert_or_assign(mesh.leaf, std::move(node));
 }
 
@@ -200,8 +199,7 @@ void NodeStore::setScan(uint32_t leaf, const std::vector<VertexScan>& scan, uint
 Eigen::AlignedBox3f NodeStore::changeTo(const NodeMesh& mesh, const Eigen::AlignedBox3f& box) const {
     const auto known = nodes_.find(mesh.leaf);
     if (known == nodes_.end()) return box;
-    const Node& before = known->second;
-    return before.mesh ? differenceBox(*before.mesh, mesh) : before.box.merged(box);
+    return differenceBox(known->second.mesh, mesh);
 }
 
 void NodeStore::remove(uint32_t leaf) {
@@ -222,6 +220,12 @@ void NodeStore::giveFrom(uint32_t first_leaf, NodeStore& other) {
         other.remove(node->first);
         other.nodes_.insert(nodes_.extract(node++));
     }
+}
+
+Eigen::AlignedBox3f NodeStore::box() const {
+    Eigen::AlignedBox3f box;
+    for (const auto& [leaf, node] : nodes_) box.extend(node.box);
+    return box;
 }
 
 size_t NodeStore::triangleCount() const {

@@ -66,10 +66,10 @@ class NodeStore {
     size_t triangleCount() const;
     const UploadCount& uploads() const { return uploads_; }
 
-    // From now on, or no longer, the store knows where it changes; that takes memory and time.
-    void trackChanges(bool wants_changes) { tracks_changes_ = wants_changes; }
     // Returns the box (V, m) around the triangles that came or went since the last call.
     Eigen::AlignedBox3f takeChanged() { return std::exchange(changed_, {}); }
+    // Returns that around all there are.
+    Eigen::AlignedBox3f box() const;
 
     // What the scan measured at a vertex, and whether milling opened it there: 0, or 65535 for yes.
     struct VertexScan {
@@ -81,7 +81,7 @@ class NodeStore {
     template <class Visit>
     void visitMilled(Visit&& visit) const {
         for (const auto& [leaf, node] : nodes_)
-            if (node.mesh && node.mesh->revision != 0) visit(*node.mesh, node.box, node.scan_stamp);
+            if (node.mesh.revision != 0) visit(node.mesh, node.box, node.scan_stamp);
     }
     // Gives each vertex of that node what the scan measured, until another mesh comes.
     void setScan(uint32_t leaf, const std::vector<VertexScan>& scan, uint64_t stamp);
@@ -103,8 +103,7 @@ class NodeStore {
         Eigen::Vector3f step;     // V, m
         GLsizei index_count;
         std::vector<NodePart> parts;
-        std::optional<NodeMesh>
-            mesh;  // what the buffers hold, while changes are tracked or once it was milled
+        NodeMesh mesh;  // what the buffers hold
     };
     void remove(uint32_t leaf);
     std::vector<const Node*> fromTheEye(const Eigen::Matrix4f& clip_from_V) const;
@@ -116,7 +115,6 @@ class NodeStore {
     const GlApi& gl_;
     std::map<uint32_t, Node> nodes_;
     UploadCount uploads_;
-    bool tracks_changes_ = false;
     Eigen::AlignedBox3f changed_;
 };
 

@@ -39,13 +39,13 @@ FilmPainter::FilmPainter(const GlApi& gl) : gl_(gl), texture_(gl) {
     gl_.check("making the film's texture");
 }
 
-Eigen::AlignedBox3f FilmPainter::update(const EffectPicture& picture) {
+std::vector<Eigen::AlignedBox3f> FilmPainter::update(const EffectPicture& picture) {
     SurfaceFilm& film = *picture.film;
     const Eigen::Vector4f strength(picture.shows_blood, picture.shows_water, picture.shows_burns,
                                    picture.shows_bruises);
     if (!film.takeDue() && strength == strength_) return {};
-    Eigen::AlignedBox3f changed = film.takeChanged();
-    if (strength != strength_) changed.extend(film.shownBox());
+    std::vector<Eigen::AlignedBox3f> changed = film.takeChanged();
+    if (strength != strength_) changed.push_back(film.shownBox());
     strength_ = strength;
     blood_colour_ = picture.blood_colour;
     period_ = film.extent();
@@ -132,8 +132,11 @@ const Program& BonePainter::shading(const SurfaceMaps& maps) {
 }
 
 void BonePainter::drawOpaque(const Frame& frame, const NodeStore& nodes, const BoneLayer& layer,
-                             GLuint shadow_texture) {
-    const Place place{frame, nodes, layer, shadow_texture};
+                             const PixelBox& part, GLuint shadow_texture) {
+    const Place place{{frame, layer, shadow_texture}, nodes};
+    setScissor(gl_, part);
+    clearMaps(layer);
+    setScissor(gl_, part.grown(kScissorRim));
     if (frame.cuts_V.any()) beginMarking();
     drawSurface(place, {{1, 0}, kInsideSolid});
     if (!frame.cuts_V.any()) return;
@@ -145,7 +148,7 @@ void BonePainter::drawOpaque(const Frame& frame, const NodeStore& nodes, const B
 void BonePainter::drawTransparent(const Frame& frame, const NodeStore& nodes, const BoneLayer& layer,
                                   GLuint shadow_texture, double opacity,
                                   const std::function<void()>& draw_tool) {
-    const Place place{frame, nodes, layer, shadow_texture};
+    const Place place{{frame, layer, shadow_texture}, nodes};
     drawFarWall(place);
     if (frame.cuts_V.any()) markOpened(place);
     draw_tool();
@@ -167,14 +170,31 @@ void BonePainter::drawSurface(const Place& place, const Look& look) {
     gl_.Disable(GL_STENCIL_TEST);
     gl_.CullFace(GL_BACK);
     gl_.Disable(GL_CULL_FACE);
-    shade(place, look);
+    blendShaded(prepareShading(place, look));
+}
+
+void BonePainter::shadeAgain(const Frame& frame, const BoneLayer& layer, GLuint shadow_texture,
+                             const std::vector<PixelBox>& parts,
+                             const std::function<void(const PixelBox&)>& draw_under) {
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, layer.picture);
+    const Program& shading = prepareShading({frame, layer, shadow_texture}, {{1, 0}, kInsideSolid});
+    for (const PixelBox& part : parts) {
+        draw_under(part);
+        setScissor(gl_, part);
+        blendShaded(shading);
+    }
+}
+
+void BonePainter::clearMaps(const BoneLayer& layer) const {
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, layer.surface);
+    layer.maps.clear();
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, layer.picture);
 }
 
 void BonePainter::gather(const Place& place) {
     const Frame& frame = place.frame;
     const ClipPlanes clip(gl_, frame.cuts_V);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, place.layer.surface);
-    place.layer.maps.clear();
     surface_.use();
     setCutPlanes(surface_, frame.cuts_V);
     surface_.set("camera_from_model", frame.X_CV);
@@ -184,12 +204,12 @@ void BonePainter::gather(const Place& place) {
     gl_.BindFramebuffer(GL_FRAMEBUFFER, place.layer.picture);
 }
 
-void BonePainter::shade(const Place& place, const Look& look) {
-    const Frame& frame = place.frame;
-    const Program& shading = this->shading(place.layer.maps);
+const Program& BonePainter::prepareShading(const Canvas& canvas, const Look& look) {
+    const Frame& frame = canvas.frame;
+    const Program& shading = this->shading(canvas.layer.maps);
     shading.use();
-    frame.setLight(gl_, shading, place.shadow_texture);
-    place.layer.maps.setUniforms(shading);
+    frame.setLight(gl_, shading, canvas.shadow_texture);
+    canvas.layer.maps.setUniforms(shading);
     shading.set("tangents", frame.tangents);
     shading.set("shift", frame.shift);
     shading.set("model_from_camera", Eigen::Matrix4f(frame.X_CV.inverse()));
@@ -200,6 +220,11 @@ void BonePainter::shade(const Place& place, const Look& look) {
     shading.set("grey_of_density", milled_grey_.value_or(Eigen::Vector2f::UnitX()));
     if (hasFilm()) film_->setUniforms(shading);
     if (near_) near_->setUniforms(shading, shows_thickness_);
+    return shading;
+}
+
+void BonePainter::blendShaded(const Program& shading) const {
+    shading.use();
     gl_.Disable(GL_DEPTH_TEST);
     gl_.Enable(GL_BLEND);
     gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
@@ -265,6 +290,7 @@ void BonePainter::findNearestLayer(const Place& place, GLenum culled) const {
 // Culls as the layer was found, and leaves culling off.
 void BonePainter::drawFoundLayer(const Place& place, const Look& look) {
     gl_.DepthFunc(GL_EQUAL);
+    clearMaps(place.layer);
     drawSurface(place, look);
     gl_.DepthFunc(GL_LESS);
 }

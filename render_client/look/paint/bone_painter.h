@@ -15,11 +15,13 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "render_client/look/gl/gl_api.h"
 #include "render_client/look/model/material_palette.h"
 #include "render_client/look/model/node_store.h"
 #include "render_client/look/paint/frame.h"
+#include "render_client/look/paint/picture_parts.h"
 #include "render_client/look/paint/scan_painters.h"
 #include "render_client/look/paint/surface_maps.h"
 #include "render_client/look/structures/near_structures.h"
@@ -34,8 +36,8 @@ class FilmPainter {
   public:
     explicit FilmPainter(const GlApi& gl);
 
-    // Uploads the slices that changed. Returns the box (V) in which the bone looks different now.
-    Eigen::AlignedBox3f update(const EffectPicture& picture);
+    // Uploads the slices that changed. Returns the boxes (V) in which the bone looks different now.
+    std::vector<Eigen::AlignedBox3f> update(const EffectPicture& picture);
     // The program (with FILM) must be in use.
     void setUniforms(const Program& program) const;
 
@@ -73,12 +75,20 @@ class BonePainter {
     explicit BonePainter(const GlApi& gl);
 
     // Both draw into the layer's picture, whose depth and stencil are clear, and leave it bound, with depth
-    // test and depth writes on. draw_tool draws opaque things. They throw GlError with the compiler's log
-    // when the driver refuses the surface's shader with what it is to show for the first time.
-    void drawOpaque(const Frame& frame, const NodeStore& nodes, const BoneLayer& layer,
+    // test and depth writes on. drawOpaque() draws that part, and leaves the scissor around it. draw_tool
+    // draws opaque things. They throw GlError with the compiler's log when the driver refuses the surface's
+    // shader with what it is to show for the first time.
+    void drawOpaque(const Frame& frame, const NodeStore& nodes, const BoneLayer& layer, const PixelBox& part,
                     GLuint shadow_texture);
     void drawTransparent(const Frame& frame, const NodeStore& nodes, const BoneLayer& layer,
                          GLuint shadow_texture, double opacity, const std::function<void()>& draw_tool);
+
+    // Shades those parts of the layer once more, over what draw_under draws of each, as drawOpaque() left it
+    // without cut-planes: the bone has kept its shape there. Leaves the layer's picture bound, and its depth
+    // as it is. Parts may overlap.
+    void shadeAgain(const Frame& frame, const BoneLayer& layer, GLuint shadow_texture,
+                    const std::vector<PixelBox>& parts,
+                    const std::function<void(const PixelBox&)>& draw_under);
 
     // From now on bone has these colours (vertexColoursOf()).
     void setPalette(const std::vector<Eigen::Vector4f>& colours);
@@ -107,17 +117,21 @@ class BonePainter {
         Eigen::Vector3f inside;   // linear colour of the surface seen from within
     };
     // Where bone is drawn, and in which light.
-    struct Place {
+    struct Canvas {
         const Frame& frame;
-        const NodeStore& nodes;
         const BoneLayer& layer;
         GLuint shadow_texture;
+    };
+    struct Place : Canvas {
+        const NodeStore& nodes;
     };
     bool hasFilm() const { return film_ && !(near_ && shows_thickness_); }
     const Program& shading(const SurfaceMaps& maps);
     void drawSurface(const Place& place, const Look& look);
+    void clearMaps(const BoneLayer& layer) const;
     void gather(const Place& place);
-    void shade(const Place& place, const Look& look);
+    const Program& prepareShading(const Canvas& canvas, const Look& look);
+    void blendShaded(const Program& shading) const;
     void drawDepth(const Place& place) const;
     void drawFarWall(const Place& place);
     void drawInnerWall(const Place& place);

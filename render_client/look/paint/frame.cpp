@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render_client/look/paint/render_targets.h"
+#include "render_client/look/paint/shadow_map.h"
 
 namespace bonemill {
 namespace {
@@ -57,12 +57,13 @@ Eigen::Vector3d directionOf(LightRig light) {
 }
 
 // The light's shadow map covers the first sphere, and along the light all of the second: what stands between
-// the light and what it covers casts a shadow, too.
+// the light and what it covers casts a shadow, too. Its depth grows in steps, so that it rests while the tool
+// moves.
 KeyLight aimKeyLight(const Camera& camera, LightRig light, const Sphere& lit_W, const Sphere& casters_W) {
     const Eigen::Vector3d key_C = directionOf(light).normalized();
     const double half_size = std::max(lit_W.radius, kSmallestBone);
-    const double half_depth =
-        std::max(half_size, (casters_W.center - lit_W.center).norm() + kCastersGrow * casters_W.radius);
+    const double needed = (casters_W.center - lit_W.center).norm() + kCastersGrow * casters_W.radius;
+    const double half_depth = half_size * std::exp2(std::ceil(std::log2(std::max(needed / half_size, 1.0))));
     Eigen::Matrix3d R_LC;
     R_LC.row(2) = -key_C;  // depth grows away from the light
     R_LC.row(0) = Eigen::Vector3d::UnitY().cross(key_C).normalized();
@@ -72,10 +73,12 @@ KeyLight aimKeyLight(const Camera& camera, LightRig light, const Sphere& lit_W, 
     Eigen::Matrix4d shadow_from_camera = Eigen::Matrix4d::Identity();
     shadow_from_camera.topLeftCorner<3, 3>() = R_LC.array().colwise() * scale;
     shadow_from_camera.topRightCorner<3, 1>() = -(R_LC * center_C).array() * scale;
-    return {key_C.cast<float>(), shadow_from_camera.cast<float>(),
-            float(2 * half_size / RenderTargets::kShadowSize),
+    return {key_C.cast<float>(),
+            shadow_from_camera.cast<float>(),
+            float(2 * half_size / ShadowMap::kSize),
             light == LightRig::kEndoscope ? float(kReach * camera.focus) : 0,
-            light == LightRig::kMicroscope ? kMicroscopeStrength : 1};
+            light == LightRig::kMicroscope ? kMicroscopeStrength : 1,
+            light != LightRig::kRoom};
 }
 
 }  // namespace
@@ -125,16 +128,18 @@ Eigen::AlignedBox3d boneIn(const FrameView& view) {
 
 }  // namespace
 
-Eigen::AlignedBox3f ToolShadow::box(const Eigen::Vector3f& key_direction) const {
-    Eigen::AlignedBox3f box;
+std::vector<Eigen::AlignedBox3f> ToolShadow::boxes(const Eigen::Vector3f& key_direction) const {
+    constexpr int kPieces = 4;
     const float room = 1.1f * std::max(burr_radius, shaft_radius) + 0.1f * reach;  // the shadow widens
-    for (const Eigen::Vector3f& end : {burr, shaft})
-        for (const float along : {0.0f, -reach}) {
-            const Eigen::Vector3f p = end + along * key_direction;
-            box.extend(Eigen::Vector3f(p.array() - room));
-            box.extend(Eigen::Vector3f(p.array() + room));
-        }
-    return box;
+    std::vector<Eigen::AlignedBox3f> boxes(kPieces);
+    for (int piece = 0; piece < kPieces; ++piece)
+        for (const Eigen::Vector3f& end : {burr, shaft})
+            for (const int side : {piece, piece + 1}) {
+                const Eigen::Vector3f p = end - reach * float(side) / kPieces * key_direction;
+                boxes[size_t(piece)].extend(Eigen::Vector3f(p.array() - room));
+                boxes[size_t(piece)].extend(Eigen::Vector3f(p.array() + room));
+            }
+    return boxes;
 }
 
 DepthRange Frame::neededRange(const FrameView& view, const Eigen::AlignedBox3f& tool_T) {

@@ -108,6 +108,7 @@ struct KeyLight {
     float shadow_texel;                  // m
     float reach;     // m from the eye to where an endoscope's light is as bright; 0: it is the room's
     float strength;  // against the room's, where it has no reach
+    bool is_at_eye;  // what lies behind the eye casts no shadow
 };
 
 // The part of the tool that casts a shadow where there is no shadow map: the burr as a ball and a piece of
@@ -117,8 +118,8 @@ struct ToolShadow {
     Eigen::Vector3f shaft;  // the piece's end
     float burr_radius, shaft_radius;
     float reach;  // m along the light, beyond it there is none
-    // Returns what the tool and its shadow take (C).
-    Eigen::AlignedBox3f box(const Eigen::Vector3f& key_direction) const;
+    // Returns boxes that hold the tool and its shadow (C), one after the other away from the light.
+    std::vector<Eigen::AlignedBox3f> boxes(const Eigen::Vector3f& key_direction) const;
 };
 
 // The tool's outline where it is not.

@@ -79,15 +79,15 @@ int FramePasses::blurReach(const Frame& frame, int height) {
     return frame.blur_per_m > 0 ? int(std::ceil(kMaxBlur * float(height))) + 1 : 0;
 }
 
-void FramePasses::drawBackground() const {
+void FramePasses::drawBackground(const Parts& parts) const {
     gl_.Disable(GL_DEPTH_TEST);
     background_.use();
-    drawFullScreen();
+    drawParts(gl_, parts, [&] { drawFullScreen(); });
     gl_.Enable(GL_DEPTH_TEST);
 }
 
-void FramePasses::drawOcclusion(const Frame& frame, const RenderTargets& targets,
-                                GLuint depth_texture) const {
+void FramePasses::drawOcclusion(const Frame& frame, const RenderTargets& targets, GLuint depth_texture,
+                                const Parts& parts) const {
     gl_.BindFramebuffer(GL_FRAMEBUFFER, targets.occlusion());
     gl_.Viewport(0, 0, targets.occlusionWidth(), targets.occlusionHeight());
     gl_.Disable(GL_DEPTH_TEST);
@@ -100,12 +100,18 @@ void FramePasses::drawOcclusion(const Frame& frame, const RenderTargets& targets
     occlusion_.set("shift", frame.shift);
     occlusion_.set("radius", float(kOcclusionRadius) * frame.bone_radius);
     occlusion_.set("max_radius", kOcclusionPicture);
-    drawFullScreen();
+    for (const PixelBox& part : parts) {
+        setScissor(gl_,
+                   {part.x0 / 2 - 1, part.y0 / 2 - 1, part.x1 / 2 + 2, part.y1 / 2 + 2});  // half the size
+        drawFullScreen();
+    }
+    gl_.Viewport(0, 0, targets.width(), targets.height());
 }
 
-void FramePasses::compose(const Frame& frame, const RenderTargets& targets, int x, GLuint target) const {
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
-    gl_.Viewport(x, 0, targets.width(), targets.height());
+void FramePasses::compose(const Frame& frame, const RenderTargets& targets, const Parts& parts) const {
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, targets.finished());
+    gl_.Viewport(0, 0, targets.width(), targets.height());
+    gl_.Disable(GL_DEPTH_TEST);
     const GLuint textures[] = {targets.colourTexture(), targets.depthTexture(), targets.occlusionTexture()};
     for (GLenum unit = 0; unit < 3; ++unit) {
         gl_.ActiveTexture(GL_TEXTURE0 + unit);
@@ -125,13 +131,13 @@ void FramePasses::compose(const Frame& frame, const RenderTargets& targets, int 
         composite.set("blur_per_m", frame.blur_per_m);
         composite.set("most_blur", kMaxBlur);
     }
-    drawFullScreen();
+    drawParts(gl_, parts, [&] { drawFullScreen(); });
     gl_.ActiveTexture(GL_TEXTURE0);
 }
 
-void FramePasses::drawToolShadow(const Frame& frame, const RenderTargets& targets, GLuint target) const {
+void FramePasses::drawToolShadow(const Frame& frame, const RenderTargets& targets, const Parts& parts) const {
     const ToolShadow& shadow = *frame.tool_shadow;
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, targets.finished());
     gl_.ActiveTexture(GL_TEXTURE0);
     gl_.BindTexture(GL_TEXTURE_2D, targets.depthTexture());
     tool_shadow_.use();
@@ -146,7 +152,7 @@ void FramePasses::drawToolShadow(const Frame& frame, const RenderTargets& target
     tool_shadow_.set("reach", shadow.reach);
     gl_.Enable(GL_BLEND);
     gl_.BlendFunc(GL_DST_COLOR, GL_ZERO);
-    drawFullScreen();
+    drawParts(gl_, parts, [&] { drawFullScreen(); });
     gl_.Disable(GL_BLEND);
 }
 

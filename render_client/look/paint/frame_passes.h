@@ -5,9 +5,11 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "render_client/look/gl/gl_api.h"
 #include "render_client/look/paint/frame.h"
+#include "render_client/look/paint/picture_parts.h"
 #include "render_client/look/paint/render_targets.h"
 
 namespace bonemill {
@@ -17,16 +19,19 @@ class FramePasses {
     // Throws GlError with the compiler's log when the driver refuses a shader.
     explicit FramePasses(const GlApi& gl);
 
+    // They draw those parts of the picture, and want the scissor test enabled.
+    using Parts = std::vector<PixelBox>;
     // Fills the bound framebuffer; leaves the depth test on.
-    void drawBackground() const;
-    // Makes the half-size occlusion from this depth texture of the targets.
-    void drawOcclusion(const Frame& frame, const RenderTargets& targets, GLuint depth_texture) const;
-    // Puts the finished picture (without figures) into `target`, from column x on.
-    void compose(const Frame& frame, const RenderTargets& targets, int x, GLuint target) const;
+    void drawBackground(const Parts& parts) const;
+    // Makes the half-size occlusion from this depth texture of the targets. Leaves the viewport that of the
+    // picture.
+    void drawOcclusion(const Frame& frame, const RenderTargets& targets, GLuint depth_texture,
+                       const Parts& parts) const;
+    // Makes the finished picture (without figures).
+    void compose(const Frame& frame, const RenderTargets& targets, const Parts& parts) const;
 
-    // Darkens what lies in the shadow of a frame's tool_shadow in the finished picture in `target`, a
-    // framebuffer of its size without depth.
-    void drawToolShadow(const Frame& frame, const RenderTargets& targets, GLuint target) const;
+    // Darkens what lies in the shadow of a frame's tool_shadow in the finished picture.
+    void drawToolShadow(const Frame& frame, const RenderTargets& targets, const Parts& parts) const;
 
     // Return how many pixels beyond a changed one the picture may look different, in a picture of this
     // height: where the occlusion changes with it, and where it does not.

@@ -1,110 +1,10 @@
 #include "render_client/look/paint/render_targets.h"
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
+
+#include "render_client/look/paint/picture_parts.h"
 
 namespace bonemill {
-namespace {
-
-constexpr double kLoosest = 2;        // a range that is N times too wide is made anew
-constexpr double kRangeMargin = 0.1;  // of the near and far distance: room for the tool to move
-
-bool isSame(const Camera& a, const Camera& b) {
-    return a.eye_W == b.eye_W && a.R_WC == b.R_WC && a.field_of_view == b.field_of_view &&
-           a.focus == b.focus && a.shift == b.shift;
-}
-
-template <class Matrix>
-void append(std::vector<float>& signature, const Matrix& matrix) {
-    signature.insert(signature.end(), matrix.data(), matrix.data() + matrix.size());
-}
-
-std::vector<float> signatureOf(const Frame& frame, int width, int height) {
-    std::vector<float> signature{float(width),       float(height), frame.bone_radius, frame.key.reach,
-                                 frame.field_radius, frame.focus,   frame.blur_per_m};
-    append(signature, frame.clip_from_camera);
-    append(signature, frame.X_CV);
-    append(signature, frame.key.direction);
-    for (const Eigen::Vector4f& plane : frame.cuts_V.planes) append(signature, plane);
-    append(signature, frame.bone_V.min());
-    append(signature, frame.bone_V.max());
-    return signature;
-}
-
-}  // namespace
-
-DepthRange PictureChanges::range(const Camera& camera, const DepthRange& needed) {
-    const bool is_tight = needed.far * kLoosest > range_.far && needed.near < range_.near * kLoosest;
-    if (isSame(camera, camera_) && is_tight) {
-        range_ = {std::min(range_.near, needed.near), std::max(range_.far, needed.far)};
-    } else {
-        range_ = {needed.near * (1 - kRangeMargin), needed.far * (1 + kRangeMargin)};
-        camera_ = camera;
-    }
-    return range_;
-}
-
-PictureChanges::Dirty PictureChanges::next(const Frame& frame, int width, int height,
-                                           const Eigen::AlignedBox3f& changed_V, const PixelBox& moving,
-                                           std::vector<float> still_like) {
-    const bool stands_still = !still_like.empty() && still_like == still_like_;
-    still_like_ = std::move(still_like);
-    const PixelBox moved = std::exchange(moving_, moving);
-    const PixelBox whole = PixelBox::whole(width, height);
-    std::vector<float> signature = signatureOf(frame, width, height);
-    if (signature != signature_) {
-        signature_ = std::move(signature);
-        return {whole, whole};
-    }
-    const PixelBox bone = PixelBox::around(changed_V, frame.clip_from_camera * frame.X_CV, width, height);
-    if (stands_still) return {bone, bone};
-    return {bone, bone.joined(moved).joined(moving)};
-}
-
-PixelBox PixelBox::joined(const PixelBox& other) const {
-    if (isEmpty()) return other;
-    if (other.isEmpty()) return *this;
-    return {std::min(x0, other.x0), std::min(y0, other.y0), std::max(x1, other.x1), std::max(y1, other.y1)};
-}
-
-PixelBox PixelBox::within(const PixelBox& other) const {
-    return {std::max(x0, other.x0), std::max(y0, other.y0), std::min(x1, other.x1), std::min(y1, other.y1)};
-}
-
-PixelBox PixelBox::around(const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& clip_from_model, int width,
-                          int height) {
-    if (box.isEmpty()) return {};
-    Eigen::AlignedBox2f ndc;
-    for (int i = 0; i < 8; ++i) {
-        const Eigen::Vector4f corner =
-            clip_from_model * box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(i)).homogeneous();
-        if (!(corner.w() > 0) || !(corner.z() >= -corner.w()) || !corner.allFinite())
-            return whole(width, height);
-        ndc.extend(Eigen::Vector2f(corner.head<2>() / corner.w()));
-    }
-    const auto pixel = [](float value, int size) {
-        return std::clamp((value + 1) / 2 * float(size), -1.0f, float(size) + 1);
-    };
-    constexpr int kRounding = 1;  // rasterisation may round either way
-    const PixelBox touched{
-        int(std::floor(pixel(ndc.min().x(), width))), int(std::floor(pixel(ndc.min().y(), height))),
-        int(std::ceil(pixel(ndc.max().x(), width))), int(std::ceil(pixel(ndc.max().y(), height)))};
-    return touched.grown(kRounding).within(whole(width, height));
-}
-
-Eigen::Matrix4f PixelBox::zoom(int picture_width, int picture_height) const {
-    const float scale_x = float(picture_width) / float(width()),
-                scale_y = float(picture_height) / float(height());
-    const float middle_x = float(x0 + x1) / float(picture_width) - 1;
-    const float middle_y = float(y0 + y1) / float(picture_height) - 1;
-    Eigen::Matrix4f zoom = Eigen::Matrix4f::Identity();
-    zoom(0, 0) = scale_x;
-    zoom(1, 1) = scale_y;
-    zoom(0, 3) = -middle_x * scale_x;
-    zoom(1, 3) = -middle_y * scale_y;
-    return zoom;
-}
 
 RenderTargets::RenderTargets(const GlApi& gl, int width, int height, Quality quality)
     : gl_(gl),
@@ -115,54 +15,66 @@ RenderTargets::RenderTargets(const GlApi& gl, int width, int height, Quality qua
       scene_surface_(gl),
       resolved_(gl),
       occlusion_(gl),
-      shadow_(gl),
       bone_(gl),
       bone_surface_(gl),
       finished_(gl),
       scene_colour_(gl),
       scene_depth_(gl),
+      sampled_bone_colour_(gl),
+      sampled_bone_depth_(gl),
       colour_texture_(gl),
       depth_texture_(gl),
       occlusion_texture_(gl),
-      shadow_texture_(gl),
       bone_colour_(gl),
       bone_depth_(gl),
       finished_colour_(gl) {
     makeResolved();
-    quality == Quality::kFull ? makeScene() : makeKept();
+    quality == Quality::kFull ? makeSampled() : makePlain();
     makeOcclusion();
-    makeShadow();
+    makeFinished();
     gl_.BindFramebuffer(GL_FRAMEBUFFER, 0);
     gl_.check("making the render targets");
 }
 
-void RenderTargets::makeScene() {
+void RenderTargets::makeSampled() {
     GLint most_samples = 0;
     gl_.GetIntegerv(GL_MAX_SAMPLES, &most_samples);
     const GLsizei samples = std::min(most_samples, kWantedSamples);
-    gl_.BindRenderbuffer(GL_RENDERBUFFER, scene_colour_.name());
-    gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA8, width_, height_);
-    gl_.BindRenderbuffer(GL_RENDERBUFFER, scene_depth_.name());
-    gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH24_STENCIL8, width_, height_);
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, scene_.name());
-    gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, scene_colour_.name());
-    gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER,
-                                scene_depth_.name());
-    checkComplete("scene");
-
+    makeSampledLayer(scene_, scene_colour_, scene_depth_, samples, "scene");
+    makeSampledLayer(bone_, sampled_bone_colour_, sampled_bone_depth_, samples, "bone");
     maps_.emplace(gl_, width_, height_, samples);
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, scene_surface_.name());
-    gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER,
-                                scene_depth_.name());
-    maps_->attach();
-    checkComplete("scene's surface");
+    makeSampledSurface(scene_surface_, scene_depth_, "scene's surface");
+    makeSampledSurface(bone_surface_, sampled_bone_depth_, "bone's surface");
 }
 
-void RenderTargets::makeKept() {
+void RenderTargets::makeSampledLayer(const GlFramebuffer& layer, const GlRenderbuffer& colour,
+                                     const GlRenderbuffer& depth, GLsizei samples, const char* what) const {
+    gl_.BindRenderbuffer(GL_RENDERBUFFER, colour.name());
+    gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA8, width_, height_);
+    gl_.BindRenderbuffer(GL_RENDERBUFFER, depth.name());
+    gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH24_STENCIL8, width_, height_);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, layer.name());
+    gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour.name());
+    gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, depth.name());
+    checkComplete(what);
+}
+
+void RenderTargets::makeSampledSurface(const GlFramebuffer& surface, const GlRenderbuffer& depth,
+                                       const char* what) const {
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, surface.name());
+    gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, depth.name());
+    maps_->attach();
+    checkComplete(what);
+}
+
+void RenderTargets::makePlain() {
     makeLayer(bone_, bone_colour_, bone_depth_, "bone");
     maps_.emplace(gl_, width_, height_, 0);
     makeSurface(bone_surface_, bone_depth_, "bone's surface");
     makeSurface(scene_surface_, depth_texture_, "scene's surface");
+}
+
+void RenderTargets::makeFinished() {
     makeTexture(finished_colour_, GL_RGBA8, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, finished_.name());
     gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, finished_colour_.name(), 0);
@@ -203,20 +115,6 @@ void RenderTargets::makeOcclusion() {
     checkComplete("occlusion");
 }
 
-// The sampler wants a texture in quick quality too.
-void RenderTargets::makeShadow() {
-    const int size = quality_ == Quality::kFull ? kShadowSize : 1;
-    makeTexture(shadow_texture_, GL_DEPTH_COMPONENT24, size, size, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
-                GL_LINEAR);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, shadow_.name());
-    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, shadow_texture_.name(), 0);
-    gl_.DrawBuffer(GL_NONE);
-    gl_.ReadBuffer(GL_NONE);
-    checkComplete("shadow");
-}
-
 void RenderTargets::makeTexture(const GlTexture& texture, GLint format, int width, int height, GLenum layout,
                                 GLenum type, GLint filter) const {
     gl_.BindTexture(GL_TEXTURE_2D, texture.name());
@@ -224,17 +122,9 @@ void RenderTargets::makeTexture(const GlTexture& texture, GLint format, int widt
     gl_.setSampling(GL_TEXTURE_2D, filter);
 }
 
-void RenderTargets::copy(GLuint from, GLuint to, const PixelBox& part, GLbitfield what) const {
-    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, from);
-    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, to);
-    gl_.BlitFramebuffer(part.x0, part.y0, part.x1, part.y1, part.x0, part.y0, part.x1, part.y1, what,
-                        GL_NEAREST);
-}
-
-void RenderTargets::resolve() const {
+void RenderTargets::resolve(const std::vector<PixelBox>& parts) const {
     if (quality_ == Quality::kQuick) return;  // drawn there
-    copy(scene_.name(), resolved_.name(), PixelBox::whole(width_, height_),
-         GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    copyParts(gl_, scene_.name(), resolved_.name(), parts, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
 std::optional<float> RenderTargets::depthAt(int x, int y) const {

@@ -15,7 +15,9 @@
 #include "render_client/look/paint/frame.h"
 #include "render_client/look/paint/frame_passes.h"
 #include "render_client/look/paint/marker_painter.h"
+#include "render_client/look/paint/picture_changes.h"
 #include "render_client/look/paint/render_targets.h"
+#include "render_client/look/paint/shadow_map.h"
 #include "render_client/look/paint/structure_painter.h"
 #include "render_client/look/paint/tool_painter.h"
 
@@ -63,8 +65,8 @@ class SceneRenderer {
         bone_.setMilledGrey(grey_of_density);
     }
     // Bone looks different in that box (V) from the next picture on.
-    void hasChanged(const Eigen::AlignedBox3f& box_V) { look_changed_.extend(box_V); }
-    // The next picture is drawn whole, also in quick quality.
+    void hasChanged(const Eigen::AlignedBox3f& box_V) { look_changed_.push_back(box_V); }
+    // Nothing of the last picture is kept for the next one.
     void drawWholeNext() { changes_.forget(); }
 
     // Returns the nearest surface of bone or tool (W, m) under a pixel of the last picture, counted from its
@@ -80,28 +82,33 @@ class SceneRenderer {
     size_t trianglesDrawn() const { return bone_.trianglesDrawn(); }
 
   private:
-    void drawFull(const Frame& frame, const FrameView& view, const NodeStore& nodes, const ToolMesh& tool,
-                  const PictureArea& area, GLuint target);
-    void drawQuick(const Frame& frame, const FrameView& view, NodeStore& nodes, const ToolMesh& tool,
-                   const PictureArea& area, GLuint target);
-    void drawAllSolids(const Frame& frame, const FrameView& view, const NodeStore& nodes,
-                       const ToolMesh& tool);
-    void drawKeptBone(Frame frame, const FrameView& view, const NodeStore& nodes, const PixelBox& part);
-    void drawToolOverKeptBone(const Frame& frame, const FrameView& view, const ToolMesh& tool,
-                              const PixelBox& part);
-    PixelBox grown(const PixelBox& part, int pixels) const;
-    void drawOcclusion(const Frame& frame, const PixelBox& part, GLuint depth_texture) const;
-    void finishQuick(const Frame& frame, const PixelBox& part);
+    // What a picture is drawn of.
+    struct Shown {
+        const Frame& frame;
+        const FrameView& view;
+        const NodeStore& nodes;
+        const ToolMesh& tool;
+    };
+    void prepareTargets(const PictureArea& area, Quality quality);
+    PictureChanges::Changed takeChanges(const Frame& frame, const FrameView& view, NodeStore& nodes,
+                                        const ToolMesh& tool);
+    void drawThrough(const Shown& shown);
+    void drawKept(const Shown& shown, PictureChanges::Changed changed);
+    void updateShadow(const Shown& shown, const Eigen::AlignedBox3f& changed_V, PictureChanges::Dirty& dirty);
+    void addShadowed(const Shown& shown, const std::vector<Eigen::AlignedBox3f>& boxes,
+                     PixelTiles& tiles) const;
+    void drawBone(const Shown& shown, const PixelBox& part);
+    void drawLook(const Shown& shown, const PixelTiles& parts);
+    void drawTool(const Shown& shown, const PixelTiles& parts);
+    void finish(const Frame& frame, const PixelTiles& parts);
     void showFinished(const PictureArea& area, GLuint target) const;
-    PixelBox shadowPixels(const Frame& frame) const;
-    PixelBox movingPixels(const Frame& frame, const FrameView& view, const ToolMesh& tool);
-    void drawStrokes(const Frame& frame, const FrameView& view) const;
+    PixelBox pixelsOf(const Frame& frame, const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& X_CB) const;
+    std::vector<PixelBox> shadowPixels(const Frame& frame) const;
+    PixelTiles movingPixels(const Frame& frame, const FrameView& view, const ToolMesh& tool);
+    void addTool(const Frame& frame, const Eigen::AlignedBox3f& tool_T, const Eigen::Matrix4f& X_CT,
+                 PixelTiles& tiles) const;
     static std::vector<float> stillLike(const Frame& frame, const FrameView& view, const ToolMesh& tool);
-    void scissor(const PixelBox& part) const;
-    void drawShadowMap(const Frame& frame, const FrameView& view, const NodeStore& nodes,
-                       const ToolMesh& tool) const;
     void chooseSurface(const FrameView& view);
-    void drawSolids(const Frame& frame, const FrameView& view, const NodeStore& nodes, const ToolMesh& tool);
     void drawOver(const Frame& frame, const FrameView& view, const ToolMesh& tool);
     void drawParticles(const Frame& frame, const FrameView& view);
 
@@ -110,7 +117,6 @@ class SceneRenderer {
     ToolPainter tool_;
     MarkerPainter markers_;
     FramePasses passes_;
-    Program shadow_;
     StructurePainter structures_;
     StrokePainter strokes_;
     StrokePainter drawn_;                         // FrameView::drawn
@@ -120,8 +126,9 @@ class SceneRenderer {
     std::unique_ptr<FilmPainter> film_;
     std::unique_ptr<ParticlePainter> particles_;
     std::unique_ptr<RenderTargets> targets_;
-    PictureChanges changes_;            // quick quality
-    Eigen::AlignedBox3f look_changed_;  // since the last quick picture, and no triangle with it
+    std::unique_ptr<ShadowMap> shadow_;
+    PictureChanges changes_;
+    std::vector<Eigen::AlignedBox3f> look_changed_;  // since the last picture, and no triangle with it
     std::optional<Eigen::Vector2f> milled_grey_;
     Camera last_camera_;  // of the last picture, for pick()
     Eigen::Vector2f last_near_far_ = Eigen::Vector2f::Zero();

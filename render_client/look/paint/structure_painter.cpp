@@ -129,6 +129,11 @@ void StructurePainter::draw(const Frame& frame, const std::vector<StructureLook>
     if (frame.cuts_V.any()) drawSections(frame, looks);
 }
 
+void StructurePainter::drawAgain(const Frame& frame, const std::vector<StructureLook>& looks,
+                                 GLuint shadow_texture) const {
+    drawPart(frame, looks, shadow_texture, Part::kExposedAgain);
+}
+
 void StructurePainter::drawSolid(const Frame& frame, const std::vector<StructureLook>& looks,
                                  GLuint shadow_texture) const {
     drawPart(frame, looks, shadow_texture, Part::kExposed);
@@ -152,17 +157,19 @@ void StructurePainter::drawPart(const Frame& frame, const std::vector<StructureL
         gl_.Enable(GL_CULL_FACE);
         gl_.CullFace(GL_BACK);
         gl_.DepthMask(GL_FALSE);
-        gl_.DepthFunc(GL_GREATER);
     }
+    gl_.DepthFunc(is_behind ? GL_GREATER : GL_LEQUAL);  // the layer may have it already
     for (const StructureLook& look : looks) {
         const auto shape = shapes_.find(look.structure);
         const bool is_shown =
             is_behind ? look.mode == StructureMode::kThroughBone : look.mode != StructureMode::kOff;
         if (shape == shapes_.end() || !is_shown) continue;
+        const bool is_hidden = !shape->second.is_seen && !shape->second.is_asked;
+        if (part == Part::kExposedAgain && is_hidden) continue;
         surface.set("structure_colour", look.colour);
         surface.set("glow", look.glow);
         surface.set("rise", is_behind ? 0.0f : look.rise);
-        const bool asks = !is_behind;
+        const bool asks = part == Part::kExposed;
         if (asks) gl_.BeginQuery(GL_ANY_SAMPLES_PASSED, shape->second.sight.name());
         shape->second.surface.draw(surface, frame.cull_from_V);
         if (asks) gl_.EndQuery(GL_ANY_SAMPLES_PASSED);

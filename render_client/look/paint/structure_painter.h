@@ -34,6 +34,8 @@ class StructurePainter {
     // Draws into the bound framebuffer, which has the bone, uses the stencil's lower bits, and leaves depth
     // test and depth writes on; the depth is then the nearest of bone and exposed structures.
     void draw(const Frame& frame, const std::vector<StructureLook>& looks, GLuint shadow_texture) const;
+    // Draws what is exposed once more over bone of the same shape, from which no cut-plane takes anything.
+    void drawAgain(const Frame& frame, const std::vector<StructureLook>& looks, GLuint shadow_texture) const;
     // Draws whole bodies, as opaque things are drawn under transparent bone.
     void drawSolid(const Frame& frame, const std::vector<StructureLook>& looks, GLuint shadow_texture) const;
 
@@ -46,7 +48,7 @@ class StructurePainter {
         mutable bool is_asked = false;
         bool is_whole = true, is_seen = false;  // is_whole: its box was drawn anew
     };
-    enum class Part { kBehind, kExposed };
+    enum class Part { kBehind, kExposed, kExposedAgain };
     void drawPart(const Frame& frame, const std::vector<StructureLook>& looks, GLuint shadow_texture,
                   Part part) const;
 

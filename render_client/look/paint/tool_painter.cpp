@@ -84,18 +84,20 @@ void ParticlePainter::add(const Frame& frame, const Particle& particle, int heig
     vertices_.insert(vertices_.end(), {a, b, c, a, c, d});
 }
 
-Eigen::AlignedBox3f ParticlePainter::box(const Frame& frame, const Particles& particles, int height) {
-    Eigen::AlignedBox3f box;
+std::vector<Eigen::AlignedBox3f> ParticlePainter::boxes(const Frame& frame, const Particles& particles,
+                                                        int height) {
+    std::vector<Eigen::AlignedBox3f> boxes;
     for (const Particle& particle : particles) {
         const Placed placed = place(frame, particle, height);
         if (-placed.from.z() < kMinDepth || -placed.to.z() < kMinDepth) continue;
         const Eigen::Vector3f margin = Eigen::Vector3f::Constant(placed.radius);
+        Eigen::AlignedBox3f& box = boxes.emplace_back();
         for (const Eigen::Vector3f& end : {placed.from, placed.to}) {
             box.extend(end - margin);
             box.extend(end + margin);
         }
     }
-    return box;
+    return boxes;
 }
 
 void ParticlePainter::draw(const Frame& frame, const Particles& particles, int height,

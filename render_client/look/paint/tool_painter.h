@@ -41,8 +41,8 @@ class ParticlePainter {
 
     // Draws into the bound framebuffer, a picture of this height (pixels).
     void draw(const Frame& frame, const Particles& particles, int height, GLuint shadow_texture);
-    // Returns the box (C, m) around all that is drawn: the smallest are drawn larger than they are.
-    static Eigen::AlignedBox3f box(const Frame& frame, const Particles& particles, int height);
+    // Returns a box (C, m) around each that is drawn: the smallest are drawn larger than they are.
+    static std::vector<Eigen::AlignedBox3f> boxes(const Frame& frame, const Particles& particles, int height);
 
   private:
     struct Vertex {

@@ -93,7 +93,6 @@ void RenderScene::makeEffects(const topics::SceneInfo& info) {
 
 void RenderScene::setNode(const NodeMesh& mesh) {
     if (isOfOther(mesh.leaf)) return other_nodes_.set(mesh);
-    nodes_.trackChanges(settings_.quality == Quality::kQuick);
     nodes_.set(mesh);  // throws when it contradicts itself: then no other part gets it
     if (effects_) effects_->setNode(mesh);
     if (has_effects_ && awaits_info_) early_nodes_.insert_or_assign(mesh.leaf, mesh);

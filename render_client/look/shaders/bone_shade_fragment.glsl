@@ -45,6 +45,12 @@ BonePoint pointAt(int at_sample) {
     return point;
 }
 
+bool hasBone() {
+    for (int i = 0; i < SAMPLES; ++i)
+        if (texelFetch(depth_and_milled, texel(), i).x != 0.0) return true;
+    return false;
+}
+
 // Whether the samples show different surfaces.
 bool isEdge(float depth) {
     vec2 normal = texelFetch(normal_and_scan, texel(), 0).xy;
@@ -59,7 +65,7 @@ bool isEdge(float depth) {
 
 void main() {
     float depth = texelFetch(depth_and_milled, texel(), 0).x;
-    int count = isEdge(depth) ? SAMPLES : 1;
+    int count = !hasBone() ? 0 : isEdge(depth) ? SAMPLES : 1;
     vec4 sum = vec4(0.0);
     for (int i = 0; i < count; ++i) {
         if (texelFetch(depth_and_milled, texel(), i).x == 0.0) continue;

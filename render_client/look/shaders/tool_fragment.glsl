@@ -22,7 +22,7 @@ vec2 sweptGroove(float phase) {
     float sweep = flutes * spin_sweep;
     float blur = smoothstep(0.5, 1.0, abs(sweep) / 3.14159265);
     vec2 sum = vec2(0.0);
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0, count = blur < 1.0 ? 8 : 0; i < count; ++i) {
         float at = phase - sweep * (float(i) + 0.5) / 8.0;
         sum += vec2(grooveAt(at), grooveAt(at + 0.25) - grooveAt(at - 0.25));
     }

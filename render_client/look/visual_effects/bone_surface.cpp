@@ -11,12 +11,22 @@ constexpr float kSurfaceFound = 0.6e-3f;  // m: farther off there is no surface
 constexpr float kLevel = 0.06f;           // sine of the slope on which a drop rests
 constexpr float kOverhang = -0.85f;       // cosine to `up` of a surface that holds no drop
 
-constexpr int kBuckets = 8;                  // per axis of a leaf
-constexpr float kFocusStep = 0.002f;         // m that the focus moves before leaves are looked for again
+constexpr int kBuckets = 8;           // per axis of a leaf
+constexpr float kFocusStep = 0.002f;  // m that the focus moves before leaves are looked for again
+constexpr float kNearRadius = BoneSurface::kFocusRadius + kFocusStep;
+constexpr int kCells = 11;  // per axis of the grid around the focus
+constexpr float kCellSize = 2 * kNearRadius / kCells;
 constexpr uint64_t kPlace = 0xffffffffffff;  // of a packed vertex: without its normal
 
 uint64_t placeOf(const PackedVertex& vertex) {
     return std::bit_cast<uint64_t>(vertex) & kPlace;
+}
+
+template <class Visit>
+void forEachCell(const Eigen::Array3i& low, const Eigen::Array3i& high, Visit&& visit) {
+    for (int z = low.z(); z <= high.z(); ++z)
+        for (int y = low.y(); y <= high.y(); ++y)
+            for (int x = low.x(); x <= high.x(); ++x) visit(Eigen::Array3i(x, y, z));
 }
 
 std::vector<uint64_t> sortedPlaces(const std::vector<PackedVertex>& vertices) {
@@ -129,20 +139,35 @@ void BoneSurface::focusOn(const Eigen::Vector3f& p_V) {
 void BoneSurface::findLeaves() {
     sought_around_ = focus_;
     is_stale_ = false;
-    near_.clear();
+    near_.resize(size_t(kCells) * kCells * kCells);
+    for (auto& leaves : near_) leaves.clear();
     for (const auto& [number, leaf] : leaves_)
-        if (leaf.box.exteriorDistance(focus_) < kFocusRadius + kFocusStep) near_.push_back(&leaf);
+        if (leaf.box.exteriorDistance(focus_) < kNearRadius)
+            forEachCell(cellOf(leaf.box.min()), cellOf(leaf.box.max()),
+                        [&](const Cell& cell) { near_[numberOf(cell)].push_back(&leaf); });
+}
+
+Eigen::Array3i BoneSurface::cellOf(const Eigen::Vector3f& p_V) const {
+    const Eigen::Array3f place = ((p_V - sought_around_).array() + kNearRadius) / kCellSize;
+    return place.max(0).min(kCells - 1).cast<int>();
+}
+
+size_t BoneSurface::numberOf(const Cell& cell) {
+    return size_t((cell.z() * kCells + cell.y()) * kCells + cell.x());
 }
 
 std::optional<SurfacePoint> BoneSurface::nearest(const Eigen::Vector3f& p_V, float reach) const {
     if (is_stale_ || !isInFocus(p_V)) return std::nullopt;
     const PackedVertex* found = nullptr;
     const Leaf* found_in = nullptr;
-    for (const Leaf* leaf : near_) {
-        const PackedVertex* before = found;
-        leaf->findNearer(p_V, reach, found);
-        if (found != before) found_in = leaf;
-    }
+    const Eigen::Vector3f margin = Eigen::Vector3f::Constant(reach);
+    forEachCell(cellOf(p_V - margin), cellOf(p_V + margin), [&](const Cell& cell) {
+        for (const Leaf* leaf : near_[numberOf(cell)]) {
+            const PackedVertex* before = found;
+            leaf->findNearer(p_V, reach, found);
+            if (found != before) found_in = leaf;
+        }
+    });
     if (!found) return std::nullopt;
     return found_in->point(size_t(found - found_in->vertices.data()));
 }

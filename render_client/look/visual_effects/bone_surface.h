@@ -63,7 +63,12 @@ class BoneSurface {
     void findLeaves();
 
     std::map<uint32_t, Leaf> leaves_;
-    std::vector<const Leaf*> near_;  // touch the focus
+    using Cell = Eigen::Array3i;
+    Cell cellOf(const Eigen::Vector3f& p_V) const;
+    static size_t numberOf(const Cell& cell);
+
+    std::vector<std::vector<const Leaf*>>
+        near_;  // the leaves that touch each cell of a grid around the focus
     Eigen::Vector3f focus_ = Eigen::Vector3f::Zero(), sought_around_ = focus_;
     bool is_stale_ = true;  // near_
     bool tracks_fresh_ = false;

@@ -50,13 +50,45 @@ void SurfaceFilm::centreOn(const Eigen::Vector3f& p_V) {
         is_placed_ = true;
         return;
     }
-    changed_.extend(shownBox());  // what it leaves behind is drawn without it
+    noteLeftBehind(wanted);
     for (int axis = 0; axis < 3; ++axis) {
         const int from = low_[axis], to = wanted[axis];
         to > from ? forgetSlab(axis, from, to) : forgetSlab(axis, to + kCells, from + kCells);
         low_[axis] = to;
     }
-    changed_.extend(shownBox());
+}
+
+// What lies at the grid's border, or will, is shown from now on, or no longer.
+void SurfaceFilm::noteLeftBehind(const Eigen::Array3i& next_low) {
+    const auto isDeepIn = [](const Eigen::Array3i& c, const Eigen::Array3i& low) {
+        return (c >= low + 2).all() && (c < low + kCells - 2).all();
+    };
+    for (int z = 0; z < kCells; ++z)
+        for (int y = 0; y < kCells; ++y)
+            for (int x = 0; x < kCells; ++x) {
+                const Eigen::Array3i c = low_ + Eigen::Array3i(x, y, z);
+                const uint8_t* const texel = &texels_[texelOf(c) * kLayers];
+                if (std::any_of(texel, texel + kLayers, [](uint8_t byte) { return byte != 0; }) &&
+                    !(isDeepIn(c, low_) && isDeepIn(c, next_low)))
+                    noteChange(c);
+            }
+}
+
+// The linear interpolation reaches one cell further.
+void SurfaceFilm::noteChange(const Eigen::Array3i& c) {
+    const Eigen::Array3i block = (c - low_) / kBlock;
+    Eigen::AlignedBox3f& box = changed_[size_t((block.z() * kBlocks + block.y()) * kBlocks + block.x())];
+    box.extend((c - 1).cast<float>().matrix() * cell_);
+    box.extend((c + 2).cast<float>().matrix() * cell_);
+}
+
+std::vector<Eigen::AlignedBox3f> SurfaceFilm::takeChanged() {
+    std::vector<Eigen::AlignedBox3f> boxes;
+    for (Eigen::AlignedBox3f& box : changed_) {
+        if (!box.isEmpty()) boxes.push_back(box);
+        box.setEmpty();
+    }
+    return boxes;
 }
 
 void SurfaceFilm::forgetSlab(int axis, int from, int to) {
@@ -84,9 +116,7 @@ void SurfaceFilm::write(Layer layer, const Eigen::Array3i& c, float value) {
     if (shown == byte) return;
     shown = byte;
     changed_slices_.set(texel / (size_t(kCells) * kCells));
-    // The linear interpolation reaches one cell further.
-    changed_.extend((c - 1).cast<float>().matrix() * cell_);
-    changed_.extend((c + 2).cast<float>().matrix() * cell_);
+    noteChange(c);
 }
 
 template <class Change>
@@ -140,7 +170,7 @@ void SurfaceFilm::scaleAll(Layer layer, float factor) {
 }
 
 void SurfaceFilm::clear() {
-    changed_.extend(shownBox());
+    if (is_placed_) changed_[0].extend(shownBox());
     changed_slices_.set();
     has_any_ = {};
     for (auto& layer : values_) std::ranges::fill(layer, 0.0f);

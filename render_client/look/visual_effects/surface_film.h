@@ -48,12 +48,15 @@ class SurfaceFilm {
     // The film changes all over in each step; pictures follow when it is due.
     void markDue() { is_due_ = true; }
     bool takeDue() { return std::exchange(is_due_, false); }
-    // Returns the slices whose texels changed since the last call, and the box around the changed cells.
+    // Returns the slices whose texels changed since the last call, and boxes around the cells (V) that show
+    // something else now.
     std::bitset<kCells> takeChangedSlices() { return std::exchange(changed_slices_, {}); }
-    Eigen::AlignedBox3f takeChanged() { return std::exchange(changed_, {}); }
+    std::vector<Eigen::AlignedBox3f> takeChanged();
 
   private:
     static constexpr size_t kSliceBytes = size_t(kCells) * kCells * kLayers;
+    static constexpr int kBlock = 8,
+                         kBlocks = kCells / kBlock;  // cells per axis of a block, and blocks of the grid
     static constexpr size_t kTexels = size_t(kCells) * kCells * kCells;
 
     Eigen::Array3i cellOf(const Eigen::Vector3f& p_V) const;
@@ -64,6 +67,8 @@ class SurfaceFilm {
     void changeAround(const Eigen::Vector3f& p_V, float radius, Change&& change);
     void write(Layer layer, const Eigen::Array3i& c, float value);
     void forgetSlab(int axis, int from, int to);
+    void noteLeftBehind(const Eigen::Array3i& next_low);
+    void noteChange(const Eigen::Array3i& c);
 
     float cell_;
     Eigen::Array3i low_ = Eigen::Array3i::Zero();  // first cell of the grid
@@ -72,7 +77,7 @@ class SurfaceFilm {
     std::array<bool, kLayers> has_any_{};
     std::vector<uint8_t> texels_;
     std::bitset<kCells> changed_slices_;
-    Eigen::AlignedBox3f changed_;
+    std::array<Eigen::AlignedBox3f, kBlocks * kBlocks * kBlocks> changed_;  // by block of the grid
 };
 
 }  // namespace bonemill

@@ -1,7 +1,8 @@
+#include "render_client/look/paint/picture_changes.h"
+
 #include <gtest/gtest.h>
 
 #include "render_client/look/camera/camera.h"
-#include "render_client/look/paint/render_targets.h"
 
 namespace bonemill {
 namespace {
@@ -15,12 +16,20 @@ class PictureChangesTest : public testing::Test {
         view_.bone_V = {Eigen::Vector3d::Constant(-0.05), Eigen::Vector3d::Constant(0.05)};
     }
     PictureChanges::Dirty next(const Eigen::AlignedBox3f& changed_V, const PixelBox& moving,
-                               std::vector<float> still_like = {}) {
+                               std::vector<float> still_like = {},
+                               std::vector<Eigen::AlignedBox3f> look_V = {}) {
         const DepthRange range = changes_.range(view_.camera, Frame::neededRange(view_, {}));
         const Frame frame = Frame::make(view_, {}, double(kChangesWidth) / kChangesHeight, range);
-        return changes_.next(frame, kChangesWidth, kChangesHeight, changed_V, moving, std::move(still_like));
+        return changes_.next(frame, kChangesWidth, kChangesHeight,
+                             {changed_V, std::move(look_V), tiles({moving}), std::move(still_like)});
+    }
+    static PixelTiles tiles(const std::vector<PixelBox>& boxes) {
+        PixelTiles tiles(kChangesWidth, kChangesHeight);
+        for (const PixelBox& box : boxes) tiles.add(box);
+        return tiles;
     }
 
+    const Eigen::AlignedBox3f node_{Eigen::Vector3f::Constant(-0.005f), Eigen::Vector3f::Constant(0.005f)};
     const PixelBox whole_ = PixelBox::whole(kChangesWidth, kChangesHeight);
     FrameView view_;
     PictureChanges changes_;
@@ -30,27 +39,37 @@ TEST_F(PictureChangesTest, OnlyWhatChangedAndWhatMovesOfARestingView) {
     EXPECT_EQ(next({}, {}).bone, whole_);
     const PixelBox here{10, 10, 20, 20}, there{50, 60, 80, 90};
     PictureChanges::Dirty dirty = next({}, here);
+    EXPECT_FALSE(dirty.is_whole);
     EXPECT_TRUE(dirty.bone.isEmpty());
-    EXPECT_EQ(dirty.all, here);
+    EXPECT_EQ(dirty.moving, tiles({here}));
     dirty = next({}, there);
-    EXPECT_EQ(dirty.all, here.joined(there)) << "where it was, too";
-    const Eigen::AlignedBox3f node(Eigen::Vector3f::Constant(-0.005f), Eigen::Vector3f::Constant(0.005f));
-    dirty = next(node, {});
+    EXPECT_EQ(dirty.moving, tiles({here, there})) << "where it was, too";
+    dirty = next(node_, {});
     EXPECT_FALSE(dirty.bone.isEmpty());
     EXPECT_LT(dirty.bone.width(), kChangesWidth / 4);
-    EXPECT_EQ(dirty.all, dirty.bone.joined(there));
-    EXPECT_TRUE(next({}, {}).all.isEmpty());
+    EXPECT_TRUE(dirty.look.isEmpty());
+    EXPECT_EQ(dirty.moving, tiles({there}));
+    dirty = next({}, {});
+    EXPECT_TRUE(dirty.bone.isEmpty() && dirty.moving.isEmpty());
+}
+
+TEST_F(PictureChangesTest, BoneThatOnlyLooksDifferent) {
+    const PixelBox bone = (next({}, {}), next(node_, {})).bone;
+    const PictureChanges::Dirty dirty = next({}, {}, {}, {node_});
+    EXPECT_TRUE(dirty.bone.isEmpty());
+    EXPECT_EQ(dirty.look, tiles({bone}));
 }
 
 TEST_F(PictureChangesTest, NothingOfWhatStandsStill) {
     const PixelBox here{10, 10, 20, 20};
     next({}, here, {1, 2});
-    EXPECT_TRUE(next({}, here, {1, 2}).all.isEmpty());
-    EXPECT_EQ(next({}, here, {1, 3}).all, here) << "it has moved within its box";
-    EXPECT_EQ(next({}, here).all, here) << "nothing is known of it";
-    EXPECT_EQ(next({}, here, {1, 3}).all, here);
+    EXPECT_TRUE(next({}, here, {1, 2}).moving.isEmpty());
+    EXPECT_EQ(next(node_, here, {1, 2}).moving, tiles({here})) << "the bone behind it has changed";
+    EXPECT_EQ(next({}, here, {1, 3}).moving, tiles({here})) << "it has moved within its box";
+    EXPECT_EQ(next({}, here).moving, tiles({here})) << "nothing is known of it";
+    EXPECT_EQ(next({}, here, {1, 3}).moving, tiles({here}));
     changes_.forget();
-    EXPECT_EQ(next({}, here, {1, 3}).all, whole_);
+    EXPECT_EQ(next({}, here, {1, 3}).moving, PixelTiles::whole(kChangesWidth, kChangesHeight));
 }
 
 TEST_F(PictureChangesTest, AllAfterAChangeOfTheView) {

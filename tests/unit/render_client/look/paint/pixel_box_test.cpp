@@ -3,7 +3,7 @@
 #include <random>
 
 #include "render_client/look/camera/camera.h"
-#include "render_client/look/paint/render_targets.h"
+#include "render_client/look/paint/pixel_tiles.h"
 
 namespace bonemill {
 namespace {

@@ -1,16 +1,17 @@
-// Quick quality draws only what changed: the picture must be the one that is drawn whole.
+// Only what changed is drawn: the picture must be the one that is drawn whole.
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "render_client/look/offscreen/osmesa_context.h"
 #include "render_client/look/render_scene/render_scene.h"
+#include "tests/gl/milling_session.h"
 #include "tests/gl/synthetic_scene.h"
 
 namespace bonemill {
 namespace {
 
-constexpr int kQuickWidth = 320, kQuickHeight = 240;
+constexpr int kKeptWidth = 320, kKeptHeight = 240;
 constexpr double kBallRadius = 0.005;
 const Eigen::Vector3d kBallCenter(0.008, 0.008, 0.008);
 
@@ -19,15 +20,15 @@ std::vector<NodeMesh> ball(double radius) {
                           [=](const Eigen::Vector3d& p) { return (p - kBallCenter).norm() - radius; });
 }
 
-class QuickPicture : public testing::Test {
+class KeptPicture : public testing::TestWithParam<Quality> {
   protected:
-    QuickPicture() : context_(kQuickWidth, kQuickHeight), scene_(context_.gl()) {
+    KeptPicture() : context_(kKeptWidth, kKeptHeight), scene_(context_.gl()) {
         const Eigen::Vector3d half = Eigen::Vector3d::Constant(kBallRadius);
         topics::SceneInfo info = test::makeSceneInfo("ball", kBallCenter - half, kBallCenter + half);
         *info.mutable_tool() = test::makeToolMesh(1e-3, 4e-4, 0.006);
         info.set_burr_radius_m(1e-3);
         scene_.setSceneInfo(info);
-        scene_.settings().quality = Quality::kQuick;
+        scene_.settings().quality = GetParam();
         scene_.settings().show_hud = false;
         for (const NodeMesh& node : large_) scene_.setNode(node);
         moveTool();
@@ -63,14 +64,32 @@ class QuickPicture : public testing::Test {
         scene_.setNode(random_() % 4 ? node : test::emptyNode(node.leaf));
     }
     Picture draw() {
-        scene_.draw(kQuickWidth, kQuickHeight, 1);
+        scene_.draw(kKeptWidth, kKeptHeight, 1);
         return context_.read();
     }
     void expectWhole(const std::string& when) {
         const Picture kept = draw();
         scene_.drawWholeNext();
         const Picture whole = draw();
-        EXPECT_TRUE(kept == whole) << when;
+        EXPECT_TRUE(kept == whole) << when << ": " << difference(kept, whole);
+    }
+
+    static std::string difference(const Picture& kept, const Picture& whole) {
+        int count = 0, most = 0;
+        PixelBox around;
+        for (int y = 0; y < kKeptHeight; ++y)
+            for (int x = 0; x < kKeptWidth; ++x) {
+                int off = 0;
+                for (size_t i = 0; i < 3; ++i)
+                    off = std::max(off, std::abs(kept.at(x, y)[i] - whole.at(x, y)[i]));
+                if (off == 0) continue;
+                ++count;
+                most = std::max(most, off);
+                around = around.joined({x, y, x + 1, y + 1});
+            }
+        return std::to_string(count) + " pixels by up to " + std::to_string(most) + ", around " +
+               std::to_string(around.x0) + " " + std::to_string(around.y0) + " to " +
+               std::to_string(around.x1) + " " + std::to_string(around.y1);
     }
 
     OsmesaContext context_;
@@ -79,7 +98,7 @@ class QuickPicture : public testing::Test {
     const std::vector<NodeMesh> large_ = ball(kBallRadius), small_ = ball(0.9 * kBallRadius);
 };
 
-TEST_F(QuickPicture, IsTheOneThatIsDrawnWhole) {
+TEST_P(KeptPicture, IsTheOneThatIsDrawnWhole) {
     draw();
     for (int frame = 0; frame < 40; ++frame) {
         if (frame % 3) changeNodes();
@@ -89,7 +108,7 @@ TEST_F(QuickPicture, IsTheOneThatIsDrawnWhole) {
     }
 }
 
-TEST_F(QuickPicture, FollowsTheViewToo) {
+TEST_P(KeptPicture, FollowsTheViewToo) {
     draw();
     scene_.camera().orbit(0.4, 0.1);
     expectWhole("orbit");
@@ -123,7 +142,7 @@ TEST_F(QuickPicture, FollowsTheViewToo) {
     expectWhole("no bone");
 }
 
-TEST_F(QuickPicture, SeesThatOnlyAMaterialChanged) {
+TEST_P(KeptPicture, SeesThatOnlyAMaterialChanged) {
     topics::SceneInfo info =
         test::makeSceneInfo("ball", kBallCenter.array() - kBallRadius, kBallCenter.array() + kBallRadius);
     for (int n = 0; n < 3; ++n) info.add_materials()->mutable_color()->set_red(0.3 * n);
@@ -141,7 +160,7 @@ TEST_F(QuickPicture, SeesThatOnlyAMaterialChanged) {
     expectWhole("no colours");
 }
 
-TEST_F(QuickPicture, DrawsOnlyTheBoneThatMayHaveChanged) {
+TEST_P(KeptPicture, DrawsOnlyTheBoneThatMayHaveChanged) {
     draw();
     EXPECT_EQ(scene_.trianglesDrawn(), scene_.triangleCount());
     changeNode();
@@ -150,7 +169,7 @@ TEST_F(QuickPicture, DrawsOnlyTheBoneThatMayHaveChanged) {
     EXPECT_LT(scene_.trianglesDrawn(), scene_.triangleCount() / 2);
 }
 
-TEST_F(QuickPicture, DrawsNoMoreForTheFirstChangeOfANodeThanForTheNext) {
+TEST_P(KeptPicture, DrawsNoMoreForTheFirstChangeOfANodeThanForTheNext) {
     draw();
     const auto drawnFor = [this](const NodeMesh& mesh) {
         scene_.setNode(mesh);
@@ -163,18 +182,58 @@ TEST_F(QuickPicture, DrawsNoMoreForTheFirstChangeOfANodeThanForTheNext) {
     EXPECT_EQ(first + 1, drawnFor(large_[0])) << "the triangle that went and what is around it";
 }
 
-TEST_F(QuickPicture, LooksLikeTheFullOneButForShadowAndEdges) {
+// A shadow falls far from what casts it, and water, blood and dust come and go.
+TEST_P(KeptPicture, IsTheOneThatIsDrawnWholeWhileABurrMills) {
+    scene::Effects wish;
+    wish.mutable_bone_dust();
+    wish.mutable_irrigation();
+    wish.mutable_bleeding()->set_delay_s(0);
+    wish.mutable_bleeding()->set_seep_per_s(2);
+    wish.mutable_browning();
+    wish.mutable_burr_spin();
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(kBallRadius);
+    topics::SceneInfo info = test::makeSceneInfo("milled ball", kBallCenter - half, kBallCenter + half);
+    *info.mutable_tool() = test::makeToolMesh(1e-3, 4e-4, 0.006);
+    info.set_burr_radius_m(1e-3);
+    *info.mutable_viewer_effects() = wish;
+    scene_.setSceneInfo(info);
+    VolumeGeometry geometry;
+    geometry.dims.setConstant(65);
+    geometry.spacing.setConstant(2.5e-4);
+    test::MillingSession session(
+        test::MillingSession::makeVolume(
+            geometry, [](const Eigen::Vector3d& p) { return (p - kBallCenter).norm() - kBallRadius; }),
+        1e-3);
+    session.show(scene_);
+    draw();
+    int state = 0;
+    session.after_state = [&] {
+        scene_.advance(test::MillingSession::kPeriod);
+        if (++state % 4 == 0) expectWhole("state " + std::to_string(state));
+    };
+    const Pose start = test::toolAt(kBallCenter + Eigen::Vector3d(-3e-3, -4.4e-3, 1e-3), {-0.4, -0.6, 0.6});
+    Pose end = start;
+    end.position += Eigen::Vector3d(6e-3, 0, -2e-3);
+    session.stroke(scene_, start, end, 1, {.spin_speed = 1500});
+    session.wait(scene_, end, 0.5, {.spin_speed = 0, .is_pedal_down = false});
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, KeptPicture, testing::Values(Quality::kQuick, Quality::kFull),
+                         [](const auto& param) { return param.param == Quality::kQuick ? "Quick" : "Full"; });
+
+TEST_P(KeptPicture, QuickLooksLikeFullButForShadowAndEdges) {
+    scene_.settings().quality = Quality::kQuick;
     const Picture quick = draw();
     scene_.settings().quality = Quality::kFull;
     const Picture full = draw();
     size_t far_off = 0;
-    for (int y = 0; y < kQuickHeight; ++y)
-        for (int x = 0; x < kQuickWidth; ++x) {
+    for (int y = 0; y < kKeptHeight; ++y)
+        for (int x = 0; x < kKeptWidth; ++x) {
             const auto a = quick.at(x, y), b = full.at(x, y);
             far_off += std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]) > 60;
         }
     EXPECT_GT(far_off, 0u);
-    EXPECT_LT(far_off, size_t(kQuickWidth * kQuickHeight / 8));
+    EXPECT_LT(far_off, size_t(kKeptWidth * kKeptHeight / 8));
 }
 
 }  // namespace
