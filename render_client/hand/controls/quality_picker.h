@@ -25,8 +25,9 @@ class QualityPicker {
     // Software draws quickly at first, a graphics card in full.
     explicit QualityPicker(bool is_software) : quality_(is_software ? Quality::kQuick : Quality::kFull) {}
 
-    // Takes how long (s) the last picture took, whether all of it was drawn (quick quality draws only what
-    // changed while the view rests, which tells nothing), and the time (s) by any clock that goes on.
+    // Takes how long (s) the last picture took, whether all of it was drawn (while the view rests only what
+    // changed is, and that quick pictures are fast then tells nothing of full ones), and the time (s) by any
+    // clock that goes on.
     void take(double picture_s, bool is_whole, double now_s);
 
     Quality quality() const { return quality_; }

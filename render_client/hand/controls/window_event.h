@@ -36,6 +36,13 @@ struct Modifiers {
     bool control = false;
 };
 
+// Where a window is, without its frame, in screen coordinates.
+struct WindowPlace {
+    int x = 0, y = 0;
+    int width = 0, height = 0;
+    bool operator==(const WindowPlace&) const = default;
+};
+
 struct PixelPoint {
     double x = 0;
     double y = 0;

@@ -15,13 +15,6 @@ struct GLFWwindow;
 
 namespace bonemill {
 
-// Where a window is, without its frame, in screen coordinates.
-struct WindowPlace {
-    int x = 0, y = 0;
-    int width = 0, height = 0;
-    bool operator==(const WindowPlace&) const = default;
-};
-
 class GlfwWindow {
   public:
     // The size counts in screen coordinates, and is at most what the first monitor has room for. The window

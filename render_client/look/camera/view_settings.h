@@ -67,6 +67,7 @@ struct ViewSettings {
     CameraMode camera = CameraMode::kOrbit;
     bool has_depth_of_field = false;  // of the microscope
     Quality quality = Quality::kFull;
+    bool picks_quality = false;  // the viewer picks it, by the time that pictures take
     StereoMode stereo = StereoMode::kOff;
     bool is_transparent = false;
     double opacity = kDefaultOpacity;  // of the transparent bone

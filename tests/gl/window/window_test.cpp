@@ -88,10 +88,10 @@ class Window : public testing::Test {
     }
     // Returns what the window shows after all that was typed before: events come in their order.
     Picture look(WindowedViewer& viewer) {
-        const std::filesystem::path file = viewer.nextPicture();
+        const size_t count = viewer.countPicture();
         key("F12");
-        waitFor(file, [&] { return std::filesystem::exists(file); });
-        return test::readPng(file);
+        waitFor("F12's picture", [&] { return viewer.picture(count).has_value(); });
+        return test::readPng(*viewer.picture(count));
     }
     topics::Command waitForCommand(size_t count) {
         waitFor("command " + std::to_string(count), [&] { return session_.commands().size() >= count; });
