@@ -18,9 +18,9 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr size_t kMostBytes = 1 << 16, kMostFolds = 64, kLongestName = 64;
-constexpr int kFarthest = 1 << 16;                     // screen coordinates
-constexpr int kSmallestWindow = 64, kLargestWindow = 8192;  // the same
-constexpr const char* kQualities[] = {"full", "quick"};  // by Quality
+constexpr int kFarthest = 1 << 16;                                        // screen coordinates
+constexpr int kSmallestWindow = 64, kLargestWindow = 8192;                // the same
+constexpr const char* kQualities[] = {"full", "quick"};                   // by Quality
 constexpr const char* kCameras[] = {"orbit", "endoscope", "microscope"};  // by CameraMode
 
 // Reads members of one object; each is left alone where it is not there. Throws UserError.
@@ -61,7 +61,8 @@ class Reader {
             return int(std::lround(value));
         };
         return WindowPlace{whole("x", -kFarthest, kFarthest), whole("y", -kFarthest, kFarthest),
-                           whole("width", kSmallestWindow, kLargestWindow), whole("height", kSmallestWindow, kLargestWindow)};
+                           whole("width", kSmallestWindow, kLargestWindow),
+                           whole("height", kSmallestWindow, kLargestWindow)};
     }
     std::map<std::string, bool> flags(const char* name) const {
         std::map<std::string, bool> read;
@@ -114,6 +115,7 @@ std::filesystem::path preferenceFile() {
 std::string textOf(const Preferences& preferences) {
     Json json = {{"camera", kCameras[size_t(preferences.camera)]},
                  {"text_scale", preferences.text_scale},
+                 {"colours_for_colour_blind", preferences.is_for_colour_blind},
                  {"panel_is_open", preferences.is_panel_open},
                  {"panel_parts_open", Json(preferences.folds)}};
     if (preferences.quality) json["quality"] = kQualities[size_t(*preferences.quality)];
@@ -132,6 +134,7 @@ Preferences preferencesOf(const std::string& text) {
     if (const auto quality = reader.word("quality", kQualities)) read.quality = Quality(*quality);
     if (const auto camera = reader.word("camera", kCameras)) read.camera = CameraMode(*camera);
     reader.number("text_scale", ViewSettings::kMinText, ViewSettings::kMaxText, read.text_scale);
+    reader.flag("colours_for_colour_blind", read.is_for_colour_blind);
     reader.flag("panel_is_open", read.is_panel_open);
     read.folds = reader.flags("panel_parts_open");
     return read;
@@ -142,6 +145,8 @@ Preferences toKeep(const Preferences& kept, const Preferences& start, const Pref
             .quality = changed(kept.quality, start.quality, now.quality),
             .camera = changed(kept.camera, start.camera, now.camera),
             .text_scale = changed(kept.text_scale, start.text_scale, now.text_scale),
+            .is_for_colour_blind =
+                changed(kept.is_for_colour_blind, start.is_for_colour_blind, now.is_for_colour_blind),
             .is_panel_open = changed(kept.is_panel_open, start.is_panel_open, now.is_panel_open),
             .folds = changed(kept.folds, start.folds, now.folds)};
 }
@@ -156,6 +161,7 @@ void startAs(const Preferences& kept, ClientOptions& options) {
         options.chooses_quality = false;
     }
     if (!options.said.camera) options.settings.camera = kept.camera;
+    options.settings.is_for_colour_blind = kept.is_for_colour_blind;
     if (!options.said.text_scale) options.settings.text_scale = kept.text_scale;
 }
 

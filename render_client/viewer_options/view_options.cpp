@@ -60,9 +60,10 @@ std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
     auto* stereo = app.add_option("--stereo", raw.stereo, "off, side-by-side or anaglyph (red-cyan glasses)")
                        ->check(CLI::IsMember({"off", "side-by-side", "anaglyph"}))
                        ->capture_default_str();
-    auto* camera =
-        app.add_option("--camera", raw.camera, "orbit; endoscope: rides on the tool; microscope: round field (default as remembered, else orbit)")
-            ->check(CLI::IsMember({"orbit", "endoscope", "microscope"}));
+    auto* camera = app.add_option("--camera", raw.camera,
+                                  "orbit; endoscope: rides on the tool; microscope: round field (default as "
+                                  "remembered, else orbit)")
+                       ->check(CLI::IsMember({"orbit", "endoscope", "microscope"}));
     auto* blur = app.add_flag("--depth-of-field", raw.has_depth_of_field,
                               "The microscope blurs what it is not focused on");
     auto* quality =

@@ -76,7 +76,7 @@ struct ClientOptions {
     std::string recording;            // that is replayed here, for clips; empty: not known
     bool chooses_quality = true;      // by speed in a window; kQuick where OpenGL in software is measured
     Said said;
-    int width = 1280;                 // pixels
+    int width = 1280;  // pixels
     int height = 800;
     std::optional<OffscreenOptions> offscreen;  // none given: a window
     std::optional<CommandOptions> command;

@@ -146,6 +146,7 @@ class WindowViewer {
         const ViewSettings& settings = controls_.settings();
         Preferences now{.camera = settings.camera,
                         .text_scale = settings.text_scale,
+                        .is_for_colour_blind = settings.is_for_colour_blind,
                         .is_panel_open = controls_.isPanelOpen(),
                         .folds = panel_.folds()};
         if (!options_.said.size) now.place = window_.place();

@@ -1,5 +1,5 @@
-// Picks the quality of the pictures by how long they take, where nobody chose one. It is for any one thread; not
-// RT-safe.
+// Picks the quality of the pictures by how long they take, where nobody chose one. It is for any one thread;
+// not RT-safe.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,9 @@
 
 namespace bonemill {
 
-// Full pictures that are slow become quick ones at once. Quick ones that would leave time for full ones become
-// full on trial; each trial that fails makes the next one wait longer, so that the picture does not flap.
+// Full pictures that are slow become quick ones at once. Quick ones that would leave time for full ones
+// become full on trial; each trial that fails makes the next one wait longer, so that the picture does not
+// flap.
 class QualityPicker {
   public:
     static constexpr double kSlow = 0.050;        // s a picture: 20 Hz, below which a moving burr jumps

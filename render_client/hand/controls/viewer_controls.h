@@ -26,7 +26,7 @@ struct Wishes {
     bool hold_tool = false;               // with the mouse, from where it may begin
     std::optional<PixelPoint> centre_at;  // orbit around the surface there from now on
     std::optional<HudNotice> notice;      // why something was not done
-    bool full_screen = false;  // or, from there, the window of before
+    bool full_screen = false;             // or, from there, the window of before
     bool save_picture = false;
     bool save_attempts = false;                 // of the lesson, as CSV
     bool make_clip = false;                     // of the moment of the replay
@@ -85,6 +85,8 @@ class ViewerControls {
     void showHandpiece(bool is_shown) { settings_.show_handpiece = is_shown; }
     void setDepthOfField(bool is_on) { settings_.has_depth_of_field = is_on; }
     void setStereo(StereoMode mode) { settings_.stereo = mode; }
+    void showForColourBlind(bool is_wanted) { settings_.is_for_colour_blind = is_wanted; }
+    void setTextScale(double factor) { settings_.text_scale = factor; }
     void pickQuality(bool is_wanted) { settings_.picks_quality = is_wanted; }
     // Lets this structure be seen so; the number is 1 + its index in SceneInfo.materials.
     void showStructure(size_t structure, StructureMode mode) { settings_.structures.at(structure) = mode; }

@@ -217,8 +217,7 @@ void GlfwWindow::switchFullScreen() {
     windowed_ = place();
     GLFWmonitor* const monitor = monitorOf(windowed_) ? monitorOf(windowed_) : glfwGetPrimaryMonitor();
     const GLFWvidmode* const mode = monitor ? glfwGetVideoMode(monitor) : nullptr;
-    if (mode)
-        glfwSetWindowMonitor(window_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+    if (mode) glfwSetWindowMonitor(window_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
     glfwSwapInterval(1);  // some drivers forget it
 }
 

@@ -28,8 +28,8 @@ class PanelContent {
     PanelContent(ViewerControls& controls, const SessionView& session, Wishes& wishes,
                  std::map<std::string, PixelPoint>& places, bool& is_ending, LessonDraft& draft,
                  RemarkDraft& remark_draft, InviteDraft& invite_draft, TuningDraft& tuning_draft,
-                 PanelFolds& folds, const std::map<std::string, ScenePicture>& pictures, const PlotHistory& plots, float scale,
-                 float view_width)
+                 PanelFolds& folds, const std::map<std::string, ScenePicture>& pictures,
+                 const PlotHistory& plots, float scale, float view_width)
         : controls_(controls),
           settings_(controls.settings()),
           session_(session),
@@ -61,6 +61,7 @@ class PanelContent {
     void buildStereo();
     void buildSigns();
     void buildQualityPick();
+    void buildReading();
     // These say which structures are seen, and how (panel_view.cpp).
     bool hasStructures() const;
     void buildStructures();

@@ -3,6 +3,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "render_client/look/hud/effect_lines.h"
@@ -95,6 +96,23 @@ void PanelContent::buildSigns() {
     box("Watchers", Action::kWatchers, settings_.show_watchers, "Who is watching, over the picture");
     ImGui::SameLine();
     box("Help", Action::kHelp, settings_.show_help, "All keys, over the picture");
+    buildReading();
+}
+
+void PanelContent::buildReading() {
+    constexpr struct {
+        const char* label;
+        double factor;
+    } kSizes[] = {{"Small", 0.8}, {"Normal", 1}, {"Large", 1.25}};
+    sayQuietly(withKey("Text", Action::kLargerText));
+    for (const auto& size : kSizes) {
+        ImGui::SameLine();
+        if (choice(size.label, std::abs(settings_.text_scale - size.factor) < 1e-6, "Of figures and panel"))
+            controls_.setTextScale(size.factor);
+    }
+    if (box("Colours for colour-blind people", settings_.is_for_colour_blind,
+            "Zones, differences, structures and warnings can be told apart without red and green, or blue"))
+        controls_.showForColourBlind(!settings_.is_for_colour_blind);
 }
 
 void PanelContent::buildQualityPick() {

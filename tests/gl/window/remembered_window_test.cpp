@@ -1,4 +1,5 @@
-// Looks at what a window remembers of its user, and at the full screen, on a display in memory. No server runs.
+// Looks at what a window remembers of its user, and at the full screen, on a display in memory. No server
+// runs.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -52,8 +53,19 @@ TEST_F(RememberedWindow, TheNextStartIsAsTheLastEnd) {
         viewer->signal(SIGTERM);
         EXPECT_EQ(viewer->wait().exit_code, 0);
     }
-    EXPECT_NE(said().find("\"width\""), std::string::npos) << said();
     EXPECT_EQ(said().find("quality"), std::string::npos) << "the command line's was for one start";
+}
+
+TEST_F(RememberedWindow, ItOpensWhereItWas) {
+    std::filesystem::create_directories(file_.parent_path());
+    test::writeFile(file_.string(), R"({"window": {"x": 60, "y": 50, "width": 200, "height": 150}})");
+    const auto viewer = start();
+    std::string place;
+    EXPECT_TRUE(test::waitFor([&] {
+        place = test::run({"/usr/bin/xdotool", "search", "--name", "^bonemill$", "getwindowgeometry"}).out;
+        return place.find("Position: 60,50") != std::string::npos &&
+               place.find("Geometry: 200x150") != std::string::npos;
+    })) << place;
 }
 
 TEST_F(RememberedWindow, AFileThatMakesNoSenseIsALineInTheLog) {

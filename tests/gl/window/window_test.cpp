@@ -29,8 +29,7 @@ using test::VirtualDisplay;
 using test::WindowedViewer;
 using Viewer = topics::Viewer;
 
-constexpr double kClearChange = 0.01;  // of the picture: what a change of the view changes at least
-constexpr double kNoChange = 0.002;
+constexpr double kClearChange = 0.01, kNoChange = 0.002;  // of the picture: another view changes more
 constexpr double kSmallChange = 0.1;  // shadows and smooth edges
 
 double differentShare(const Picture& a, const Picture& b) {
@@ -325,6 +324,7 @@ TEST_F(Window, ThePictureOfAnAttemptLiesBesideItsResult) {
     lesson.set_is_running(true);
     session_.teach(lesson);
     WindowedViewer& viewer = start("teacher", "operator", "--class-folder " + folder.path().string());
+    viewer.expectPicturesIn(folder.path() / "pictures");
     const Picture before = look(viewer);
     lesson.set_is_running(false);
     topics::Attempt& attempt = *lesson.add_attempts();

@@ -36,11 +36,15 @@ class WindowedViewer {
     // Returns the newest picture once F12 has made so many.
     std::optional<std::filesystem::path> picture(size_t count) const {
         std::vector<std::filesystem::path> pictures;
-        for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+        std::error_code not_there;
+        for (const auto& entry : std::filesystem::directory_iterator(pictures_in_, not_there))
             if (entry.path().filename().string().starts_with("bonemill_")) pictures.push_back(entry.path());
         if (pictures.size() < count) return std::nullopt;
-        return *std::ranges::max_element(pictures, {}, [](const auto& file) { return last_write_time(file); });
+        return *std::ranges::max_element(pictures, {},
+                                         [](const auto& file) { return last_write_time(file); });
     }
+    // F12's pictures lie there, and not where the viewer was started.
+    void expectPicturesIn(const std::filesystem::path& folder) { pictures_in_ = folder; }
     // Counts one F12 more, and returns how many there were.
     size_t countPicture() { return ++pictures_; }
     Process& process() { return process_; }
@@ -48,6 +52,7 @@ class WindowedViewer {
   private:
     TemporaryFolder folder_;
     Process process_;
+    std::filesystem::path pictures_in_ = folder_.path();
     size_t pictures_ = 0;
 };
 

@@ -17,6 +17,7 @@ const Preferences kOthers{.place = WindowPlace{-30, 40, 900, 700},
                           .quality = Quality::kQuick,
                           .camera = CameraMode::kMicroscope,
                           .text_scale = 1.25,
+                          .is_for_colour_blind = true,
                           .is_panel_open = true,
                           .folds = {{"Tuning", true}, {"View", false}}};
 
@@ -62,8 +63,8 @@ TEST(Preferences, TheWindowStartsAsItWas) {
 }
 
 TEST(Preferences, TheCommandLineWins) {
-    ClientOptions options = optionsOf(
-        {"--size", "640x480", "--quality", "full", "--camera", "orbit", "--text-scale", "2"});
+    ClientOptions options =
+        optionsOf({"--size", "640x480", "--quality", "full", "--camera", "orbit", "--text-scale", "2"});
     startAs(kOthers, options);
     EXPECT_EQ(options.width, 640);
     EXPECT_EQ(options.height, 480);
