@@ -104,6 +104,7 @@ void PanelContent::buildReading() {
         const char* label;
         double factor;
     } kSizes[] = {{"Small", 0.8}, {"Normal", 1}, {"Large", 1.25}};
+    ImGui::AlignTextToFramePadding();
     sayQuietly(withKey("Text", Action::kLargerText));
     for (const auto& size : kSizes) {
         ImGui::SameLine();

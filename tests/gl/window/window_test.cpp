@@ -30,7 +30,7 @@ using test::WindowedViewer;
 using Viewer = topics::Viewer;
 
 constexpr double kClearChange = 0.01, kNoChange = 0.002;  // of the picture: another view changes more
-constexpr double kSmallChange = 0.1;  // shadows and smooth edges
+constexpr double kSmallChange = 0.1;                      // shadows and smooth edges
 
 double differentShare(const Picture& a, const Picture& b) {
     return test::compare(a, b).bad_part;
