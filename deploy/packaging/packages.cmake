@@ -48,7 +48,7 @@ set(CPACK_DEBIAN_VIEWER_PACKAGE_RECOMMENDS "xdg-utils")
 set(CPACK_DEBIAN_VIEWER_PACKAGE_SUGGESTS "ffmpeg, qrencode")
 
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libbonemill${PROJECT_VERSION_MAJOR})
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libbonemill${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "haptic bone milling for programs (library)
 The tick of a bone-milling session, one call a tick: a hand goes in, force,
@@ -62,7 +62,10 @@ What compiles against libbonemill: one header, find_package(bonemill), and an
 example.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-bonemill)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+get_property(python GLOBAL PROPERTY BONEMILL_PYTHON)
+string(REGEX REPLACE "^3\\." "" python_minor "${python}")
+math(EXPR next_minor "0${python_minor} + 1")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${python_minor}), python3 (<< 3.${next_minor}), python3-numpy")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "bonemill, gnuplot-nox")
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "haptic bone milling for Python
 The tick of a bone-milling session, one call a tick or whole arrays at once;

@@ -1,10 +1,5 @@
 #include "haptic_server/apps/library/bonemill/simulation.h"
 
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
-
-#include <mutex>
-
 #include "common/base/user_error.h"
 #include "common/config/scene_tools.h"
 #include "haptic_server/core/effects/effect_figures.h"
@@ -56,17 +51,7 @@ StepResult resultOf(const TickRecord& record) {
     return result;
 }
 
-// A library says nothing on stdout: what must be known is thrown.
-void quietLog() {
-    static std::once_flag once;
-    std::call_once(once, [] {
-        if (!spdlog::get("bonemill")) spdlog::set_default_logger(spdlog::stderr_logger_mt("bonemill"));
-        spdlog::set_level(spdlog::level::err);
-    });
-}
-
 SimulatedRun runOf(const std::string& scene_file, const SimulationOptions& options) {
-    quietLog();
     const LoadedScene loaded = loadScene(scene_file, options.settings);
     const size_t tool = options.tool.empty() ? 0 : toolIndexOf(toolNamesOf(loaded.scene), options.tool);
     return SimulatedRun(loaded, tool, options.keeps_inputs);

@@ -45,23 +45,4 @@ inline std::string shapeText(const py::array& array) {
     return py::str(array.attr("shape"));
 }
 
-using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
-// One vector of so many numbers.
-inline const double* vectorIn(const Numbers& array, py::ssize_t size, const char* what) {
-    if (array.ndim() != 1 || array.shape(0) != size)
-        throw UserError(std::string(what) + ": expected " + std::to_string(size) +
-                        " numbers, got an array of shape " + shapeText(array));
-    return array.data();
-}
-
-// Rows of so many numbers; `rows` of them, or any number if that is negative.
-inline const double* rowsIn(const Numbers& array, py::ssize_t rows, py::ssize_t size, const char* what) {
-    if (array.ndim() != 2 || array.shape(1) != size || (rows >= 0 && array.shape(0) != rows))
-        throw UserError(std::string(what) + ": expected an array of shape (" +
-                        (rows < 0 ? "N" : std::to_string(rows)) + ", " + std::to_string(size) + "), got " +
-                        shapeText(array));
-    return array.data();
-}
-
 }  // namespace bonemill::python

@@ -11,7 +11,7 @@
 PYBIND11_MODULE(_bonemill, module) {
     using namespace bonemill::python;
     // A module says nothing on stdout; what must be known is an exception or Run.warnings.
-    spdlog::set_default_logger(spdlog::stderr_logger_mt("bonemill"));
+    if (!spdlog::get("bonemill")) spdlog::set_default_logger(spdlog::stderr_logger_mt("bonemill"));
     spdlog::set_level(spdlog::level::err);
     pybind11::register_exception<bonemill::UserError>(module, "Error", PyExc_ValueError);
     module.attr("__version__") = bonemill::versionText();

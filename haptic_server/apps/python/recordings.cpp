@@ -58,6 +58,8 @@ py::list recordedAttemptsOf(const Recording& recording) {
         entry["trainee"] = printableLine(attempt.trainee);
         entry["begin_s"] = recording.secondsOf(std::min(attempt.begin, recording.ticks() - 1));
         entry["end_s"] = recording.secondsOf(end);
+        entry["begin_tick"] = std::min(attempt.begin, recording.ticks() - 1);
+        entry["end_tick"] = end;
         entry["has_ended"] = attempt.end != UINT64_MAX;
         list.append(entry);
     }

@@ -94,6 +94,8 @@ void defineResults(py::module_& module) {
                                "Figures of the scene's effects by name, units in the names; NaN where one "
                                "has no meaning. See figures().")
         .def("__repr__", textOf);
+    module.def("fault_names", faultList, py::arg("faults"),
+               "Names of the bits in run()'s column faults, of one tick.");
     module.def(
         "figures",
         [] {

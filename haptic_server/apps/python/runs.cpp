@@ -2,13 +2,15 @@
 
 #include <pybind11/stl.h>
 
-#include <mutex>
+#include <algorithm>
+#include <cmath>
 
 #include "common/base/units.h"
 #include "common/config/scene_geometry.h"
 #include "common/config/scene_tools.h"
 #include "common/device_messages/device_messages.h"
 #include "haptic_server/apps/python/arrays.h"
+#include "haptic_server/apps/python/inputs.h"
 #include "haptic_server/lab/stepping/tick_table.h"
 
 namespace bonemill::python {
@@ -16,20 +18,9 @@ namespace {
 
 constexpr size_t kTicksBetweenSignals = 1000;
 
-HandStep handOf(const double* position, const double* orientation, uint32_t buttons) {
-    HandStep hand;
-    hand.X_WT.position = Eigen::Vector3d(position);
-    if (orientation)
-        hand.X_WT.rotation =
-            Eigen::Quaterniond(orientation[0], orientation[1], orientation[2], orientation[3]);
-    hand.buttons = buttons;
-    return hand;
-}
-
-// Runs so many ticks, each by tick(n), without the GIL; Ctrl+C ends it.
+// Runs so many ticks, each by tick(n), without the GIL; Ctrl+C ends it. The caller is the run's only user.
 template <class Tick>
 py::dict runTicks(Run& run, size_t ticks, Tick&& tick) {
-    const InUse in_use(run.isUsed());
     TickTable table(run.run().recorded());
     table.reserve(ticks);
     {
@@ -49,51 +40,50 @@ py::dict runTicks(Run& run, size_t ticks, Tick&& tick) {
     return columns;
 }
 
-using Buttons = py::array_t<uint32_t, py::array::c_style | py::array::forcecast>;
-
-// One number a row; null: none are given.
-template <class Array>
-auto rowsOfOne(const std::optional<Array>& array, py::ssize_t rows, const char* what) {
-    if (!array) return decltype(array->data()){nullptr};
-    if (array->ndim() != 1 || array->shape(0) != rows)
-        throw UserError(std::string(what) + ": expected an array of shape (" + std::to_string(rows) +
-                        ",), got " + shapeText(*array));
-    return array->data();
-}
-
-py::dict runHand(Run& run, const Numbers& positions, const std::optional<Numbers>& orientations,
-                 const std::optional<Buttons>& buttons, const std::optional<Numbers>& times) {
-    const double* const p = rowsIn(positions, -1, 3, "positions_m");
-    const py::ssize_t rows = positions.shape(0);
-    const double* const q = orientations ? rowsIn(*orientations, rows, 4, "orientations_wxyz") : nullptr;
-    const bool is_one = buttons && buttons->ndim() == 0;
-    const uint32_t* const b = is_one ? buttons->data() : rowsOfOne(buttons, rows, "buttons");
-    const double* const t = rowsOfOne(times, rows, "t_s");
-    return runTicks(run, size_t(rows), [&](size_t n) -> const TickRecord& {
-        HandStep hand = handOf(p + 3 * n, q ? q + 4 * n : nullptr, !b ? 0 : b[is_one ? 0 : n]);
-        if (t) hand.t_s = t[n];
-        return run.run().step(hand);
-    });
-}
-
-StepResult stepHand(Run& run, const Numbers& position, const std::optional<Numbers>& orientation,
-                    uint32_t buttons) {
+// All rows are looked at before the first one runs.
+py::dict runHand(Run& run, const py::object& positions, const py::object& orientations,
+                 const py::object& buttons, const py::object& times) {
+    const std::vector<HandStep> hands = handsOf(positions, orientations, buttons, times);
     const InUse in_use(run.isUsed());
-    const double* const q = orientation ? vectorIn(*orientation, 4, "orientation_wxyz") : nullptr;
-    const HandStep hand = handOf(vectorIn(position, 3, "position_m"), q, buttons);
+    for (size_t n = 0; n < hands.size(); ++n) {
+        const std::string problem =
+            n == 0 ? run.run().problemOf(hands[0]) : run.run().problemOf(hands[n], hands[n - 1].t_s);
+        if (!problem.empty()) throw UserError("row " + std::to_string(n) + ": " + problem);
+    }
+    size_t unbelieved = 0;
+    py::dict columns = runTicks(run, hands.size(), [&](size_t n) -> const TickRecord& {
+        const TickRecord& record = run.run().step(hands[n]);
+        unbelieved += (record.faults & kFaultBadDevicePose) != 0;
+        return record;
+    });
+    if (unbelieved > 0 &&
+        PyErr_WarnEx(
+            PyExc_RuntimeWarning,
+            (std::to_string(unbelieved) + " of " + std::to_string(hands.size()) +
+             " rows were not believed and the pose before kept (bad_device_pose): a hand goes at most "
+             "3 m/s and turns at most 60 rad/s; one row is one period")
+                .c_str(),
+            1) != 0)
+        throw py::error_already_set();
+    return columns;
+}
+
+StepResult stepHand(Run& run, const py::object& position, const py::object& orientation,
+                    const py::object& buttons) {
+    const HandStep hand = handOf(position, orientation, buttons);
+    const InUse in_use(run.isUsed());
     return {run.run().step(hand), run.run().recorded()};
 }
 
 py::array voxelsOf(Run& run) {
     const InUse in_use(run.isUsed());
     const Eigen::Vector3i& dims = run.run().scanned().dims();
-    const IndexBox changed = run.run().takeChanged();
     if (!run.voxels) {
         run.voxels = py::array_t<Density, py::array::f_style>({dims.x(), dims.y(), dims.z()});
         run.voxels.attr("flags").attr("writeable") = false;
     }
     auto* const data = static_cast<Density*>(const_cast<void*>(py::array(run.voxels).data()));
-    run.run().copyVoxels(changed, {data, run.run().scanned().geometry().voxelCount()});
+    run.run().copyVoxels(run.run().takeChanged(), {data, run.run().scanned().geometry().voxelCount()});
     return run.voxels;
 }
 
@@ -109,6 +99,7 @@ py::tuple meshOf(Run& run) {
 }
 
 py::tuple toolMeshOf(py::object self) {
+    const InUse in_use(self.cast<Run&>().isUsed());
     SteppedRun& run = self.cast<Run&>().run();
     const TriangleSurface& surface = run.setup().tools[run.tool()].surface;
     const auto vertices = py::ssize_t(surface.positions.size()),
@@ -192,9 +183,9 @@ py::object judgementOf(Run& run) {
     return py::module_::import("json").attr("loads")(text);
 }
 
-void chooseTool(Run& run, const std::string& name) {
+void chooseTool(Run& run, const py::object& tool) {
     const InUse in_use(run.isUsed());
-    run.run().chooseTool(toolIndexOf(run.run().toolNames(), name));
+    run.run().chooseTool(toolIndexOf(run.run().toolNames(), py::str(tool)));
 }
 
 std::shared_ptr<Simulation> makeSimulation(const std::string& file, const std::vector<std::string>& settings,
@@ -203,6 +194,15 @@ std::shared_ptr<Simulation> makeSimulation(const std::string& file, const std::v
     const LoadedScene loaded = loadScene(file, settings);
     const size_t first = tool.empty() ? 0 : toolIndexOf(toolNamesOf(loaded.scene), tool);
     return std::make_shared<Simulation>(std::make_shared<SimulatedRun>(loaded, first, keeps_inputs));
+}
+
+// What changes as ticks run, or when a run begins anew, is read by its only user.
+template <class Read>
+auto guarded(Read read) {
+    return [read](Run& run) {
+        const InUse in_use(run.isUsed());
+        return read(run.run());
+    };
 }
 
 template <class Call>
@@ -218,11 +218,21 @@ std::shared_ptr<Replay> makeReplay(std::shared_ptr<const Recording> recording) {
     return std::make_shared<Replay>(std::move(recording), std::move(run));
 }
 
-// Up to this time, or to the recording's end.
-py::dict runRecorded(Replay& self, std::optional<double> until_s) {
+// How many ticks begin before that time.
+uint64_t ticksBefore(const Recording& recording, double until_s) {
+    if (std::isnan(until_s)) throw UserError("until_s: expected seconds, got NaN");
+    if (until_s > recording.lengthS()) return recording.ticks();
+    constexpr double kHalfNs = 0.5e-9;
+    const uint64_t tick = recording.tickAt(until_s);
+    return recording.secondsOf(tick) < until_s - kHalfNs ? tick + 1 : tick;
+}
+
+py::dict runRecorded(Replay& self, std::optional<double> until_s, std::optional<uint64_t> until_tick) {
+    if (until_s && until_tick) throw UserError("run_recorded: give until_s or until_tick, not both");
+    const InUse in_use(self.isUsed());
     const Recording& recording = self.own().recording();
-    uint64_t end = recording.ticks();
-    if (until_s) end = *until_s > recording.lengthS() ? end : recording.tickAt(*until_s);
+    const uint64_t end = until_s ? ticksBefore(recording, *until_s)
+                                 : std::min(until_tick.value_or(recording.ticks()), recording.ticks());
     const uint64_t next = self.own().next();
     return runTicks(self, end > next ? end - next : 0,
                     [&](size_t) -> const TickRecord& { return self.own().stepAsRecorded(); });
@@ -238,9 +248,10 @@ void defineReplay(py::module_& module) {
                                                      "A recorded session, run again; made by replay().")
         .def(py::init(&makeReplay), py::arg("recording"))
         .def("step_recorded", stepRecorded, "Runs the next tick as it was recorded.")
-        .def("run_recorded", runRecorded, py::arg("until_s") = py::none(),
-             "Runs on as recorded, to the end or to this time (s since the first tick); returns columns as "
-             "run() does.")
+        .def(
+            "run_recorded", runRecorded, py::arg("until_s") = py::none(), py::arg("until_tick") = py::none(),
+            "Runs on as recorded, to the end, or all ticks before this one or that begin before this time (s "
+            "since the\nfirst tick); returns columns as run() does.")
         .def(
             "restart",
             [](Replay& self) {
@@ -249,10 +260,26 @@ void defineReplay(py::module_& module) {
             },
             "Back before the first tick.")
         .def_property_readonly(
-            "has_left", [](Replay& self) { return self.own().hasLeft(); },
+            "has_left",
+            [](Replay& self) {
+                const InUse in_use(self.isUsed());
+                return self.own().hasLeft();
+            },
             "Another hand has gone on: step() or run() was called.")
         .def_property_readonly(
-            "is_at_end", [](Replay& self) { return self.own().isAtEnd(); }, "No recorded tick is left.");
+            "is_at_end",
+            [](Replay& self) {
+                const InUse in_use(self.isUsed());
+                return self.own().isAtEnd();
+            },
+            "No recorded tick is left.")
+        .def_property_readonly(
+            "is_restoring",
+            [](Replay& self) {
+                const InUse in_use(self.isUsed());
+                return self.own().isRestoring();
+            },
+            "An order of the session has begun to put the bone back, and is not done.");
 }
 
 }  // namespace
@@ -275,7 +302,9 @@ void defineRuns(py::module_& module) {
             py::arg("buttons") = py::none(), py::arg("t_s") = py::none(),
             "Runs a tick for each row and returns their columns by name, each an array with one row a tick.\n"
             "positions_m: (N, 3), m, W. orientations_wxyz: (N, 4). buttons: one number, or (N,).\n"
-            "t_s: (N,), a period apart by default. Releases the GIL.")
+            "t_s: (N,), what the ticks' time is called, increasing; a row is one period all the same.\n"
+            "A row that cannot be is an Error before any runs; one that is not believed is a RuntimeWarning. "
+            "Releases the GIL.")
         .def("voxels", voxelsOf,
              "Densities of all voxels, uint16, shape (x, y, z); bone from iso_density on. The same array at "
              "each call,\n"
@@ -289,43 +318,54 @@ void defineRuns(py::module_& module) {
              "How far the scene's task is, mm3: zones with what is gone of each, what shall be gone and what "
              "of it is.")
         .def("judge", judgementOf,
-             "Judges the run as a session judges an attempt: gates, sub_scores, figures, total. Seconds with "
-             "a large bone.\n"
-             "The attempt ends here; later ticks are not judged.")
+             "Judges what was done, from the first tick or begin_attempt() on, as a session judges an "
+             "attempt: "
+             "gates,\nsub_scores, figures, total (its score is 0 to 1). Seconds with a large bone. The "
+             "attempt "
+             "ends here.")
+        .def(
+            "begin_attempt",
+            [](Run& run) {
+                const InUse in_use(run.isUsed());
+                run.run().beginAttempt();
+            },
+            "An attempt begins with the next tick: the hand's way before is not judged, what is gone of the "
+            "bone is.")
         .def_property_readonly(
             "has_task", [](Run& run) { return run.run().setup().task != nullptr; }, "Can it be judged?")
-        .def_property_readonly(
-            "ticks", [](Run& run) { return run.run().ticks(); }, "How many have run.")
+        .def_property_readonly("ticks", guarded([](SteppedRun& run) { return run.ticks(); }),
+                               "How many have run.")
         .def_property_readonly("waypoints", waypointsOf,
                                "The scripted hand of the scene: (t_s, position_m, orientation_wxyz, buttons) "
                                "of each waypoint.")
         .def_property_readonly(
             "period_s", [](Run& run) { return run.run().setup().tick.dt; }, "What a tick stands for, s.")
         .def_property_readonly(
-            "state_hash", [](Run& run) { return run.run().stateHash(); },
+            "state_hash", guarded([](SteppedRun& run) { return run.stateHash(); }),
             "Digest of all ticks and of the bone: the state_hash of `haptic_server simulate`. It reads all "
             "voxels.")
         .def_property_readonly(
             "tools", [](Run& run) { return run.run().toolNames(); }, "Names of the scene's tools.")
-        .def_property(
-            "tool", [](Run& run) { return run.run().toolNames()[run.run().tool()]; }, chooseTool,
-            "The tool of the next tick; assign a name or a number from 1.")
-        .def_property_readonly(
-            "burr_radius_m", [](Run& run) { return run.run().setup().tools[run.run().tool()].burr.radius; },
-            "Of the tool in use, m.")
+        .def_property("tool", guarded([](SteppedRun& run) { return run.toolNames()[run.tool()]; }),
+                      chooseTool, "The tool of the next tick; assign a name or a number from 1.")
+        .def_property_readonly("burr_radius_m", guarded([](SteppedRun& run) {
+                                   return run.setup().tools[run.tool()].burr.radius;
+                               }),
+                               "Of the tool in use, m.")
         .def_property_readonly(
             "warnings", [](Run& run) { return run.run().setup().warnings; },
             "What the scene would better have otherwise.")
-        .def_property_readonly(
-            "spacing_m",
-            [](Run& run) { return py::array_t<double>(3, run.run().bone().volume.spacing().data()); },
-            "Between voxels, m; shape (3,).")
-        .def_property_readonly(
-            "iso_density", [](Run& run) { return run.run().bone().volume.iso(); },
-            "Density of the bone's surface.")
-        .def_property_readonly(
-            "volume_pose", [](Run& run) { return poseDict(run.run().bone().volume.geometry().X_WV); },
-            "Frame V in W: voxel (i, j, k) lies at spacing_m * (i, j, k) in V.");
+        .def_property_readonly("spacing_m", guarded([](SteppedRun& run) {
+                                   return py::array_t<double>(3, run.bone().volume.spacing().data());
+                               }),
+                               "Between voxels, m; shape (3,).")
+        .def_property_readonly("iso_density",
+                               guarded([](SteppedRun& run) { return run.bone().volume.iso(); }),
+                               "Density of the bone's surface.")
+        .def_property_readonly("volume_pose", guarded([](SteppedRun& run) {
+                                   return poseDict(run.bone().volume.geometry().X_WV);
+                               }),
+                               "Frame V in W: voxel (i, j, k) lies at spacing_m * (i, j, k) in V.");
     py::class_<RunCheckpoint>(module, "Checkpoint", "What a simulation has done so far.")
         .def_property_readonly("ticks", &RunCheckpoint::ticks, "How many it runs.");
     py::class_<Simulation, Run, std::shared_ptr<Simulation>>(

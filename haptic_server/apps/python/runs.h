@@ -1,5 +1,5 @@
-// Python's side of runs: what a simulation and a replay have in common. Each belongs to one thread at a time,
-// which they see to themselves.
+// Python's side of runs: what a simulation and a replay have in common. Each belongs to one thread at a time:
+// whatever looks at what can change holds InUse meanwhile.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -41,7 +41,10 @@ void RecordedRun::chooseTool(size_t tool) {
 }
 
 const TickRecord& RecordedRun::tick(const HandStep& hand) {
-    return rerun_->step(hand.X_WT, hand.buttons);
+    if (hand.t_s) throw UserError("a replay has its own times: leave t_s out");
+    const TickRecord& record = rerun_->step(hand.X_WT, hand.buttons);
+    if (rerun_->isBonePutBack()) noteAllChanged();
+    return record;
 }
 
 }  // namespace bonemill

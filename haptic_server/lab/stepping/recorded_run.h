@@ -25,6 +25,8 @@ class RecordedRun final : public SteppedRun {
     // The recorded tick that stepAsRecorded() runs.
     uint64_t next() const noexcept { return rerun_->next(); }
     bool isAtEnd() const noexcept { return rerun_->isAtEnd(); }
+    // An order has begun to put the bone back, and is not done.
+    bool isRestoring() const noexcept { return rerun_->history().isRestoring(); }
     // Back to its first tick.
     void restart();
 

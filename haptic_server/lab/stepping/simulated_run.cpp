@@ -24,6 +24,7 @@ SimulatedRun::~SimulatedRun() = default;
 void SimulatedRun::makeTick() {
     tools_.choose(first_tool_);
     done_.clear();
+    has_own_times_ = false;
     tick_ = std::make_unique<HapticTick>(setup().tick, TickBone{*ownSetup().bone},
                                          TickChoices{tools_, accuracy_});
 }
@@ -56,7 +57,10 @@ const TickRecord& SimulatedRun::tick(const HandStep& hand) {
     DeviceInput input;
     input.X_WT_device = hand.X_WT;
     input.buttons = hand.buttons;
-    input.t_s = hand.t_s ? *hand.t_s : double(ticks()) * setup().tick.dt;
+    has_own_times_ |= hand.t_s.has_value();
+    const double next_s =
+        has_own_times_ && ticks() > 0 ? record().t_s + setup().tick.dt : double(ticks()) * setup().tick.dt;
+    input.t_s = hand.t_s.value_or(next_s);
     return tickOnce(*tick_, input);
 }
 
@@ -64,6 +68,8 @@ RunCheckpoint SimulatedRun::checkpoint() const {
     if (!keeps_inputs_) throw UserError("this run keeps no inputs, so it has no checkpoints");
     RunCheckpoint checkpoint;
     checkpoint.ticks_ = std::make_shared<const std::vector<RunCheckpoint::Done>>(done_);
+    checkpoint.tool_ = uint32_t(tools_.chosen());
+    checkpoint.scene_hash_ = sceneHashOf(loaded().scene);
     return checkpoint;
 }
 
@@ -73,7 +79,10 @@ void SimulatedRun::restore(const RunCheckpoint& checkpoint) {
         return std::memcmp(&a, &b, sizeof a) == 0;
     };
     const std::vector<RunCheckpoint::Done>& wanted = *checkpoint.ticks_;
-    if (done_.size() > wanted.size() || !std::equal(done_.begin(), done_.end(), wanted.begin(), is_same))
+    if (checkpoint.scene_hash_ != sceneHashOf(loaded().scene))
+        throw UserError("the checkpoint is of another scene, or of other settings");
+    if (isJudged() || done_.size() > wanted.size() ||
+        !std::equal(done_.begin(), done_.end(), wanted.begin(), is_same))
         reset();
     for (size_t n = done_.size(); n < wanted.size(); ++n) {
         const RunCheckpoint::Done& done = wanted[n];
@@ -85,6 +94,7 @@ void SimulatedRun::restore(const RunCheckpoint& checkpoint) {
         tools_.choose(done.tool);
         step(hand);
     }
+    tools_.choose(checkpoint.tool_);
 }
 
 }  // namespace bonemill

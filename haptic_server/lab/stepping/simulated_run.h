@@ -27,6 +27,8 @@ class RunCheckpoint {
     };
     static_assert(sizeof(Done) == 72);
     std::shared_ptr<const std::vector<Done>> ticks_;
+    uint32_t tool_ = 0;        // of the next tick
+    uint64_t scene_hash_ = 0;  // whose checkpoint it is
 };
 
 class SimulatedRun final : public SteppedRun {
@@ -39,7 +41,9 @@ class SimulatedRun final : public SteppedRun {
     void reset();
     // Throws UserError if inputs are not kept.
     RunCheckpoint checkpoint() const;
-    // Takes as long as its ticks did, or those from here on if this run has come this far by the same ones.
+    // Takes as long as its ticks did, or those from here on if this run has come this far by the same ones
+    // and was not judged.
+    // Throws UserError if it is of another scene.
     void restore(const RunCheckpoint& checkpoint);
 
     size_t tool() const noexcept override { return tools_.chosen(); }
@@ -52,6 +56,7 @@ class SimulatedRun final : public SteppedRun {
 
     size_t first_tool_;
     bool keeps_inputs_;
+    bool has_own_times_ = false;  // the caller's, from some tick on
     ToolSwitch tools_;
     AccuracySwitch accuracy_;
     std::unique_ptr<HapticTick> tick_;

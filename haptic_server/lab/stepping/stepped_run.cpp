@@ -23,9 +23,8 @@ SteppedRun::SteppedRun(const LoadedScene& loaded)
 
 void SteppedRun::beginWatching() {
     hash_ = {};
-    task_ = std::make_unique<TaskRun>(loaded_.scene, setup_);
+    beginAttempt();
     tally_.reset();
-    judged_ticks_.reset();
     noteAllChanged();
     record_ = {};
     ticks_ = 0;
@@ -41,12 +40,36 @@ void SteppedRun::beginAnew() {
     beginWatching();
 }
 
+std::string SteppedRun::problemOf(const HandStep& hand, std::optional<double> before) const {
+    constexpr double kFar = 1;               // m from the volume: then lengths are in another unit or frame
+    constexpr double kUnitTolerance = 1e-3;  // of a quaternion's norm, as in trajectory files
+    const auto& [p_W, q_WT] = hand.X_WT;
+    if (!p_W.allFinite() || !q_WT.coeffs().allFinite()) return "the hand's pose is not finite";
+    if (std::abs(q_WT.norm() - 1) > kUnitTolerance)
+        return "the hand's quaternion (w, x, y, z) is of length " + std::to_string(q_WT.norm()) + ", not 1";
+    const Eigen::Vector3d high_V = scanned_.spacing().cwiseProduct(scanned_.dims().cast<double>());
+    const Eigen::Vector3d p_V = scanned_.geometry().X_WV.inverse() * p_W;
+    const double far = (p_V - p_V.cwiseMax(0).cwiseMin(high_V)).norm();
+    if (far > kFar)
+        return "the hand is " + std::to_string(far) + " m from the bone; give metres in W, not millimetres";
+    if (hand.t_s && !std::isfinite(*hand.t_s)) return "the tick's time is not finite: give seconds";
+    if (hand.t_s && before && *hand.t_s <= *before)
+        return "the tick's time is not after that of the tick before";
+    return "";
+}
+
+std::string SteppedRun::problemOf(const HandStep& hand) const {
+    return problemOf(hand, ticks_ > 0 ? std::optional(record_.t_s) : std::nullopt);
+}
+
 const TickRecord& SteppedRun::step(const HandStep& hand) {
-    const Eigen::Quaterniond& q = hand.X_WT.rotation;
-    if (!hand.X_WT.position.allFinite() || !q.coeffs().allFinite() || q.norm() == 0)
-        throw UserError("the hand's pose is not finite, or its quaternion is 0: give metres, and w, x, y, z");
-    if (hand.t_s && !std::isfinite(*hand.t_s)) throw UserError("the tick's time is not finite: give seconds");
+    if (const std::string problem = problemOf(hand); !problem.empty()) throw UserError(problem);
     return note(tick(hand));
+}
+
+void SteppedRun::beginAttempt() {
+    task_ = std::make_unique<TaskRun>(loaded_.scene, setup_);
+    judged_ticks_.reset();
 }
 
 const TickRecord& SteppedRun::note(const TickRecord& record) {

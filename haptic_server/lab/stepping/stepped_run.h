@@ -54,8 +54,11 @@ class SteppedRun {
     SteppedRun(const SteppedRun&) = delete;
     SteppedRun& operator=(const SteppedRun&) = delete;
 
-    // Runs one tick with this hand. The record is good until the next call. Throws UserError for a hand that
-    // is no number, and where another hand may not go on.
+    // Why no tick can take this hand, a sentence; empty if one can. `before` is the time of the tick before.
+    std::string problemOf(const HandStep& hand, std::optional<double> before) const;
+    std::string problemOf(const HandStep& hand) const;  // as the next one
+    // Runs one tick with this hand. The record is good until the next call. Throws UserError if there is a
+    // problem with it.
     const TickRecord& step(const HandStep& hand);
     // Of the last tick; before the first one all is 0.
     const TickRecord& record() const noexcept { return record_; }
@@ -84,8 +87,10 @@ class SteppedRun {
 
     // How far the task is: looks at what changed since the last call. Throws UserError without a task.
     const TaskProgress& progress();
-    // Judges what was done so far as a session judges an attempt; the same again without a tick in between.
-    // Figures of technique end with the first judgement. Throws UserError without a task.
+    // An attempt begins with the next tick: what was done before counts for the bone, and not for technique.
+    void beginAttempt();
+    // Judges the attempt, from the first tick or beginAttempt() on, as a session judges one; the same again
+    // without a tick in between. It ends the attempt. Throws UserError without a task.
     const nlohmann::json& judge();
 
   protected:
@@ -94,6 +99,7 @@ class SteppedRun {
     void beginAnew();
     SceneSetup& ownSetup() noexcept { return setup_; }
     const TickRecord& note(const TickRecord& record);
+    bool isJudged() const noexcept { return judged_ticks_.has_value(); }
     void noteAllChanged() noexcept;
 
   private:

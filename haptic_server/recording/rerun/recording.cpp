@@ -169,7 +169,7 @@ double Recording::secondsOf(uint64_t tick) const {
 }
 
 uint64_t Recording::tickAt(double seconds) const {
-    const auto start_ns = int64_t(std::clamp(seconds, 0.0, 1e9) * double(kNsPerSecond));
+    const int64_t start_ns = std::llround(std::clamp(seconds, 0.0, 1e9) * double(kNsPerSecond));
     const auto after = std::ranges::upper_bound(first_starts_ns_, start_ns);
     if (after == first_starts_ns_.begin()) return 0;
     const std::vector<JournalTick> ticks = decode(size_t(after - first_starts_ns_.begin()) - 1);

@@ -204,14 +204,17 @@ const TickRecord& Rerun::step() {
     const DeviceCapabilities* device = tick.input.has_other_device ? &tick.input.other_device : nullptr;
     if (!is_device_told_ && !device) device = recording_.deviceBefore(next_);
     is_device_told_ = true;
-    const bool was_restoring = history_.isRestoring();
-    record_ = tickOnce(*tick_, inputOf(tick, device));
+    run(inputOf(tick, device));
     tunings_.choose(tick.input.decisions.tuning);
-    if (!history_.isRestoring()) done_order_ = bone_order_;
-    record_.bone_order = done_order_;
-    is_put_back_ = was_restoring;
     ++next_;
     return record_;
+}
+
+void Rerun::run(const DeviceInput& input) {
+    is_put_back_ = history_.isRestoring();
+    record_ = tickOnce(*tick_, input);
+    if (!history_.isRestoring()) done_order_ = bone_order_;
+    record_.bone_order = done_order_;
 }
 
 const TickRecord& Rerun::step(const Pose& X_WT_hand, uint32_t buttons) {
@@ -219,11 +222,10 @@ const TickRecord& Rerun::step(const Pose& X_WT_hand, uint32_t buttons) {
     input.X_WT_device = X_WT_hand;
     input.buttons = buttons;
     input.placements = record_.input.placements;
-    input.t_s = record_.t_s + config_.dt;
+    input.t_s = next_ == 0 && !has_left_ ? 0 : record_.t_s + config_.dt;
     if (!is_device_told_) input.other_device = recording_.deviceBefore(next_);
     is_device_told_ = true;
-    record_ = tickOnce(*tick_, input);
-    record_.bone_order = done_order_;
+    run(input);
     has_left_ = true;
     return record_;
 }

@@ -50,6 +50,7 @@ class Rerun {
 
   private:
     void makeTick();
+    void run(const DeviceInput& input);
     void addTunings(const TunableScene& scene);
     uint32_t tuningOf(const TickDecisions& decisions) const;
     void choose(const TickDecisions& decisions);

@@ -100,19 +100,22 @@ void SceneRenderer::drawOver(const Frame& frame, const FrameView& view, const To
 // The tool is seen through the bone: nothing can be kept. Transparent bone casts no shadow: what is seen
 // through it would be dark.
 void SceneRenderer::drawThrough(const Shown& shown) {
-    const auto& [frame, view, nodes, tool] = shown;
+    const Frame& frame = shown.frame;
+    const FrameView& view = shown.view;
+    const ToolMesh& tool = shown.tool;
     const PixelTiles whole = PixelTiles::whole(targets_->width(), targets_->height());
     changes_.forget();
-    if (frame.has_shadow) shadow_->draw(frame, nodes, tool, false);
+    if (frame.has_shadow) shadow_->draw(frame, shown.nodes, tool, false);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->scene());
     gl_.Viewport(0, 0, targets_->width(), targets_->height());
     setScissor(gl_, whole.bounds());
     gl_.Clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
     passes_.drawBackground(whole.boxes());
-    bone_.drawTransparent(frame, nodes, targets_->sceneLayer(), shadow_->texture(), *view.bone_opacity, [&] {
-        structures_.drawSolid(frame, view.structures, shadow_->texture());
-        tool_.drawTool(frame, view, tool, shadow_->texture());
-    });
+    bone_.drawTransparent(frame, shown.nodes, targets_->sceneLayer(), shadow_->texture(), *view.bone_opacity,
+                          [&] {
+                              structures_.drawSolid(frame, view.structures, shadow_->texture());
+                              tool_.drawTool(frame, view, tool, shadow_->texture());
+                          });
     if (view.shows_strokes) strokes_.draw(frame, view);
     drawOver(frame, view, tool);
     targets_->resolve(whole.boxes());

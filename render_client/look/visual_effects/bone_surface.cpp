@@ -141,10 +141,12 @@ void BoneSurface::findLeaves() {
     is_stale_ = false;
     near_.resize(size_t(kCells) * kCells * kCells);
     for (auto& leaves : near_) leaves.clear();
-    for (const auto& [number, leaf] : leaves_)
+    for (const auto& entry : leaves_) {
+        const Leaf& leaf = entry.second;
         if (leaf.box.exteriorDistance(focus_) < kNearRadius)
             forEachCell(cellOf(leaf.box.min()), cellOf(leaf.box.max()),
                         [&](const Cell& cell) { near_[numberOf(cell)].push_back(&leaf); });
+    }
 }
 
 Eigen::Array3i BoneSurface::cellOf(const Eigen::Vector3f& p_V) const {

@@ -1,5 +1,8 @@
 """bonemill.gym keeps Gymnasium's promises, without Gymnasium."""
 import json
+import os
+import subprocess
+import sys
 import unittest
 
 import numpy as np
@@ -23,7 +26,7 @@ class OfABlock(Folder):
         self.assertEqual(observation.dtype, np.float32)
         for _ in range(20):
             action = env.action_space.sample()
-            self.assertTrue(env.action_space.contains(action))
+            self.assertTrue(action in env.action_space)
             observation, reward, terminated, truncated, info = env.step(action)
             self.assertTrue(env.observation_space.contains(observation))
             self.assertIsInstance(reward, float)
@@ -72,8 +75,44 @@ class OfABlock(Folder):
             env.step([0, 0, 1])
         with self.assertRaisesRegex(bonemill.Error, "expected 7 finite numbers"):
             env.step([np.nan] * 7)
+        for words, options in {"whole number": {"ticks_per_step": 2.5}, "more than 0": {"max_seconds": np.nan},
+                               "not believed": {"max_move_m": 0.1}, "no checkpoints": {"keep_inputs": True}}.items():
+            with self.assertRaisesRegex(bonemill.Error, words):
+                self.env(**options)
+        with self.assertRaisesRegex(bonemill.Error, "reset"):
+            self.env().step(DOWN)
+        with self.assertRaisesRegex(bonemill.Error, "0 or more"):
+            env.reset(seed=-1)
         with self.assertRaisesRegex(bonemill.Error, "needs a task"):
             bonemill.gym.MillingEnv(self.scene(BLOCK))
+
+
+class WithGymnasium(Folder):
+    def test_it_is_one_of_its_environments(self):
+        """By a stand-in that asks what its wrappers ask."""
+        (self.folder / "gymnasium").mkdir()
+        (self.folder / "gymnasium" / "__init__.py").write_text("""
+from . import spaces
+class Env:
+    pass
+class Wrapper(Env):
+    def __init__(self, env):
+        assert isinstance(env, Env) and isinstance(env.action_space, spaces.Box), env
+        self.env = env
+""")
+        (self.folder / "gymnasium" / "spaces.py").write_text("""
+class Box:
+    def __init__(self, low, high, shape, dtype):
+        self.low, self.high, self.shape, self.dtype = low, high, shape, dtype
+    def seed(self, seed):
+        pass
+""")
+        scene = self.scene(BLOCK + TASK)
+        done = subprocess.run(
+            [sys.executable, "-c", "import gymnasium, bonemill; e = gymnasium.Wrapper(bonemill.gym.MillingEnv(%r)).env; "
+             "print(e.reset(seed=1)[0].shape)" % str(scene)], capture_output=True, text=True,
+            env=os.environ | {"PYTHONPATH": f"{self.folder}:{os.environ['PYTHONPATH']}"})
+        self.assertEqual(done.stdout.strip(), "(19,)", done.stderr)
 
 
 class OfASession(Folder):
@@ -89,8 +128,8 @@ class OfASession(Folder):
         self.assertEqual(len(one.rewards), len(one.actions))
         self.assertEqual(set(one.actions[:, 6]), {1.0})
         # What the hand did in a step is what the action says.
-        hand, first = recording.hand(), round(recording.attempts[0]["begin_s"] * 1000)
-        moved = hand["positions_m"][first + 6] - hand["positions_m"][first + 1]
+        hand, first = recording.hand(), recording.attempts[0]["begin_tick"]
+        moved = hand["positions_m"][first + 5] - hand["positions_m"][first]
         np.testing.assert_allclose(one.actions[0, :3] * 0.0005, moved, atol=2e-5)
         for name, consent, withdrawn in (("P1", True, True), ("P2", True, False), ("P3", False, False)):
             place = self.folder / "study" / "participants" / name

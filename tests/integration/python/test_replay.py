@@ -32,11 +32,35 @@ class OfASession(Folder):
         self.assertEqual(replay.state_hash, self.state_hash)
         with self.assertRaisesRegex(bonemill.Error, "ends after 3000"):
             replay.step_recorded()
+        end = replay.voxels().copy()
         replay.restart()
-        voxels = replay.voxels().copy()
+        self.assertTrue((replay.voxels() != end).any())
         replay.run_recorded()
         self.assertEqual(replay.state_hash, self.state_hash)
-        self.assertTrue((replay.voxels() != voxels).any())
+        np.testing.assert_array_equal(replay.voxels(), end)
+
+    def test_it_runs_to_a_time_or_a_tick(self):
+        t_s, replay = self.recording.hand()["t_s"], bonemill.replay(self.recording)
+        for tick in (1, 2, 65, 100, 399, 1023, 1024, 1025):
+            replay.run_recorded(until_s=t_s[tick])
+            self.assertEqual(replay.ticks, tick)
+        replay.run_recorded(until_s=t_s[1100] + 1e-4)
+        self.assertEqual(replay.ticks, 1101)
+        replay.run_recorded(until_tick=1200)
+        self.assertEqual(replay.ticks, 1200)
+        with self.assertRaisesRegex(bonemill.Error, "NaN"):
+            replay.run_recorded(until_s=np.nan)
+
+    def test_who_leaves_while_the_bone_is_put_back_sees_it_come_back(self):
+        replay, hand = bonemill.replay(self.recording), self.recording.hand()
+        replay.run_recorded(until_tick=1801)  # the order to put the bone back is taken up in tick 1800
+        self.assertTrue(replay.is_restoring)
+        replay.voxels()
+        for tick in range(1801, 2001):
+            replay.step(hand["positions_m"][tick] + [0, 0, 3e-3], hand["orientations_wxyz"][tick])
+        self.assertFalse(replay.is_restoring)
+        fresh = bonemill.replay(self.recording)
+        np.testing.assert_array_equal(replay.voxels(), fresh.voxels())
 
     def test_another_hand_goes_on_from_a_moment(self):
         one, other, same = (bonemill.replay(self.recording) for _ in range(3))
@@ -51,6 +75,8 @@ class OfASession(Folder):
         self.assertTrue(one.has_left)
         self.assertEqual(one.state_hash, same.state_hash)
         self.assertLess(removed[1], removed[0], "0.3 mm higher removes less")
+        with self.assertRaisesRegex(bonemill.Error, "its own times"):
+            one.run(way[0][:1], t_s=[100])
         with self.assertRaisesRegex(bonemill.Error, "another hand has gone on"):
             one.step_recorded()
         one.restart()

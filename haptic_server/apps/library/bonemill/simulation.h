@@ -10,7 +10,9 @@
 // says what, where and what to do. A simulation belongs to one thread at a time; it is not for a real-time
 // thread: it asks the clock, and it keeps what was done for checkpoints.
 //
-// Link the target bonemill::bonemill of find_package(bonemill). The soname changes with this header's layout.
+// Link the target bonemill::bonemill of find_package(bonemill); before 1.0 each minor version is a soname of
+// its own. What it logs goes to spdlog's default logger, which is yours. It registers its messages with the
+// process' libprotobuf: it does not go into one process with Python's module bonemill.
 #pragma once
 
 #include <array>
@@ -121,7 +123,8 @@ class BONEMILL_EXPORT Simulation {
 
     void reset();  // the bone as scanned, no tick run
     Checkpoint checkpoint() const;
-    // To the same bits: runs its ticks again; only those that are missing, if this run began alike.
+    // To the same bits: runs its ticks again; only those that are missing, if this run began alike and was
+    // not judged. A checkpoint of another scene or other settings is an Error.
     void restore(const Checkpoint& checkpoint);
 
   private:

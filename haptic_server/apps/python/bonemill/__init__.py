@@ -1,10 +1,11 @@
 """Haptic bone milling, tick by tick: the very loop of a live session, driven from Python.
 
     import bonemill
-    scene = bonemill.Scene.load("deploy/scenes/minimal.textproto")
-    sim = scene.simulation(accuracy="balanced")
-    result = sim.step([0.0, 0.0, 0.012], buttons=1)
-    print(result.force_n, result.removed_mm3)
+    sim = bonemill.Scene.load("deploy/scenes/minimal.textproto").simulation(accuracy="balanced")
+    way = bonemill.scripted_hand(sim)                   # 8 s, a row a tick
+    columns = sim.run(**way)
+    print(abs(columns["force_n"]).max(axis=0))
+    print(sim.step(way["positions_m"][-1], way["orientations_wxyz"][-1]))
 
 Lengths are metres, forces newtons, frames W (the scan's) and T (the tool's); other units stand in the names. What is
 wrong with the input is a bonemill.Error, a ValueError with one line.
@@ -19,11 +20,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._bonemill import (Checkpoint, Error, Recording, Replay, Run, Simulation, StepResult, __version__, figures,
-                        read_trajectory)
+from ._bonemill import (Checkpoint, Error, Recording, Replay, Run, Simulation, StepResult, __version__, fault_names,
+                        figures, read_trajectory)
 
-__all__ = ["Checkpoint", "Error", "Recording", "Replay", "Run", "Scene", "Simulation", "StepResult", "__version__",
-           "figures", "read_recording", "read_trajectory", "replay", "scripted_hand", "REMOVE", "ADD"]
+__all__ = ["ACCURACIES", "ADD", "Checkpoint", "Error", "LAWS", "REMOVE", "Recording", "Replay", "Run", "Scene", "Simulation",
+           "StepResult", "__version__", "demonstrations", "fault_names", "figures", "gym", "read_recording", "read_trajectory", "replay", "scripted_hand"]
 
 REMOVE, ADD = 1, 2  # buttons
 ACCURACIES = ("fast", "balanced", "exact", "thesis_2012")
@@ -37,7 +38,7 @@ class Scene:
 
     def __init__(self, path: str | os.PathLike[str], settings: Sequence[str] = ()) -> None:
         self.path = pathlib.Path(path)
-        self.settings = tuple(settings)
+        self.settings = tuple(_listed(settings))
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], settings: Sequence[str] = ()) -> Scene:
@@ -52,12 +53,13 @@ class Scene:
                    tool: str | int = "", keep_inputs: bool = True) -> Simulation:
         """A run of the scene, before its first tick.
 
-        accuracy: one of ACCURACIES; by default what the scene says. law: one of LAWS; another law than the gradient law
-        has an accuracy of its own. effects: by name, True or their fields, beside those of the scene. settings:
+        accuracy: fast, balanced, exact or thesis_2012; by default what the scene says. law: gradient, thesis_2012,
+        proxy_3dof, vps, penalty_sdf or constraint; another law than the gradient law has an accuracy of its own, and
+        some effects do not go with it. effects: by name, True or their fields, beside those of the scene. settings:
         PATH=VALUE each. tool: the first one's name or number from 1. keep_inputs: without, there are no checkpoints,
         and no 72 bytes a tick.
         """
-        chosen = [*self.settings, *_accuracy_settings(accuracy, law), *_effect_settings(effects or {}), *settings]
+        chosen = [*self.settings, *_accuracy_settings(accuracy, law), *_effect_settings(effects or {}), *_listed(settings)]
         return Simulation(os.fspath(self.path), chosen, str(tool), keep_inputs)
 
     def __repr__(self) -> str:
@@ -72,7 +74,7 @@ def scripted_hand(run: Run) -> dict[str, NDArray[Any]]:
     times, places, turns, buttons = (np.array(column) for column in zip(*run.waypoints))
     t_s = np.arange(int(times[-1] / run.period_s)) * run.period_s
     n = np.searchsorted(times, t_s, side="right").clip(1, len(times) - 1) - 1
-    share = ((t_s - times[n]) / (times[n + 1] - times[n]))[:, None]
+    share = ((t_s - times[n]) / (times[n + 1] - times[n])).clip(0, 1)[:, None]
     a, b = turns[n], turns[n + 1]
     cosine = (a * b).sum(1, keepdims=True)
     b, angle = np.where(cosine < 0, -b, b), np.arccos(np.abs(cosine).clip(0, 1))
@@ -107,15 +109,28 @@ def _accuracy_settings(accuracy: str | None, law: str | None) -> list[str]:
 
 
 def _effect_settings(effects: Mapping[str, bool | Mapping[str, Value]]) -> list[str]:
+    if not isinstance(effects, Mapping):
+        raise Error(f"effects: expected a mapping of names to True or to fields, got {effects!r}")
     settings = []
     for name, fields in effects.items():
         if fields is False:
             raise Error(f"effects: {name} is False, but an effect of the scene cannot be taken away; "
                         "give a scene without it")
-        settings.append(f"effects.{name}={{}}") if fields is True else settings.extend(
-            f"effects.{name}.{field}={_text_of(value)}" for field, value in fields.items())
+        if not fields or fields is True:
+            settings.append(f"effects.{name}={{}}")
+        else:
+            settings.extend(f"effects.{name}.{field}={_text_of(value)}" for field, value in fields.items())
+    return settings
+
+
+def _listed(settings: Sequence[str]) -> Sequence[str]:
+    if isinstance(settings, str):
+        raise Error(f"settings: expected a list of PATH=VALUE, got one text; write [{settings!r}]")
     return settings
 
 
 def _text_of(value: Value) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+from . import demonstrations, gym  # noqa: E402: both are made of what stands above

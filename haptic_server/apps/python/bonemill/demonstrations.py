@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from . import REMOVE, replay
 from ._bonemill import Error, Recording, Replay, StepResult
-from .gym import Observer, product_of
+from .gym import Observer, product_of, score_of
 
 __all__ = ["Demonstration", "consenting", "of"]
 
@@ -34,7 +34,7 @@ class Demonstration:
     actions: NDArray[np.float32]       # (N, 7): from each observation to the next
     rewards: NDArray[np.float64]       # (N,): of each action
     clipped_share: float               # of the actions: these exceed the environment's bounds
-    score: float | None                # the task's total, 0 to 1; None where the task has none
+    score: float | None                # the task's total, 0 to 1; 0 where a gate failed, None where there is none
 
 
 def consenting(study: str | os.PathLike[str]) -> set[str]:
@@ -53,17 +53,20 @@ def of(recording: Recording, study: str | os.PathLike[str] | None = None, *, tic
     for attempt in recording.attempts:
         if attempt["has_ended"] and (allowed is None or attempt["trainee"] in allowed):
             run = replay(recording)
-            run.run_recorded(until_s=attempt["begin_s"])
+            run.run_recorded(until_tick=attempt["begin_tick"])
             yield _demonstration(run, attempt, ticks_per_step, max_move_m, max_turn_rad, overcut_weight)
 
 
 def _demonstration(run: Replay, attempt: dict[str, Any], ticks: int, move_m: float, turn_rad: float,
                    overcut_weight: float) -> Demonstration:
+    before = run.step_recorded()
+    while run.is_restoring and not run.is_at_end:  # the attempt has ordered the bone back
+        before = run.step_recorded()
+    run.begin_attempt()
     observer = Observer(run, overcut_weight)
     observations, actions, rewards = [], [], []
-    before = run.step_recorded()
     observations.append(observer.observe(before, 0.0))
-    while not run.is_at_end and before.t_s < attempt["end_s"]:
+    while not run.is_at_end and run.ticks <= attempt["end_tick"]:
         results = [run.step_recorded() for _ in range(ticks) if not run.is_at_end]
         removed = sum(result.removed_mm3 for result in results)
         is_damaged = any("protected_damaged" in result.events for result in results)
@@ -71,11 +74,10 @@ def _demonstration(run: Replay, attempt: dict[str, Any], ticks: int, move_m: flo
         rewards.append(observer.reward(removed, is_damaged))
         observations.append(observer.observe(results[-1], removed))
         before = results[-1]
-    judgement = run.judge()
     done = np.array(actions, np.float32).reshape(-1, 7)
     return Demonstration(attempt["trainee"], np.array(observations[:-1], np.float32).reshape(len(done), -1), done,
                          np.array(rewards), float((np.abs(done) > 1).any(axis=1).mean()) if len(done) else 0.0,
-                         judgement["total"]["score"] if "total" in judgement else None)
+                         score_of(run.judge()) if len(done) else None)
 
 
 def _action(before: StepResult, after: StepResult, move_m: float, turn_rad: float) -> NDArray[np.float32]:

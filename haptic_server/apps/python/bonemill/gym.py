@@ -1,6 +1,6 @@
 """Milling as a learning environment with Gymnasium's interface: reset(), step(), render(), close(), two spaces.
 
-Gymnasium is no dependency; where it is installed, its wrappers take this environment as it is.
+Gymnasium is no dependency. Where it is installed, this is one of its environments, with its spaces.
 
     env = bonemill.gym.MillingEnv("deploy/scenes/tooth_cavity.textproto")
     observation, info = env.reset(seed=1)
@@ -16,11 +16,13 @@ nearer or known).
 
 The reward of a step is the share of the target that it removed, less the share, of the target's size, that it removed
 elsewhere (times overcut_weight), less 1 when it damaged a protected structure. With final_score the last step adds the
-task's total, 0 to 1, or 0 where a gate failed. An episode terminates when done_share of the target is gone or a
+task's total, 0 to 1, or 0 where a gate failed. info has removed_mm3, target_share, is_damaged, and at the end of an
+episode with final_score the judgement. An episode terminates when done_share of the target is gone or a
 structure was damaged, and is truncated after max_seconds.
 """
 from __future__ import annotations
 
+import math
 import os
 from typing import Any
 
@@ -35,12 +37,19 @@ __all__ = ["Box", "MillingEnv", "OBSERVED", "Observer"]
 OBSERVED = {"tool_offset_m": 3, "tool_orientation_wxyz": 4, "hand_offset_m": 3, "force_n": 3, "torque_nm": 3,
             "removed_mm3": 1, "target_share": 1, "protected_distance_m": 1}
 _FAR_M = 0.1
+_FASTEST_M_PER_S, _FASTEST_RAD_PER_S = 3.0, 60.0  # faster poses are not believed (docs: safety, "Jolts")
 
 Observation = NDArray[np.float32]
 
+try:
+    import gymnasium as _gymnasium  # type: ignore[import]
+    _Environment: Any = _gymnasium.Env
+except ImportError:
+    _gymnasium, _Environment = None, object
+
 
 class Box:
-    """A box of float32 numbers, as gymnasium.spaces.Box."""
+    """A box of float32 numbers, as gymnasium.spaces.Box, for where that is not installed."""
 
     def __init__(self, low: float, high: float, shape: tuple[int, ...]) -> None:
         self.low = np.full(shape, low, np.float32)
@@ -60,6 +69,14 @@ class Box:
     def contains(self, x: Any) -> bool:
         x = np.asarray(x)
         return x.shape == self.shape and bool(np.isfinite(x).all() and (x >= self.low).all() and (x <= self.high).all())
+
+
+    def __contains__(self, x: Any) -> bool:
+        return self.contains(x)
+
+
+def _box(low: float, high: float, size: int) -> Any:
+    return _gymnasium.spaces.Box(low, high, (size,), np.float32) if _gymnasium else Box(low, high, (size,))
 
 
 class Observer:
@@ -91,7 +108,7 @@ class Observer:
         return float((gained - self.overcut_weight * elsewhere) / self.progress["ideal_mm3"]) - float(is_damaged)
 
 
-class MillingEnv:
+class MillingEnv(_Environment):  # type: ignore[misc]
     """One scene, one episode after the other."""
 
     metadata: dict[str, Any] = {"render_modes": []}
@@ -104,23 +121,31 @@ class MillingEnv:
                  done_share: float = 0.95, start_jitter_m: float = 0.0005, final_score: bool = False,
                  **simulation: Any) -> None:
         """simulation: what Scene.simulation() takes. reset(seed) moves the start by start_jitter_m at most."""
-        if ticks_per_step < 1:
-            raise Error(f"ticks_per_step={ticks_per_step}: expected 1 or more")
+        if not isinstance(ticks_per_step, int) or ticks_per_step < 1:
+            raise Error(f"ticks_per_step={ticks_per_step}: expected a whole number from 1 on")
+        if not (math.isfinite(max_seconds) and max_seconds > 0):
+            raise Error(f"max_seconds={max_seconds}: expected seconds, more than 0")
+        if "keep_inputs" in simulation:
+            raise Error("keep_inputs: an environment has no checkpoints; reset() begins anew")
         scene = scene if isinstance(scene, Scene) else Scene.load(scene)
         self.sim: Simulation = scene.simulation(keep_inputs=False, **simulation)
         if not self.sim.has_task:
             raise Error(f"{scene.path}: an environment needs a task (assessment), which this scene has not")
+        period_s = ticks_per_step * self.sim.period_s
+        if max_move_m / period_s > _FASTEST_M_PER_S or max_turn_rad / period_s > _FASTEST_RAD_PER_S:
+            raise Error(f"max_move_m={max_move_m}, max_turn_rad={max_turn_rad} in {period_s} s: a hand goes at most "
+                        f"{_FASTEST_M_PER_S} m/s and turns at most {_FASTEST_RAD_PER_S} rad/s, else it is not believed")
         self.ticks_per_step, self.max_seconds = ticks_per_step, max_seconds
         self.max_move_m, self.max_turn_rad = max_move_m, max_turn_rad
         self.overcut_weight, self.done_share = overcut_weight, done_share
         self.start_jitter_m, self.final_score = start_jitter_m, final_score
-        self.action_space = Box(-1, 1, (7,))
-        self.observation_space = Box(-np.inf, np.inf, (sum(OBSERVED.values()),))
+        self.action_space = _box(-1, 1, 7)
+        self.observation_space = _box(-np.inf, np.inf, sum(OBSERVED.values()))
         self._random = np.random.default_rng()
         if not self.sim.waypoints:
             raise Error(f"{scene.path}: an environment begins where the scene's own hand does, and it has none")
         _, self._start_m, self._start_wxyz, _ = self.sim.waypoints[0]
-        self._is_fresh = True
+        self._is_over: bool | None = None  # None: no episode has begun
 
     @property
     def unwrapped(self) -> MillingEnv:
@@ -129,11 +154,12 @@ class MillingEnv:
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
         """Begins an episode with the scanned bone; equal seeds and actions give equal bits."""
         if seed is not None:
+            if seed < 0:
+                raise Error(f"seed={seed}: expected 0 or more")
             self._random = np.random.default_rng(seed)
             self.action_space.seed(seed)
-        if not self._is_fresh:
+        if self.sim.ticks:
             self.sim.reset()
-        self._is_fresh = False
         jitter = self._random.uniform(-1, 1, 3) * self.start_jitter_m
         self._hand_m, self._hand_wxyz = self._start_m + jitter, self._start_wxyz.copy()
         self._observer = Observer(self.sim, self.overcut_weight)
@@ -142,9 +168,14 @@ class MillingEnv:
         return self._observer.observe(result, 0.0), {}
 
     def step(self, action: ArrayLike) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        a = np.asarray(action, float)
+        try:
+            a = np.asarray(action, float)
+        except (TypeError, ValueError):
+            raise Error(f"action: expected 7 finite numbers, got {action!r}") from None
         if a.shape != (7,) or not np.isfinite(a).all():
             raise Error(f"action: expected 7 finite numbers, got {action!r}")
+        if self._is_over is None:
+            raise Error("no episode has begun: call reset() first")
         if self._is_over:
             raise Error("this episode is over: reset() begins another one")
         a = a.clip(-1, 1)
@@ -160,11 +191,11 @@ class MillingEnv:
         share = self._observer.target_share()
         terminated = is_damaged or share >= self.done_share
         truncated = self.sim.ticks * self.sim.period_s >= self.max_seconds
-        self._is_over = terminated or truncated
+        self._is_over = bool(terminated or truncated)
         info: dict[str, Any] = {"removed_mm3": removed, "target_share": share, "is_damaged": is_damaged}
         if self._is_over and self.final_score:
             info["judgement"] = judgement = self.sim.judge()
-            reward += judgement["total"]["score"] if judgement.get("passed", True) and "total" in judgement else 0
+            reward += score_of(judgement) or 0.0
         return observation, reward, terminated, truncated, info
 
     def render(self) -> None:
@@ -180,6 +211,13 @@ class MillingEnv:
         orientations = np.array([product_of(rotation_of(share * turn), self._hand_wxyz) for share in shares])
         self._hand_m, self._hand_wxyz = positions[-1], orientations[-1] / np.linalg.norm(orientations[-1])
         return positions, orientations
+
+
+def score_of(judgement: dict[str, Any]) -> float | None:
+    """The task's total, 0 to 1; 0 where a gate failed, None where the task has no total."""
+    if "total" not in judgement:
+        return None
+    return float(judgement["total"]["score"]) if judgement.get("passed", True) else 0.0
 
 
 def rotation_of(turn: NDArray[Any]) -> NDArray[Any]:
