@@ -60,18 +60,17 @@ std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
     auto* stereo = app.add_option("--stereo", raw.stereo, "off, side-by-side or anaglyph (red-cyan glasses)")
                        ->check(CLI::IsMember({"off", "side-by-side", "anaglyph"}))
                        ->capture_default_str();
-    auto* camera =
-        app.add_option("--camera", raw.camera, "orbit; endoscope: rides on the tool; microscope: round field")
-            ->check(CLI::IsMember({"orbit", "endoscope", "microscope"}))
-            ->capture_default_str();
+    auto* camera = app.add_option("--camera", raw.camera,
+                                  "orbit; endoscope: rides on the tool; microscope: round field (default as "
+                                  "remembered, else orbit)")
+                       ->check(CLI::IsMember({"orbit", "endoscope", "microscope"}));
     auto* blur = app.add_flag("--depth-of-field", raw.has_depth_of_field,
                               "The microscope blurs what it is not focused on");
     auto* quality =
         app.add_option("--quality", raw.quality,
-                       "full; quick: without shadow and antialiasing, draws only what changed; auto: "
-                       "quick in a window without a graphics card")
-            ->check(CLI::IsMember({"auto", "full", "quick"}))
-            ->capture_default_str();
+                       "full; quick: without shadow and antialiasing; auto: in a window by the time that "
+                       "pictures take (default as remembered, else auto)")
+            ->check(CLI::IsMember({"auto", "full", "quick"}));
     auto* no_handpiece = app.add_flag("--no-handpiece", raw.no_handpiece, "The tool without its handpiece");
     auto* no_hud = app.add_flag("--no-hud", raw.no_hud, "Nothing but the picture: no panel, list or scale");
     auto* text =

@@ -21,9 +21,9 @@ struct RawView {
     std::optional<double> opacity;
     bool is_transparent = false;
     std::string stereo = "off";
-    std::string camera = "orbit";
+    std::optional<std::string> camera;  // none was said: orbit
     bool has_depth_of_field = false;
-    std::string quality = "auto";
+    std::optional<std::string> quality;  // none was said: auto
     std::string structures = "exposed";
     bool thickness = false;
     std::optional<double> text_scale;

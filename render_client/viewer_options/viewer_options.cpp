@@ -268,7 +268,11 @@ void takeOver(const Identity& identity, const RawOptions& raw, ClientOptions& op
 
 ClientOptions convert(const RawOptions& raw, ClientOptions options) {
     options.settings = viewSettings(raw.view);
-    options.chooses_quality = raw.view.quality == "auto";
+    options.chooses_quality = raw.view.quality.value_or("auto") == "auto";
+    options.said = {.size = !raw.size.empty(),
+                    .quality = raw.view.quality.has_value(),
+                    .camera = raw.view.camera.has_value(),
+                    .text_scale = raw.view.text_scale.has_value()};
     const bool only_looks = dds::isLanProfile(options.network.profile);
     options.subscriber.role = raw.role     ? roleOf(*raw.role)
                               : only_looks ? topics::Viewer::VIEWER

@@ -55,6 +55,11 @@ struct MeasureOptions {
     std::chrono::seconds timeout = kDefaultTimeout;  // of waiting for the whole model
 };
 
+// The command line says this, and not what a window remembers.
+struct Said {
+    bool size = false, quality = false, camera = false, text_scale = false;
+};
+
 struct ClientOptions {
     SubscriberOptions subscriber;
     bool chooses_session =
@@ -69,8 +74,9 @@ struct ClientOptions {
     std::string class_folder;         // of this PC's server; empty: not known
     std::string launcher;             // deploy/bonemill, for replays and invitations; empty: none
     std::string recording;            // that is replayed here, for clips; empty: not known
-    bool chooses_quality = true;      // kQuick where OpenGL is software and pictures follow each other
-    int width = 1280;                 // pixels
+    bool chooses_quality = true;      // by speed in a window; kQuick where OpenGL in software is measured
+    Said said;
+    int width = 1280;  // pixels
     int height = 800;
     std::optional<OffscreenOptions> offscreen;  // none given: a window
     std::optional<CommandOptions> command;

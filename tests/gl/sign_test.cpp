@@ -11,6 +11,40 @@ namespace {
 
 using Eigen::Vector3d;
 
+// Rings, arrow, lines and figures: what differs from the small picture is edges that have become sharper.
+TEST_F(ViewMode, OnADisplayOfTwiceThePixelsAllSignsAreTwiceAsLarge) {
+    const OsmesaContext large_context(2 * kWidth, 2 * kHeight);
+    RenderScene large(large_context.gl());
+    scene_->settings().show_hud = true;
+    scene_->settings().quality = large.settings().quality = Quality::kQuick;
+    topics::ToolState tool = makeToolState(toolInCavity(), toolInCavity(), 1);
+    setVector(Vector3d(0.3, 0, 3), tool.mutable_force_n());
+    for (RenderScene* scene : {scene_.get(), &large}) {
+        showMilledBlock(*scene);
+        scene->setToolState(tool);
+        scene->setPull(toolInCavity().position + Vector3d(0.004, 0, 0.002));
+    }
+    const Picture usual = draw();
+    large.draw(2 * kWidth, 2 * kHeight, 2);
+    const Picture twice = large_context.read();
+    size_t different = 0;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            int most = 0;
+            for (size_t channel = 0; channel < 3; ++channel) {
+                int sum = 0;
+                for (const auto& [i, k] : {std::pair(0, 0), {1, 0}, {0, 1}, {1, 1}})
+                    sum += twice.at(2 * x + i, 2 * y + k)[channel];
+                most = std::max(most, std::abs(sum / 4 - int(usual.at(x, y)[channel])));
+            }
+            different += most > 60;
+        }
+    EXPECT_LT(different, size_t(kWidth) * kHeight / 33) << "of the pixels a thirtieth or so is an edge";
+    scene_->draw(kWidth, kHeight, 2);
+    EXPECT_GT(countDifferent(usual, context_.read()), size_t(kWidth) * kHeight / 25)
+        << "larger text in a small picture is another picture";
+}
+
 TEST_F(ViewMode, NoArrowForNoForce) {
     showMilledBlock(*scene_);
     const auto effect_of = [&](const Vector3d& force) {

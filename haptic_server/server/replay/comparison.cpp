@@ -6,6 +6,7 @@
 #include <exception>
 #include <utility>
 
+#include "common/config/shown_colours.h"
 #include "common/geometry/node_mesh.h"
 #include "common/text/foreign_text.h"
 #include "common/text/hex_text.h"
@@ -23,15 +24,8 @@ constexpr size_t kMostProblem = 400;  // bytes, with the paths of two files
 // Recorded time by which the other tool may lag and still be seen as going along.
 constexpr double kNearS = 0.1;
 
-// That of a person's eye tells them apart whatever colours it lacks (Okabe and Ito, "Color Universal Design",
-// 2008): blue, orange, bluish green. The other tool's ghost is orange, too.
-struct Part {
-    const char* name;
-    double red, green, blue;
-};
-constexpr Part kShownParts[DifferencePaint::kParts] = {{"removed here alone", 0, 0.45, 0.70},
-                                                       {"removed by the other alone", 0.90, 0.60, 0},
-                                                       {"removed by both", 0, 0.62, 0.45}};
+constexpr const char* kShownParts[DifferencePaint::kParts] = {
+    "removed here alone", "removed by the other alone", "removed by both"};
 
 }  // namespace
 
@@ -184,12 +178,12 @@ void Comparison::extend(topics::SceneInfo& info) {
     info.set_leaf_count(first_leaf_ + shown_.simulation.bone->lattice.leafCount());
     if (info.materials_size() + DifferencePaint::kParts > kMaxVertexMaterials) return;
     first_material_ = uint8_t(info.materials_size() + 1);
-    for (const Part& part : kShownParts) {
+    for (size_t part = 0; part < DifferencePaint::kParts; ++part) {
         scene::Material& shown = *info.add_materials();
-        shown.set_name(part.name);
-        shown.mutable_color()->set_red(part.red);
-        shown.mutable_color()->set_green(part.green);
-        shown.mutable_color()->set_blue(part.blue);
+        shown.set_name(kShownParts[part]);
+        shown.mutable_color()->set_red(kDifferenceColours[part][0]);
+        shown.mutable_color()->set_green(kDifferenceColours[part][1]);
+        shown.mutable_color()->set_blue(kDifferenceColours[part][2]);
     }
 }
 

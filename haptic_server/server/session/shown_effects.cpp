@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 
 #include "common/base/units.h"
+#include "common/config/shown_colours.h"
 #include "common/config/viewer_effects.h"
 #include "haptic_server/core/effects/burr_probes.h"
 #include "haptic_server/core/effects/effect_figures.h"
@@ -33,17 +35,10 @@ bool hasColour(const scene::Task::Zone& zone) {
 
 scene::Color colourOf(const scene::Task::Zone& zone) {
     if (zone.has_color()) return zone.color();
-    struct OfRole {
-        scene::Task::Role role;
-        double red, green, blue;
-    };
-    const OfRole kColours[] = {
-        {scene::Task::TARGET, 0.30, 0.72, 0.35},           {scene::Task::LEEWAY_SIDES, 0.95, 0.85, 0.25},
-        {scene::Task::LEEWAY_BOTTOM, 0.95, 0.65, 0.15},    {scene::Task::CONTAINER_SIDES, 0.90, 0.35, 0.15},
-        {scene::Task::CONTAINER_BOTTOM, 0.80, 0.12, 0.12}, {zone.role(), 0.75, 0.20, 0.65}};  // of any other
-    const OfRole& of = *std::ranges::find(kColours, zone.role(), &OfRole::role);
+    const auto* const found = std::ranges::find(kZoneColours, zone.role(), &ZoneColour::role);
+    const Srgb& of = found == std::end(kZoneColours) ? kOtherZone : found->colour;
     scene::Color colour;
-    colour.set_red(of.red), colour.set_green(of.green), colour.set_blue(of.blue);
+    colour.set_red(of[0]), colour.set_green(of[1]), colour.set_blue(of[2]);
     return colour;
 }
 

@@ -2,23 +2,20 @@
 
 #include <spdlog/spdlog.h>
 
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
 
-#include "common/attempts_csv/attempts_csv.h"
-#include "common/base/user_error.h"
-#include "common/files/whole_file.h"
 #include "common/process/start_apart.h"
 #include "render_client/apps/render_client/clip_maker.h"
 #include "render_client/apps/render_client/hand_feed.h"
 #include "render_client/apps/render_client/inviter.h"
 #include "render_client/apps/render_client/notices.h"
 #include "render_client/apps/render_client/past_list.h"
+#include "render_client/apps/render_client/saved_files.h"
 #include "render_client/apps/render_client/scene_feed.h"
 #include "render_client/hand/controls/announcing.h"
 #include "render_client/hand/controls/key_table.h"
 #include "render_client/hand/controls/past_attempts.h"
+#include "render_client/hand/controls/quality_picker.h"
 #include "render_client/hand/controls/viewer_controls.h"
 #include "render_client/hand/window/glfw_window.h"
 #include "render_client/link/subscribe/session_list.h"
@@ -26,6 +23,7 @@
 #include "render_client/look/hud/hud_canvas.h"
 #include "render_client/look/offscreen/osmesa_context.h"
 #include "render_client/panel/panel/panel.h"
+#include "render_client/viewer_options/preferences.h"
 
 namespace bonemill {
 namespace {
@@ -39,15 +37,6 @@ const topics::Lesson* lessonOf(const SceneSubscriber& subscriber) {
     return subscriber.lesson() ? &*subscriber.lesson() : nullptr;
 }
 
-// Returns the first free name in the current folder. `format` has one %d.
-std::filesystem::path nextName(const char* format) {
-    for (int number = 1;; ++number) {
-        char name[64];
-        std::snprintf(name, sizeof name, format, number);
-        if (!std::filesystem::exists(name)) return name;
-    }
-}
-
 // A release ends what began before the mouse came to the panel.
 bool isRelease(const WindowEvent& event) {
     if (const auto* key = std::get_if<KeyEvent>(&event)) return !key->is_down;
@@ -57,9 +46,11 @@ bool isRelease(const WindowEvent& event) {
 
 class WindowViewer {
   public:
-    explicit WindowViewer(const ClientOptions& options)
+    // Both must outlive the viewer.
+    WindowViewer(const ClientOptions& options, PreferenceKeeper& keeper)
         : options_(options),
-          window_(options.width, options.height, "bonemill", kWithoutDisplay),
+          keeper_(keeper),
+          window_(options.width, options.height, "bonemill", kWithoutDisplay, keeper.kept().place),
           scene_(window_.gl(), options.has_effects),
           sound_({.is_played = true, .wav = options.sound_wav}),
           feed_(options.subscriber, scene_),
@@ -67,19 +58,25 @@ class WindowViewer {
           hand_(controls_, scene_, feed_.subscriber(), options.holds_tool),
           remarks_(controls_, scene_),
           painter_(window_.gl()),
-          notices_(scene_) {
+          notices_(scene_),
+          quality_(window_.gl().isSoftware()) {
         spdlog::info("window, {}", window_.gl().describe());
         scene_.setViewWish(options.view);
         scene_.settings() = options.settings;
         scene_.setSought(soughtOf(options));
         if (options.has_effects) feed_.sound(&sound_);
         if (options.chooses_session) sessions_.emplace(options.subscriber.domain);
-        if (options.chooses_quality && window_.gl().isSoftware()) scene_.settings().quality = Quality::kQuick;
+        scene_.settings().picks_quality = options.chooses_quality;
+        controls_.openPanel(keeper.kept().is_panel_open);
+        panel_.fold(keeper.kept().folds);
+        start_ = preferences();
     }
 
     // Returns the session to go on with in another window; none at the end.
     std::optional<uint32_t> run() {
         while (!window_.shouldClose() && !stopRequested() && !has_quit_ && !chosen_) step();
+        remember();
+        keeper_.finish();
         sound_.finish();
         return chosen_;
     }
@@ -110,10 +107,15 @@ class WindowViewer {
         scene_.setMouse(mouseOverScene(width, height));
         scene_.setFrameRate(frame_rate_.perSecond());
         scene_.setModes(modeTexts(scene_.settings(), controls_.isDrawing()));
+        const Clock::time_point start = Clock::now();
+        if (scene_.settings().picks_quality) scene_.settings().quality = quality_.quality();
         scene_.draw(width, height, scaleOfText(width, height));
         painter_.paint(panel_, width, height);
-        if (wishes.save_picture) savePicture(width, height);
-        if (wishes.save_attempts && session.lesson) saveAttempts(*session.lesson);
+        const Clock::duration drawing = Clock::now() - start;
+        if (wishes.save_picture)
+            notices_.show(savePicture(window_.gl(), width, height, options_.class_folder,
+                                      session.info ? session.info->name() : ""));
+        if (wishes.save_attempts && session.lesson) notices_.show(saveAttempts(*session.lesson));
         if (!wishes.open_file.empty()) showFile(wishes.open_file);
         if (!wishes.replay_of.empty()) replay(wishes.replay_of);
         if (wishes.make_clip)
@@ -122,9 +124,36 @@ class WindowViewer {
         if (const auto notice = clips_.news()) notices_.show(*notice);
         if (!wishes.invite.empty())
             inviter_.invite(options_.launcher, options_.subscriber.session, wishes.invite, wishes.invite_as);
-        window_.show();
-        frame_rate_.countPicture(Clock::now());
+        showPicture(drawing);
+        remember();
+        if (wishes.full_screen) window_.switchFullScreen();
     }
+
+    // `drawing` is how long it took up to now.
+    void showPicture(Clock::duration drawing) {
+        const Clock::time_point start = Clock::now();
+        window_.show();
+        const Clock::time_point now = Clock::now();
+        frame_rate_.countPicture(now);
+        const Camera camera = scene_.viewCamera();
+        const bool has_moved = camera.X_CW() != std::exchange(last_camera_, camera).X_CW();
+        const std::chrono::duration<double> taken = drawing + (now - start), time = now.time_since_epoch();
+        quality_.take(taken.count(), has_moved, time.count());
+    }
+
+    // As it is now.
+    Preferences preferences() const {
+        const ViewSettings& settings = controls_.settings();
+        Preferences now{.camera = settings.camera,
+                        .text_scale = settings.text_scale,
+                        .is_for_colour_blind = settings.is_for_colour_blind,
+                        .is_panel_open = controls_.isPanelOpen(),
+                        .folds = panel_.folds()};
+        if (!options_.said.size) now.place = window_.place();
+        if (!settings.picks_quality) now.quality = settings.quality;
+        return now;
+    }
+    void remember() { keeper_.keep(toKeep(keeper_.kept(), start_, preferences()), Clock::now()); }
 
     // The only session is joined once it has been the only one for a while; of several the user chooses.
     void lookForSessions() {
@@ -151,6 +180,7 @@ class WindowViewer {
         session.has_server = subscriber.hasServer();
         session.is_complete = subscriber.isComplete();
         session.frame_rate_hz = frame_rate_.perSecond();
+        session.picture_s = quality_.median();
         if (subscriber.sceneInfo()) session.info = &*subscriber.sceneInfo();
         if (subscriber.status()) session.status = &*subscriber.status();
         if (subscriber.toolState()) session.tool = &*subscriber.toolState();
@@ -276,16 +306,6 @@ class WindowViewer {
         scene_.settings() = shown;
     }
 
-    void savePicture(int width, int height) {
-        try {
-            const std::filesystem::path name = nextName("bonemill_%04d.png");
-            writePng(readPicture(window_.gl(), width, height), name);
-            notices_.show({"Picture saved: " + name.string(), HudTone::kGood});
-        } catch (const UserError& error) {
-            notices_.show({error.what(), HudTone::kWarning});
-        }
-    }
-
     void showFile(const std::string& file) {
         if (std::error_code none; !std::filesystem::exists(file, none))
             notices_.show({file + " is not there yet", HudTone::kWarning});
@@ -304,22 +324,8 @@ class WindowViewer {
                 {"The replay opens in a window of its own, if the attempt was recorded", HudTone::kPlain});
     }
 
-    void saveAttempts(const topics::Lesson& lesson) {
-        try {
-            WholeFile file(nextName("bonemill_attempts_%04d.csv"));
-            std::ofstream stream(file.part(), std::ios::binary);
-            stream << attemptsCsv(lesson);
-            stream.close();
-            if (!stream) throw UserError("cannot write " + file.path().string() + "; is the disk full?");
-            file.finish();
-            notices_.show(
-                {"Attempts saved: " + std::filesystem::absolute(file.path()).string(), HudTone::kGood});
-        } catch (const std::exception& error) {
-            notices_.show({error.what(), HudTone::kWarning});
-        }
-    }
-
     const ClientOptions& options_;
+    PreferenceKeeper& keeper_;
     GlfwWindow window_;
     RenderScene scene_;
     SoundFeed sound_;
@@ -336,6 +342,9 @@ class WindowViewer {
     ClipMaker clips_;
     AttemptEnds attempt_ends_;
     FrameRate frame_rate_;
+    QualityPicker quality_;
+    Camera last_camera_;  // of the last picture
+    Preferences start_;   // as the window began
     AnnounceClock announce_clock_;
     EyeReporter eye_watch_;
     std::optional<Eigen::Vector3d> pointer_W_;  // where the user points, as announced last
@@ -354,7 +363,9 @@ class WindowViewer {
 void runWindow(const ClientOptions& options) {
     ClientOptions chosen = options;
     if (options.chooses_session) chosen.subscriber.session = kNoSession;
-    while (const std::optional<uint32_t> session = WindowViewer(chosen).run()) {
+    PreferenceKeeper keeper(preferenceFile());
+    startAs(keeper.kept(), chosen);
+    while (const std::optional<uint32_t> session = WindowViewer(chosen, keeper).run()) {
         spdlog::info("session {}", *session);
         chosen.subscriber.session = *session;
         chosen.chooses_session = false;

@@ -127,6 +127,7 @@ constexpr KeyBinding kKeys[] = {
     {"J", keyOf('J'), false, Action::kLargerText, "larger text", true},
     {"Shift+J", keyOf('J'), true, Action::kSmallerText, "smaller text", true},
     {"H", keyOf('H'), false, Action::kHelp, "this help"},
+    {"F11", Key::kF11, false, Action::kFullScreen, "full screen, window"},
     {"F12", Key::kF12, false, Action::kSavePicture, "save the picture"},
     {"Esc", Key::kEscape, false, Action::kQuit, "leave the help; quit"},
 };

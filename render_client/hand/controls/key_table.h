@@ -80,6 +80,7 @@ enum class Action {
     kLargerText,
     kSmallerText,
     kHelp,
+    kFullScreen,
     kSavePicture,
     kQuit,
 };

@@ -44,6 +44,7 @@ struct SessionView {
     bool has_server = false;
     bool is_complete = false;  // this viewer shows the server's whole model
     double frame_rate_hz = 0;  // of this viewer
+    double picture_s = 0;      // that a picture of this viewer takes; 0: not known
     double time_s = 0;         // any clock that goes on
     int64_t realtime_ns = 0;   // CLOCK_REALTIME of this PC
     const topics::SceneInfo* info = nullptr;

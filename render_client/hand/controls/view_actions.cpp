@@ -64,6 +64,7 @@ void ViewerControls::changeView(Action action) {
             return setStereo(nextOf(settings_.stereo, StereoMode::kAnaglyph));
         case Action::kQuickDrawing:
             settings_.quality = settings_.quality == Quality::kFull ? Quality::kQuick : Quality::kFull;
+            settings_.picks_quality = false;
             return;
         case Action::kEndoscope:
             return switchCamera(CameraMode::kEndoscope);

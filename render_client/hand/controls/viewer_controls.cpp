@@ -194,6 +194,9 @@ void ViewerControls::act(Action action, const SessionView& session, Wishes& wish
             is_panel_open_ = wishes.type_trainee = session.lesson != nullptr;
             if (!session.lesson) wishes.notice = HudNotice{"This server gives no lesson", HudTone::kWarning};
             return;
+        case Action::kFullScreen:
+            wishes.full_screen = true;
+            return;
         case Action::kSavePicture:
             wishes.save_picture = true;
             return;

@@ -26,6 +26,7 @@ struct Wishes {
     bool hold_tool = false;               // with the mouse, from where it may begin
     std::optional<PixelPoint> centre_at;  // orbit around the surface there from now on
     std::optional<HudNotice> notice;      // why something was not done
+    bool full_screen = false;             // or, from there, the window of before
     bool save_picture = false;
     bool save_attempts = false;                 // of the lesson, as CSV
     bool make_clip = false;                     // of the moment of the replay
@@ -84,10 +85,13 @@ class ViewerControls {
     void showHandpiece(bool is_shown) { settings_.show_handpiece = is_shown; }
     void setDepthOfField(bool is_on) { settings_.has_depth_of_field = is_on; }
     void setStereo(StereoMode mode) { settings_.stereo = mode; }
-    // Makes bone transparent, of this opacity from 0 to 1.
+    void showForColourBlind(bool is_wanted) { settings_.is_for_colour_blind = is_wanted; }
+    void setTextScale(double factor) { settings_.text_scale = factor; }
+    void pickQuality(bool is_wanted) { settings_.picks_quality = is_wanted; }
     // Lets this structure be seen so; the number is 1 + its index in SceneInfo.materials.
     void showStructure(size_t structure, StructureMode mode) { settings_.structures.at(structure) = mode; }
     void showClearance(bool is_shown) { settings_.show_clearance = is_shown; }
+    // Makes bone transparent, of this opacity from 0 to 1.
     void setOpacity(double opacity);
     // Moves the cut to this place, from the low (0) to the high end (1) of the bone's box along W's axis (0
     // to 2). The cut is switched on and becomes the one that [ and ] move.
@@ -105,6 +109,7 @@ class ViewerControls {
     // Left drags draw on the bone.
     bool isDrawing() const { return is_drawing_; }
     bool isPanelOpen() const { return is_panel_open_; }
+    void openPanel(bool is_open) { is_panel_open_ = is_open; }
     // Returns where the user points with the laser now.
     std::optional<PixelPoint> pointing() const;
     // Returns where the mouse rests or moves, also with the tool, while it drags and mills nothing.

@@ -23,6 +23,7 @@ enum class Key : int {
     kDown,
     kHome,
     kEnd,
+    kF11,
     kF12,
 };
 
@@ -33,6 +34,13 @@ constexpr Key keyOf(char sign) {
 struct Modifiers {
     bool shift = false;
     bool control = false;
+};
+
+// Where a window is, without its frame, in screen coordinates.
+struct WindowPlace {
+    int x = 0, y = 0;
+    int width = 0, height = 0;
+    bool operator==(const WindowPlace&) const = default;
 };
 
 struct PixelPoint {

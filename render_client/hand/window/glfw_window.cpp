@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdint>
 #include <utility>
 
 #include "common/base/user_error.h"
@@ -23,7 +24,8 @@ constexpr struct {
     {GLFW_KEY_LEFT, Key::kLeft},     {GLFW_KEY_RIGHT, Key::kRight},
     {GLFW_KEY_UP, Key::kUp},         {GLFW_KEY_DOWN, Key::kDown},
     {GLFW_KEY_HOME, Key::kHome},     {GLFW_KEY_END, Key::kEnd},
-    {GLFW_KEY_F12, Key::kF12},       {GLFW_KEY_SPACE, Key::kSpace},
+    {GLFW_KEY_F11, Key::kF11},       {GLFW_KEY_F12, Key::kF12},
+    {GLFW_KEY_SPACE, Key::kSpace},
 };
 
 // GLFW names letters by their place on a US keyboard; the user reads what is printed on them.
@@ -62,6 +64,31 @@ std::array<int, 2> monitorRoom() {
     return width > 0 && height > 0 ? std::array{width, height} : std::array{kAny, kAny};
 }
 
+// Returns how many square screen coordinates of the place this monitor shows.
+int64_t overlap(GLFWmonitor* monitor, const WindowPlace& place) {
+    const GLFWvidmode* const mode = glfwGetVideoMode(monitor);
+    if (!mode) return 0;
+    int x = 0, y = 0;
+    glfwGetMonitorPos(monitor, &x, &y);
+    const int64_t wide = std::min(place.x + place.width, x + mode->width) - std::max(place.x, x);
+    const int64_t high = std::min(place.y + place.height, y + mode->height) - std::max(place.y, y);
+    return wide > 0 && high > 0 ? wide * high : 0;
+}
+
+// Returns the monitor that shows most of the place; null where none shows any of it.
+GLFWmonitor* monitorOf(const WindowPlace& place) {
+    int count = 0;
+    GLFWmonitor** const monitors = glfwGetMonitors(&count);
+    GLFWmonitor* best = nullptr;
+    int64_t most = 0;
+    for (int i = 0; i < count; ++i)
+        if (const int64_t shown = overlap(monitors[i], place); shown > most) {
+            most = shown;
+            best = monitors[i];
+        }
+    return best;
+}
+
 }  // namespace
 
 GlfwWindow::Library::Library(const std::string& advice) {
@@ -72,12 +99,14 @@ GlfwWindow::Library::~Library() {
     glfwTerminate();
 }
 
-GlfwWindow::GlfwWindow(int width, int height, const std::string& title, const std::string& advice)
+GlfwWindow::GlfwWindow(int width, int height, const std::string& title, const std::string& advice,
+                       const std::optional<WindowPlace>& before)
     : library_(advice) {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);  // a full screen stays while another one is worked at
     const std::array<int, 2> room = monitorRoom();
     width = std::min(width, room[0]);
     height = std::min(height, room[1]);
@@ -88,6 +117,7 @@ GlfwWindow::GlfwWindow(int width, int height, const std::string& title, const st
     const int wide = std::min(width, room[0] - frame[0] - frame[2]),
               high = std::min(height, room[1] - frame[1] - frame[3]);
     if (wide < width || high < height) glfwSetWindowSize(window_, wide, high);
+    if (before && monitorOf(*before)) glfwSetWindowPos(window_, before->x, before->y);
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
     gl_ = GlApi::load([](const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); });
@@ -166,6 +196,29 @@ float GlfwWindow::contentScale() const {
     float x = 1, y = 1;
     glfwGetWindowContentScale(window_, &x, &y);
     return y;
+}
+
+WindowPlace GlfwWindow::place() const {
+    if (isFullScreen()) return windowed_;
+    WindowPlace place;
+    glfwGetWindowPos(window_, &place.x, &place.y);
+    glfwGetWindowSize(window_, &place.width, &place.height);
+    return place;
+}
+
+bool GlfwWindow::isFullScreen() const {
+    return glfwGetWindowMonitor(window_) != nullptr;
+}
+
+void GlfwWindow::switchFullScreen() {
+    if (isFullScreen())
+        return glfwSetWindowMonitor(window_, nullptr, windowed_.x, windowed_.y, windowed_.width,
+                                    windowed_.height, GLFW_DONT_CARE);
+    windowed_ = place();
+    GLFWmonitor* const monitor = monitorOf(windowed_) ? monitorOf(windowed_) : glfwGetPrimaryMonitor();
+    const GLFWvidmode* const mode = monitor ? glfwGetVideoMode(monitor) : nullptr;
+    if (mode) glfwSetWindowMonitor(window_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+    glfwSwapInterval(1);  // some drivers forget it
 }
 
 void GlfwWindow::showCrosshair(bool is_wanted) {

@@ -3,6 +3,7 @@
 // It belongs to the main thread. There is one window per process.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,11 @@ namespace bonemill {
 
 class GlfwWindow {
   public:
-    // The size counts in screen coordinates, and is at most what the first monitor has room for. Throws
-    // UserError, ending with `advice`, when there is no display or no OpenGL 3.3.
-    GlfwWindow(int width, int height, const std::string& title, const std::string& advice);
+    // The size counts in screen coordinates, and is at most what the first monitor has room for. The window
+    // opens where one was `before`, if a monitor is there. Throws UserError, ending with `advice`, when there
+    // is no display or no OpenGL 3.3.
+    GlfwWindow(int width, int height, const std::string& title, const std::string& advice,
+               const std::optional<WindowPlace>& before = std::nullopt);
     GlfwWindow(const GlfwWindow&) = delete;
     GlfwWindow& operator=(const GlfwWindow&) = delete;
     ~GlfwWindow();
@@ -40,6 +43,12 @@ class GlfwWindow {
     int pixelHeight() const;
     // Returns how much larger than usual the display wants its text.
     float contentScale() const;
+
+    // Returns where the window is; of a full screen where it was before.
+    WindowPlace place() const;
+    bool isFullScreen() const;
+    // Fills the monitor that the window is on, or goes back to where it was.
+    void switchFullScreen();
 
     // The cursor is a crosshair, or the usual arrow.
     void showCrosshair(bool is_wanted);
@@ -68,6 +77,7 @@ class GlfwWindow {
     GLFWwindow* window_;
     GLFWcursor* crosshair_ = nullptr;  // null: the display has none
     bool shows_crosshair_ = false;
+    WindowPlace windowed_;  // of a full screen: where the window was
     GlApi gl_;
     std::vector<WindowEvent> events_;
     std::vector<std::string> dropped_;

@@ -67,6 +67,7 @@ struct ViewSettings {
     CameraMode camera = CameraMode::kOrbit;
     bool has_depth_of_field = false;  // of the microscope
     Quality quality = Quality::kFull;
+    bool picks_quality = false;  // the viewer picks it, by the time that pictures take
     StereoMode stereo = StereoMode::kOff;
     bool is_transparent = false;
     double opacity = kDefaultOpacity;  // of the transparent bone
@@ -91,7 +92,8 @@ struct ViewSettings {
     bool show_details = false;  // with the figures that matter to the task, all others
     bool show_watchers = false;
     bool show_help = false;
-    double text_scale = 1;  // the user's own factor, kMinText to kMaxText
+    bool is_for_colour_blind = false;  // the palette
+    double text_scale = 1;             // the user's own factor, kMinText to kMaxText
     static constexpr double kMinText = 0.5, kMaxText = 4;
 
     // Forgets what was chosen of one scene's bone, scan and structures and means something else in the next

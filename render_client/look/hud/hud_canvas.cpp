@@ -10,6 +10,7 @@
 
 #include "common/base/user_error.h"
 #include "render_client/look/hud/figure_text.h"
+#include "render_client/look/hud/palette.h"
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
@@ -145,17 +146,8 @@ float textScale(int width, int height, double chosen, float desktop_scale) {
 }
 
 HudColour colourOf(HudTone tone) {
-    switch (tone) {
-        case HudTone::kGood:
-            return {0.45f, 0.88f, 0.55f, 1};
-        case HudTone::kWarning:
-            return {1.0f, 0.76f, 0.30f, 1};
-        case HudTone::kAlarm:
-            return {1.0f, 0.42f, 0.38f, 1};
-        case HudTone::kPlain:
-            break;
-    }
-    return {0.95f, 0.96f, 0.97f, 1};
+    const Srgb& colour = palette().tones[size_t(tone)];
+    return {float(colour[0]), float(colour[1]), float(colour[2]), 1};
 }
 
 void HudCanvas::box(float x, float y, float width, float height, float radius, const HudColour& colour) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/geometry/node_mesh.h"
+#include "render_client/look/hud/palette.h"
 
 namespace bonemill {
 namespace {
@@ -31,7 +32,8 @@ std::vector<Eigen::Vector4f> paletteOf(const topics::SceneInfo& info) {
     if (std::ranges::none_of(materials, [](const auto& m) { return m.has_color(); })) return {};
     std::vector<Eigen::Vector4f> colours{Eigen::Vector4f::Zero()};
     for (const scene::Material& material : materials)
-        colours.push_back(material.has_color() ? linear(material.color()) : Eigen::Vector4f::Zero());
+        colours.push_back(material.has_color() ? linear(shownColour(material.color()))
+                                               : Eigen::Vector4f::Zero());
     return colours;
 }
 

@@ -7,6 +7,7 @@
 #include "common/base/units.h"
 #include "render_client/look/camera/camera.h"
 #include "render_client/look/hud/figure_text.h"
+#include "render_client/look/hud/palette.h"
 #include "render_client/look/render_scene/bone_marks.h"
 #include "render_client/look/visual_effects/effect_input.h"
 
@@ -65,13 +66,18 @@ void RenderScene::setSceneInfo(const topics::SceneInfo& info) {
     structures_.setInfo(info);
     awaits_info_ = false;
     if (info.other_first_leaf() > 0) nodes_.giveFrom(info.other_first_leaf(), other_nodes_);
-    std::vector<Eigen::Vector4f> colours = vertexColoursOf(info);
+    colourBone();
+    makeEffects(info);
+}
+
+void RenderScene::colourBone() {
+    if (!hud_input_.info) return;
+    std::vector<Eigen::Vector4f> colours = vertexColoursOf(*hud_input_.info);
     if (colours != vertex_colours_) {
         renderer_.setPalette(colours);
-        ct_.setPalette(paletteOf(info));
+        ct_.setPalette(paletteOf(*hud_input_.info));
     }
     vertex_colours_ = std::move(colours);
-    makeEffects(info);
 }
 
 // The effects of the same scene go on, also with another tool.
@@ -265,6 +271,9 @@ void RenderScene::showTool(FrameView& view) const {
 }
 
 void RenderScene::draw(int full_width, int height, float ui_scale, GLuint target) {
+    usePalette(settings_.is_for_colour_blind);
+    if (std::exchange(was_for_colour_blind_, settings_.is_for_colour_blind) != settings_.is_for_colour_blind)
+        colourBone();
     const int width = viewWidth(full_width, height);
     const bool is_divided = settings_.stereo == StereoMode::kSideBySide || showsBeside();
     if (view_pending_) applyFirstView(double(is_divided ? width / 2 : width) / height);

@@ -151,6 +151,7 @@ class RenderScene {
   private:
     void applyFirstView(double aspect);
     void lookForFaults();
+    void colourBone();
     void makeEffects(const topics::SceneInfo& info);
     void takeEffectInput();
     const EffectPicture* effectPicture();
@@ -209,6 +210,7 @@ class RenderScene {
     std::optional<std::pair<int, int>> mouse_;
     FrameView last_view_;  // of the last picture without stereo
     std::vector<Eigen::Vector4f> vertex_colours_;
+    bool was_for_colour_blind_ = false;  // the last picture
     const GlApi& gl_;
 };
 

@@ -4,8 +4,9 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <string>
+
+#include "render_client/look/hud/palette.h"
 
 namespace bonemill {
 namespace {
@@ -14,16 +15,17 @@ using Eigen::Vector3f;
 
 constexpr float kGamma = 2.2f;  // as toneMap() of the shaders
 
-const Vector3f kNerve(0.95f, 0.85f, 0.20f), kVein(0.10f, 0.45f, 0.85f), kArtery(0.84f, 0.17f, 0.12f),
-    kDura(0.82f, 0.64f, 0.96f);
-const struct {
+enum Named { kNerve, kVein, kArtery, kDura };  // places of Palette::named
+constexpr struct {
     const char* word;
-    const Vector3f& colour;
+    Named named;
 } kCustom[] = {{"nerve", kNerve},   {"chorda", kNerve}, {"sinus", kVein},     {"vein", kVein},
                {"jugular", kVein},  {"arter", kArtery}, {"carotid", kArtery}, {"aorta", kArtery},
                {"vessel", kArtery}, {"pulp", kArtery},  {"dura", kDura},      {"sac", kDura}};
-const Vector3f kOthers[] = {{0.90f, 0.62f, 0.00f}, {0.34f, 0.71f, 0.91f}, {0.00f, 0.62f, 0.45f},
-                            {0.80f, 0.47f, 0.65f}, {0.84f, 0.37f, 0.00f}, {0.00f, 0.45f, 0.70f}};
+
+Vector3f vectorOf(const Srgb& colour) {
+    return {float(colour[0]), float(colour[1]), float(colour[2])};
+}
 
 std::string lowered(std::string text) {
     std::ranges::transform(text, text.begin(), [](unsigned char sign) { return char(std::tolower(sign)); });
@@ -35,14 +37,15 @@ std::string lowered(std::string text) {
 Vector3f structureColour(const topics::SceneInfo& info, uint32_t structure) {
     if (structure > 0 && structure <= uint32_t(info.materials_size())) {
         const scene::Material& material = info.materials(int(structure) - 1);
-        const scene::Color& color = material.color();
+        const scene::Color color = shownColour(material.color());
         if (material.has_color())
             return Eigen::Vector3d(color.red(), color.green(), color.blue()).cast<float>();
         const std::string name = lowered(material.name());
         for (const auto& custom : kCustom)
-            if (name.find(custom.word) != std::string::npos) return custom.colour;
+            if (name.find(custom.word) != std::string::npos) return vectorOf(palette().named[custom.named]);
     }
-    return kOthers[structure % std::size(kOthers)];
+    const auto& others = palette().structures;
+    return vectorOf(others[structure % others.size()]);
 }
 
 Vector3f linearColour(const Vector3f& srgb) {
@@ -55,8 +58,9 @@ Vector3f srgbColour(const Vector3f& linear) {
 
 Vector3f distanceColour(double distance, double warning_distance) {
     const auto share = float(std::clamp(distance / warning_distance, 0.0, 1.0));
-    const Vector3f red(0.95f, 0.10f, 0.08f), yellow(1.0f, 0.85f, 0.10f), green(0.20f, 0.80f, 0.35f);
-    return share < 0.5f ? red + 2 * share * (yellow - red) : yellow + (2 * share - 1) * (green - yellow);
+    const auto& colours = palette().distance;
+    const Vector3f near = vectorOf(colours[0]), half = vectorOf(colours[1]), far = vectorOf(colours[2]);
+    return share < 0.5f ? near + 2 * share * (half - near) : half + (2 * share - 1) * (far - half);
 }
 
 std::vector<BurrBall> burrBallsOf(const topics::SceneInfo& info) {

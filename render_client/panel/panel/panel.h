@@ -48,6 +48,10 @@ class Panel {
     // Returns where to click on the button, box or slider with this label, if it can be seen.
     std::optional<PixelPoint> find(const std::string& label) const;
 
+    // Which parts are open is the owner's to remember.
+    const PanelFolds& folds() const { return folds_; }
+    void fold(const PanelFolds& folds) { folds_ = folds; }
+
     // Returns what to draw; null while the panel is closed and no lesson shows anything. It is valid until
     // the next call of setPicture() or handle().
     const ImDrawData* drawData() const;
@@ -70,6 +74,7 @@ class Panel {
     RemarkDraft remark_;
     InviteDraft invite_;
     TuningDraft tuning_;
+    PanelFolds folds_;
     ScenePictures pictures_;
     PlotHistory plots_;
 };

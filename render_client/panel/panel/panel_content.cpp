@@ -29,7 +29,7 @@ void PanelContent::build() {
     const auto section = [&](bool is_there, const char* name, void (PanelContent::*build_it)()) {
         if (!is_there) return;
         if (!std::exchange(is_first, false)) gap();
-        if (ImGui::CollapsingHeader(name, ImGuiTreeNodeFlags_DefaultOpen)) (this->*build_it)();
+        if (isPartOpen(name, true)) (this->*build_it)();
     };
     using Content = PanelContent;
     section(controls_.toolHold().isHolding() || isHeldByMouse(session_), "Tool in the mouse",
@@ -50,15 +50,21 @@ void PanelContent::build() {
     if (session_.info && session_.status && !isReplay(session_) &&
         mayOrder(session_.role, topics::Command::kTune)) {
         gap();
-        if (ImGui::CollapsingHeader("Tuning")) buildTuning();  // folded at first
+        if (isPartOpen("Tuning", false)) buildTuning();
         note("Tuning", "Stiffness, damping and limits of the contact law, while the session runs");
     }
     if (session_.tool) {
         gap();
-        if (ImGui::CollapsingHeader("Plots")) buildPlots();  // for the lab: folded at first
+        if (isPartOpen("Plots", false)) buildPlots();  // for the lab
         note("Plots", "Force, torque and the tick's work over the last 10 s");
     }
     ImGui::End();
+}
+
+bool PanelContent::isPartOpen(const char* name, bool is_open_at_first) {
+    bool& is_open = folds_.try_emplace(name, is_open_at_first).first->second;
+    ImGui::SetNextItemOpen(is_open);
+    return is_open = ImGui::CollapsingHeader(name);
 }
 
 // The button that opens the panel is called so, too.

@@ -28,8 +28,8 @@ class PanelContent {
     PanelContent(ViewerControls& controls, const SessionView& session, Wishes& wishes,
                  std::map<std::string, PixelPoint>& places, bool& is_ending, LessonDraft& draft,
                  RemarkDraft& remark_draft, InviteDraft& invite_draft, TuningDraft& tuning_draft,
-                 const std::map<std::string, ScenePicture>& pictures, const PlotHistory& plots, float scale,
-                 float view_width)
+                 PanelFolds& folds, const std::map<std::string, ScenePicture>& pictures,
+                 const PlotHistory& plots, float scale, float view_width)
         : controls_(controls),
           settings_(controls.settings()),
           session_(session),
@@ -40,6 +40,7 @@ class PanelContent {
           remark_draft_(remark_draft),
           invite_draft_(invite_draft),
           tuning_draft_(tuning_draft),
+          folds_(folds),
           pictures_(pictures),
           plots_(plots),
           scale_(scale),
@@ -59,6 +60,8 @@ class PanelContent {
     void buildScan();
     void buildStereo();
     void buildSigns();
+    void buildQualityPick();
+    void buildReading();
     // These say which structures are seen, and how (panel_view.cpp).
     bool hasStructures() const;
     void buildStructures();
@@ -108,6 +111,8 @@ class PanelContent {
     void sendNote();
     void buildRemark(const topics::Remark& remark);
 
+    // Draws the headline of a part of the panel, which a click folds. Returns true where it is open.
+    bool isPartOpen(const char* name, bool is_open_at_first);
     // Each control has a label, and says what it does in words while the mouse rests on it.
     bool button(const std::string& label, const char* what);
     bool box(const std::string& label, bool is_on, const char* what);
@@ -137,6 +142,7 @@ class PanelContent {
     RemarkDraft& remark_draft_;
     InviteDraft& invite_draft_;
     TuningDraft& tuning_draft_;
+    PanelFolds& folds_;
     const std::map<std::string, ScenePicture>& pictures_;
     const PlotHistory& plots_;
     float scale_;

@@ -16,6 +16,9 @@
 
 namespace bonemill {
 
+// Which parts of the panel are open, by their names; those that were never seen are not among them.
+using PanelFolds = std::map<std::string, bool>;
+
 // Of a note.
 struct RemarkDraft {
     std::array<char, 301> note{};          // as typed so far, zero-terminated UTF-8

@@ -7,6 +7,7 @@
 #include "render_client/hand/controls/past_attempts.h"
 #include "render_client/look/hud/effect_lines.h"
 #include "render_client/look/hud/figure_text.h"
+#include "render_client/look/hud/palette.h"
 #include "render_client/panel/panel/panel_content.h"
 
 namespace bonemill {
@@ -14,8 +15,8 @@ namespace {
 
 constexpr int kDifferenceParts = 3;  // as topics::Comparison says
 
-ImVec4 shownColour(const scene::Material& material) {
-    const scene::Color& colour = material.color();
+ImVec4 legendColour(const scene::Material& material) {
+    const scene::Color colour = shownColour(material.color());
     return {float(colour.red()), float(colour.green()), float(colour.blue()), 1};
 }
 
@@ -120,7 +121,7 @@ void PanelContent::buildLegend(uint32_t first) {
     if (!session_.info || int64_t(first) - 1 + kDifferenceParts > session_.info->materials_size()) return;
     for (int part = 0; part < kDifferenceParts; ++part) {
         const scene::Material& material = session_.info->materials(int(first) - 1 + part);
-        ImGui::ColorButton(("##difference " + std::to_string(part)).c_str(), shownColour(material),
+        ImGui::ColorButton(("##difference " + std::to_string(part)).c_str(), legendColour(material),
                            ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoPicker,
                            ImVec2(ImGui::GetFontSize(), ImGui::GetFontSize()));
         ImGui::SameLine();

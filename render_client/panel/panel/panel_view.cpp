@@ -3,9 +3,11 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "render_client/look/hud/effect_lines.h"
+#include "render_client/look/hud/figure_text.h"
 #include "render_client/look/structures/structure_set.h"
 #include "render_client/panel/panel/panel_content.h"
 
@@ -83,6 +85,7 @@ void PanelContent::buildSigns() {
     ImGui::SameLine();
     box("Quick drawing", Action::kQuickDrawing, settings_.quality == Quality::kQuick,
         "Without shadows and smooth edges: for PCs without a graphics card");
+    buildQualityPick();
     if (session_.info && session_.info->handpiece() != topics::SceneInfo::NO_HANDPIECE &&
         box("Handpiece", settings_.show_handpiece, "Behind the tool's shaft; it is only drawn"))
         controls_.showHandpiece(!settings_.show_handpiece);
@@ -93,6 +96,35 @@ void PanelContent::buildSigns() {
     box("Watchers", Action::kWatchers, settings_.show_watchers, "Who is watching, over the picture");
     ImGui::SameLine();
     box("Help", Action::kHelp, settings_.show_help, "All keys, over the picture");
+    buildReading();
+}
+
+void PanelContent::buildReading() {
+    constexpr struct {
+        const char* label;
+        double factor;
+    } kSizes[] = {{"Small", 0.8}, {"Normal", 1}, {"Large", 1.25}};
+    ImGui::AlignTextToFramePadding();
+    sayQuietly(withKey("Text", Action::kLargerText));
+    for (const auto& size : kSizes) {
+        ImGui::SameLine();
+        if (choice(size.label, std::abs(settings_.text_scale - size.factor) < 1e-6, "Of figures and panel"))
+            controls_.setTextScale(size.factor);
+    }
+    if (box("Colours for colour-blind people", settings_.is_for_colour_blind,
+            "Zones, differences, structures and warnings can be told apart without red and green, or blue"))
+        controls_.showForColourBlind(!settings_.is_for_colour_blind);
+}
+
+void PanelContent::buildQualityPick() {
+    const bool is_quick = settings_.quality == Quality::kQuick;
+    if (box("Quality by speed", settings_.picks_quality,
+            "Full while pictures are fast enough, quick while they are not"))
+        controls_.pickQuality(!settings_.picks_quality);
+    if (!settings_.picks_quality) return;
+    ImGui::SameLine();
+    sayQuietly(std::string(is_quick ? "now quick" : "now full") +
+               (session_.picture_s > 0 ? ", " + figureText(session_.picture_s * 1e3, 0, " ms") : ""));
 }
 
 bool PanelContent::hasPatientAxes() const {

@@ -125,7 +125,15 @@ class TeacherDay : public testing::Test {
         look();
     }
 
-    size_t countPictures() const { return filesIn(rig_.folder() / "desktop", ".png").size(); }
+    // Those of F12, whose names sort by time.
+    std::vector<fs::path> pictures() const {
+        std::vector<fs::path> pictures = filesIn(rig_.folder() / "desktop", ".png");
+        for (const fs::path& folder : classFolders())
+            for (const fs::path& picture : filesIn(folder / "pictures", ".png")) pictures.push_back(picture);
+        std::ranges::sort(pictures, {}, &fs::path::filename);
+        return pictures;
+    }
+    size_t countPictures() const { return pictures().size(); }
     // Returns whether one press of the key, and no other, has made a picture. A slow window takes several
     // presses as one, or later, and those of the time before there is a window are nobody's: then all is
     // waited for that is still under way.
@@ -145,7 +153,7 @@ class TeacherDay : public testing::Test {
     // been under way.
     Picture look() {
         await("two pictures", [&] { return pressForPicture() && pressForPicture(); });
-        return test::readPng(filesIn(rig_.folder() / "desktop", ".png").back());
+        return test::readPng(pictures().back());
     }
     void click(const std::string& label) {
         std::optional<PixelPoint> place;

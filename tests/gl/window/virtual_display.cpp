@@ -49,6 +49,7 @@ VirtualDisplay::VirtualDisplay(int width, int height) {
     if (number.empty()) throw std::runtime_error("Xvfb does not start: " + server_->errSoFar());
     setenv("DISPLAY", (":" + number).c_str(), 1);
     unsetenv("WAYLAND_DISPLAY");
+    setenv("XDG_CONFIG_HOME", remembered_.path().c_str(), 1);
 }
 
 void VirtualDisplay::type(const std::vector<std::string>& words) const {

@@ -11,8 +11,9 @@ namespace bonemill::test {
 
 class VirtualDisplay {
   public:
-    // The display is that of this process and its children from now on. Throws std::runtime_error naming the
-    // package that is missing.
+    // The display is that of this process and its children from now on, and they remember of windows what was
+    // set on it, not what the developer's home says. Throws std::runtime_error naming the package that is
+    // missing.
     VirtualDisplay(int width, int height);
 
     // Runs xdotool with these words, such as {"key", "x"}, and returns when the display has taken it.
@@ -21,6 +22,7 @@ class VirtualDisplay {
     std::string clipboard() const;
 
   private:
+    TemporaryFolder remembered_;
     std::unique_ptr<Process> server_;
 };
 

@@ -29,9 +29,8 @@ using test::VirtualDisplay;
 using test::WindowedViewer;
 using Viewer = topics::Viewer;
 
-constexpr double kClearChange = 0.01;  // of the picture: what a change of the view changes at least
-constexpr double kNoChange = 0.002;
-constexpr double kSmallChange = 0.1;  // shadows and smooth edges
+constexpr double kClearChange = 0.01, kNoChange = 0.002;  // of the picture: another view changes more
+constexpr double kSmallChange = 0.1;                      // shadows and smooth edges
 
 double differentShare(const Picture& a, const Picture& b) {
     return test::compare(a, b).bad_part;
@@ -88,10 +87,10 @@ class Window : public testing::Test {
     }
     // Returns what the window shows after all that was typed before: events come in their order.
     Picture look(WindowedViewer& viewer) {
-        const std::filesystem::path file = viewer.nextPicture();
+        const size_t count = viewer.countPicture();
         key("F12");
-        waitFor(file, [&] { return std::filesystem::exists(file); });
-        return test::readPng(file);
+        waitFor("F12's picture", [&] { return viewer.picture(count).has_value(); });
+        return test::readPng(*viewer.picture(count));
     }
     topics::Command waitForCommand(size_t count) {
         waitFor("command " + std::to_string(count), [&] { return session_.commands().size() >= count; });
@@ -325,6 +324,7 @@ TEST_F(Window, ThePictureOfAnAttemptLiesBesideItsResult) {
     lesson.set_is_running(true);
     session_.teach(lesson);
     WindowedViewer& viewer = start("teacher", "operator", "--class-folder " + folder.path().string());
+    viewer.expectPicturesIn(folder.path() / "pictures");
     const Picture before = look(viewer);
     lesson.set_is_running(false);
     topics::Attempt& attempt = *lesson.add_attempts();

@@ -320,6 +320,8 @@ TEST_F(Controls, TheRestIsForTheOwner) {
     EXPECT_TRUE(wishes_.reset_view);
     send(KeyEvent{Key::kF12, true, false, {}});
     EXPECT_TRUE(wishes_.save_picture);
+    send(KeyEvent{Key::kF11, true, false, {}});
+    EXPECT_TRUE(wishes_.full_screen);
     EXPECT_FALSE(wishes_.quit);
     send(KeyEvent{Key::kEscape, true, false, {}});
     send(KeyEvent{Key::kEscape, true, false, {}});
