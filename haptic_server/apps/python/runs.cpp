@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "common/base/units.h"
@@ -12,6 +13,7 @@
 #include "haptic_server/apps/python/arrays.h"
 #include "haptic_server/apps/python/inputs.h"
 #include "haptic_server/lab/stepping/tick_table.h"
+#include "proto/scene.pb.h"
 
 namespace bonemill::python {
 namespace {
@@ -21,7 +23,7 @@ constexpr size_t kTicksBetweenSignals = 1000;
 // Runs so many ticks, each by tick(n), without the GIL; Ctrl+C ends it. The caller is the run's only user.
 template <class Tick>
 py::dict runTicks(Run& run, size_t ticks, Tick&& tick) {
-    TickTable table(run.run().recorded());
+    TickTable table(run.own().recorded());
     table.reserve(ticks);
     {
         const py::gil_scoped_release release;
@@ -47,12 +49,12 @@ py::dict runHand(Run& run, const py::object& positions, const py::object& orient
     const InUse in_use(run.isUsed());
     for (size_t n = 0; n < hands.size(); ++n) {
         const std::string problem =
-            n == 0 ? run.run().problemOf(hands[0]) : run.run().problemOf(hands[n], hands[n - 1].t_s);
+            n == 0 ? run.own().problemOf(hands[0]) : run.own().problemOf(hands[n], hands[n - 1].t_s);
         if (!problem.empty()) throw UserError("row " + std::to_string(n) + ": " + problem);
     }
     size_t unbelieved = 0;
     py::dict columns = runTicks(run, hands.size(), [&](size_t n) -> const TickRecord& {
-        const TickRecord& record = run.run().step(hands[n]);
+        const TickRecord& record = run.own().step(hands[n]);
         unbelieved += (record.faults & kFaultBadDevicePose) != 0;
         return record;
     });
@@ -72,18 +74,18 @@ StepResult stepHand(Run& run, const py::object& position, const py::object& orie
                     const py::object& buttons) {
     const HandStep hand = handOf(position, orientation, buttons);
     const InUse in_use(run.isUsed());
-    return {run.run().step(hand), run.run().recorded()};
+    return {run.own().step(hand), run.own().recorded()};
 }
 
 py::array voxelsOf(Run& run) {
     const InUse in_use(run.isUsed());
-    const Eigen::Vector3i& dims = run.run().scanned().dims();
+    const Eigen::Vector3i& dims = run.own().scanned().dims();
     if (!run.voxels) {
         run.voxels = py::array_t<Density, py::array::f_style>({dims.x(), dims.y(), dims.z()});
         run.voxels.attr("flags").attr("writeable") = false;
     }
     auto* const data = static_cast<Density*>(const_cast<void*>(py::array(run.voxels).data()));
-    run.run().copyVoxels(run.run().takeChanged(), {data, run.run().scanned().geometry().voxelCount()});
+    run.own().copyVoxels(run.own().takeChanged(), {data, run.own().scanned().geometry().voxelCount()});
     return run.voxels;
 }
 
@@ -92,7 +94,7 @@ py::tuple meshOf(Run& run) {
     RunSurface surface;
     {
         const py::gil_scoped_release release;
-        surface = run.run().surface();
+        surface = run.own().surface();
     }
     return py::make_tuple(rowsOf<double>(std::move(surface.vertices_W)),
                           rowsOf<uint32_t>(std::move(surface.triangles)));
@@ -100,7 +102,7 @@ py::tuple meshOf(Run& run) {
 
 py::tuple toolMeshOf(const py::object& self) {
     const InUse in_use(self.cast<Run&>().isUsed());
-    SteppedRun& run = self.cast<Run&>().run();
+    SteppedRun& run = self.cast<Run&>().own();
     const TriangleSurface& surface = run.setup().tools[run.tool()].surface;
     const auto vertices = py::ssize_t(surface.positions.size()),
                triangles = py::ssize_t(surface.indices.size() / 3);
@@ -121,7 +123,7 @@ py::dict poseDict(const Pose& pose) {
 // The scripted hand of the scene: (t_s, position, orientation, buttons) of each waypoint.
 py::list waypointsOf(Run& run) {
     py::list list;
-    for (const auto& waypoint : run.run().loaded().scene.simulated_operator().waypoint()) {
+    for (const auto& waypoint : run.own().loaded().scene.simulated_operator().waypoint()) {
         const Pose X_WT = poseOf(waypoint);
         const Eigen::Quaterniond& q = X_WT.rotation;
         const uint32_t buttons =
@@ -132,29 +134,16 @@ py::list waypointsOf(Run& run) {
     return list;
 }
 
-const char* roleName(ZoneRole role) {
-    switch (role) {
-        case ZoneRole::kTarget:
-            return "target";
-        case ZoneRole::kLeewaySides:
-            return "leeway_sides";
-        case ZoneRole::kLeewayBottom:
-            return "leeway_bottom";
-        case ZoneRole::kContainerSides:
-            return "container_sides";
-        case ZoneRole::kContainerBottom:
-            return "container_bottom";
-        case ZoneRole::kProtected:
-            return "protected";
-        case ZoneRole::kContext:
-            return "context";
-    }
-    return "context";
+// As the scene file says it, in small letters.
+std::string roleName(ZoneRole role) {
+    std::string name = scene::Task::Role_Name(scene::Task::Role(role));
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return name;
 }
 
 py::dict progressOf(Run& run) {
     const InUse in_use(run.isUsed());
-    const TaskProgress& progress = run.run().progress();
+    const TaskProgress& progress = run.own().progress();
     py::list zones;
     for (const ZoneProgress& zone : progress.zones) {
         py::dict entry;
@@ -178,14 +167,14 @@ py::object judgementOf(Run& run) {
     std::string text;
     {
         const py::gil_scoped_release release;
-        text = run.run().judge().dump();
+        text = run.own().judge().dump();
     }
     return py::module_::import("json").attr("loads")(text);
 }
 
 void chooseTool(Run& run, const py::object& tool) {
     const InUse in_use(run.isUsed());
-    run.run().chooseTool(toolIndexOf(run.run().toolNames(), py::str(tool)));
+    run.own().chooseTool(toolIndexOf(run.own().toolNames(), py::str(tool)));
 }
 
 std::shared_ptr<Simulation> makeSimulation(const std::string& file, const std::vector<std::string>& settings,
@@ -197,11 +186,11 @@ std::shared_ptr<Simulation> makeSimulation(const std::string& file, const std::v
 }
 
 // What changes as ticks run, or when a run begins anew, is read by its only user.
-template <class Read>
+template <class Self = Run, class Read>
 auto guarded(Read read) {
-    return [read](Run& run) {
-        const InUse in_use(run.isUsed());
-        return read(run.run());
+    return [read](Self& self) {
+        const InUse in_use(self.isUsed());
+        return read(self.own());
     };
 }
 
@@ -240,7 +229,7 @@ py::dict runRecorded(Replay& self, std::optional<double> until_s, std::optional<
 
 StepResult stepRecorded(Replay& self) {
     const InUse in_use(self.isUsed());
-    return {self.own().stepAsRecorded(), self.run().recorded()};
+    return {self.own().stepAsRecorded(), self.own().recorded()};
 }
 
 void defineReplay(py::module_& module) {
@@ -252,34 +241,15 @@ void defineReplay(py::module_& module) {
             "run_recorded", runRecorded, py::arg("until_s") = py::none(), py::arg("until_tick") = py::none(),
             "Runs on as recorded, to the end, or all ticks before this one or that begin before this time (s "
             "since the\nfirst tick); returns columns as run() does.")
-        .def(
-            "restart",
-            [](Replay& self) {
-                const InUse in_use(self.isUsed());
-                self.own().restart();
-            },
-            "Back before the first tick.")
-        .def_property_readonly(
-            "has_left",
-            [](Replay& self) {
-                const InUse in_use(self.isUsed());
-                return self.own().hasLeft();
-            },
-            "Another hand has gone on: step() or run() was called.")
-        .def_property_readonly(
-            "is_at_end",
-            [](Replay& self) {
-                const InUse in_use(self.isUsed());
-                return self.own().isAtEnd();
-            },
-            "No recorded tick is left.")
-        .def_property_readonly(
-            "is_restoring",
-            [](Replay& self) {
-                const InUse in_use(self.isUsed());
-                return self.own().isRestoring();
-            },
-            "An order of the session has begun to put the bone back, and is not done.");
+        .def("restart", guarded<Replay>([](RecordedRun& run) { return run.restart(); }),
+             "Back before the first tick.")
+        .def_property_readonly("has_left", guarded<Replay>([](RecordedRun& run) { return run.hasLeft(); }),
+                               "Another hand has gone on: step() or run() was called.")
+        .def_property_readonly("is_at_end", guarded<Replay>([](RecordedRun& run) { return run.isAtEnd(); }),
+                               "No recorded tick is left.")
+        .def_property_readonly("is_restoring",
+                               guarded<Replay>([](RecordedRun& run) { return run.isRestoring(); }),
+                               "An order of the session has begun to put the bone back, and is not done.");
 }
 
 }  // namespace
@@ -323,29 +293,24 @@ void defineRuns(py::module_& module) {
              "gates,\nsub_scores, figures, total (its score is 0 to 1). Seconds with a large bone. The "
              "attempt "
              "ends here.")
-        .def(
-            "begin_attempt",
-            [](Run& run) {
-                const InUse in_use(run.isUsed());
-                run.run().beginAttempt();
-            },
-            "An attempt begins with the next tick: the hand's way before is not judged, what is gone of the "
-            "bone is.")
+        .def("begin_attempt", guarded([](SteppedRun& run) { run.beginAttempt(); }),
+             "An attempt begins with the next tick: the hand's way before is not judged, what is gone of the "
+             "bone is.")
         .def_property_readonly(
-            "has_task", [](Run& run) { return run.run().setup().task != nullptr; }, "Can it be judged?")
+            "has_task", [](Run& run) { return run.own().setup().task != nullptr; }, "Can it be judged?")
         .def_property_readonly("ticks", guarded([](SteppedRun& run) { return run.ticks(); }),
                                "How many have run.")
         .def_property_readonly("waypoints", waypointsOf,
                                "The scripted hand of the scene: (t_s, position_m, orientation_wxyz, buttons) "
                                "of each waypoint.")
         .def_property_readonly(
-            "period_s", [](Run& run) { return run.run().setup().tick.dt; }, "What a tick stands for, s.")
+            "period_s", [](Run& run) { return run.own().setup().tick.dt; }, "What a tick stands for, s.")
         .def_property_readonly(
             "state_hash", guarded([](SteppedRun& run) { return run.stateHash(); }),
             "Digest of all ticks and of the bone: the state_hash of `haptic_server simulate`. It reads all "
             "voxels.")
         .def_property_readonly(
-            "tools", [](Run& run) { return run.run().toolNames(); }, "Names of the scene's tools.")
+            "tools", [](Run& run) { return run.own().toolNames(); }, "Names of the scene's tools.")
         .def_property("tool", guarded([](SteppedRun& run) { return run.toolNames()[run.tool()]; }),
                       chooseTool, "The tool of the next tick; assign a name or a number from 1.")
         .def_property_readonly("burr_radius_m", guarded([](SteppedRun& run) {
@@ -353,7 +318,7 @@ void defineRuns(py::module_& module) {
                                }),
                                "Of the tool in use, m.")
         .def_property_readonly(
-            "warnings", [](Run& run) { return run.run().setup().warnings; },
+            "warnings", [](Run& run) { return run.own().setup().warnings; },
             "What the scene would better have otherwise.")
         .def_property_readonly("spacing_m", guarded([](SteppedRun& run) {
                                    return py::array_t<double>(3, run.bone().volume.spacing().data());

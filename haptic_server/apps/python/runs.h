@@ -36,7 +36,7 @@ class Run {
     explicit Run(std::shared_ptr<SteppedRun> run) : run_(std::move(run)) {}
     virtual ~Run() = default;
 
-    SteppedRun& run() noexcept { return *run_; }
+    SteppedRun& own() noexcept { return *run_; }
     std::atomic<bool>& isUsed() noexcept { return is_used_; }
     pybind11::object voxels = {};  // the array that voxels() keeps up with the bone
 

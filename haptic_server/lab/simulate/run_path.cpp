@@ -5,6 +5,12 @@
 
 namespace bonemill {
 
+double distanceTo(const VoxelVolume& volume, const Eigen::Vector3d& p_W) {
+    const Eigen::Vector3d high_V = volume.spacing().cwiseProduct(volume.dims().cast<double>());
+    const Eigen::Vector3d p_V = volume.geometry().X_WV.inverse() * p_W;
+    return (p_V - p_V.cwiseMax(0).cwiseMin(high_V)).norm();
+}
+
 std::vector<DeviceInput> inputsOf(std::span<const Pose> path_WT, double dt, uint32_t buttons) {
     std::vector<DeviceInput> inputs(path_WT.size(), DeviceInput{});
     for (size_t n = 0; n < path_WT.size(); ++n) {

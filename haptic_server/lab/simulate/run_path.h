@@ -13,6 +13,11 @@
 
 namespace bonemill {
 
+// A hand this far from a volume is in another unit or frame, m.
+inline constexpr double kFarFromBone = 1;
+// How far a place (W, m) lies outside of the volume's box; 0 inside.
+double distanceTo(const VoxelVolume& volume, const Eigen::Vector3d& p_W);
+
 // Device poses become inputs, one per tick of `dt` seconds, with these buttons held all the way.
 std::vector<DeviceInput> inputsOf(std::span<const Pose> path_WT, double dt, uint32_t buttons = 0);
 

@@ -67,17 +67,11 @@ void checkSpacing(const std::vector<TrajectoryRow>& rows, double dt, const std::
 
 // Throws UserError where half of the rows lie far from the bone: then lengths are in another unit or frame.
 void checkReach(const std::vector<TrajectoryRow>& rows, const VoxelVolume& volume, const std::string& file) {
-    constexpr double kFar = 1;  // m
-    const Eigen::Vector3d high_V = volume.spacing().cwiseProduct(volume.dims().cast<double>());
     std::vector<double> distances;
-    for (const TrajectoryRow& row : rows) {
-        const Eigen::Vector3d p_V = volume.geometry().X_WV.inverse() * row.X_WT.position;
-        const Eigen::Vector3d p_inside_V = p_V.cwiseMax(0).cwiseMin(high_V);
-        distances.push_back((p_V - p_inside_V).norm());
-    }
+    for (const TrajectoryRow& row : rows) distances.push_back(distanceTo(volume, row.X_WT.position));
     const auto middle = distances.begin() + std::ptrdiff_t(distances.size() / 2);
     std::ranges::nth_element(distances, middle);
-    if (*middle < kFar) return;
+    if (*middle < kFarFromBone) return;
     throw UserError(
         "trajectory " + file + ": half of it is " + std::to_string(*middle) +
         " m and more from the bone; px_m, py_m and pz_m are metres in the frame W, not millimetres");

@@ -7,6 +7,7 @@
 #include "common/base/user_error.h"
 #include "common/config/scene_tools.h"
 #include "haptic_server/core/effects/effect_figures.h"
+#include "haptic_server/lab/simulate/run_path.h"
 #include "haptic_server/recording/statistics/bone_files.h"
 #include "haptic_server/scene/setup/scene_materials.h"
 #include "haptic_server/surface/mesh/welded_mesh.h"
@@ -41,16 +42,12 @@ void SteppedRun::beginAnew() {
 }
 
 std::string SteppedRun::problemOf(const HandStep& hand, std::optional<double> before) const {
-    constexpr double kFar = 1;               // m from the volume: then lengths are in another unit or frame
     constexpr double kUnitTolerance = 1e-3;  // of a quaternion's norm, as in trajectory files
     const auto& [p_W, q_WT] = hand.X_WT;
     if (!p_W.allFinite() || !q_WT.coeffs().allFinite()) return "the hand's pose is not finite";
     if (std::abs(q_WT.norm() - 1) > kUnitTolerance)
         return "the hand's quaternion (w, x, y, z) is of length " + std::to_string(q_WT.norm()) + ", not 1";
-    const Eigen::Vector3d high_V = scanned_.spacing().cwiseProduct(scanned_.dims().cast<double>());
-    const Eigen::Vector3d p_V = scanned_.geometry().X_WV.inverse() * p_W;
-    const double far = (p_V - p_V.cwiseMax(0).cwiseMin(high_V)).norm();
-    if (far > kFar)
+    if (const double far = distanceTo(scanned_, p_W); far > kFarFromBone)
         return "the hand is " + std::to_string(far) + " m from the bone; give metres in W, not millimetres";
     if (hand.t_s && !std::isfinite(*hand.t_s)) return "the tick's time is not finite: give seconds";
     if (hand.t_s && before && *hand.t_s <= *before)

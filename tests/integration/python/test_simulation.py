@@ -147,53 +147,36 @@ class OfABlock(Folder):
             self.assertNotIn("\n", str(caught.exception))
         self.assertEqual(sim.ticks, 0, "what was refused has not run")
 
-    def test_one_thread_at_a_time(self):
-        sim = self.simulation()
+    def must_refuse_a_second(self, first, second, rounds):
+        """Two threads in one run: one is refused, and nothing worse happens."""
         refused, stop = [], threading.Event()
 
-        def poke():
-            while not stop.is_set():
-                try:
-                    sim.step([0, 0, 5e-3])
-                except bonemill.Error as error:
-                    refused.append(str(error))
-
-        thread = threading.Thread(target=poke)
-        thread.start()
-        ran = 0
-        while not refused and ran < 200:
+        def attempt(call):
             try:
-                sim.run(np.tile(DOWN[-1], (2000, 1)))
-                ran += 1
+                call()
             except bonemill.Error as error:
                 refused.append(str(error))
+
+        def others():
+            while not stop.is_set():
+                attempt(second)
+
+        thread = threading.Thread(target=others)
+        thread.start()
+        for _ in range(rounds):
+            attempt(first)
         stop.set()
         thread.join()
         self.assertTrue(refused)
         self.assertIn("one thread at a time", refused[0])
+
+    def test_one_thread_at_a_time(self):
+        sim = self.simulation()
+        self.must_refuse_a_second(lambda: sim.run(np.tile(DOWN[-1], (2000, 1))), lambda: sim.step([0, 0, 5e-3]), 20)
 
     def test_a_run_that_begins_anew_is_nobody_else_s(self):
         sim = self.simulation()
-        refused, stop = [], threading.Event()
-
-        def look():
-            while not stop.is_set():
-                try:
-                    sim.state_hash, sim.ticks, sim.spacing_m
-                except bonemill.Error as error:
-                    refused.append(str(error))
-
-        thread = threading.Thread(target=look)
-        thread.start()
-        for _ in range(40):
-            try:
-                sim.reset()
-            except bonemill.Error as error:
-                refused.append(str(error))
-        stop.set()
-        thread.join()
-        self.assertTrue(refused)
-        self.assertIn("one thread at a time", refused[0])
+        self.must_refuse_a_second(sim.reset, lambda: (sim.state_hash, sim.ticks, sim.spacing_m), 40)
 
     def test_rows_that_are_not_believed_are_told_of(self):
         with self.assertWarnsRegex(RuntimeWarning, "1 of 3 rows were not believed"):
