@@ -12,10 +12,10 @@
 namespace bonemill::igtl {
 
 template <class Number>
-using BitsOf = std::conditional_t<
-    sizeof(Number) == 8, uint64_t,
-    std::conditional_t<sizeof(Number) == 4, uint32_t,
-                       std::conditional_t<sizeof(Number) == 2, uint16_t, uint8_t>>>;
+using BitsOf =
+    std::conditional_t<sizeof(Number) == 8, uint64_t,
+                       std::conditional_t<sizeof(Number) == 4, uint32_t,
+                                          std::conditional_t<sizeof(Number) == 2, uint16_t, uint8_t>>>;
 
 template <class Number>
 void append(std::string& bytes, Number number) {

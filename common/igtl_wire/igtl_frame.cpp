@@ -100,8 +100,8 @@ std::string FrameReader::begin() {
     const auto kind = std::ranges::find(wanted_, frame_.type, &WantedType::type);
     kind_ = kind == wanted_.end() ? nullptr : &*kind;
     const uint64_t around = version_ < 3 ? 0 : kMostAround;
-    const bool fits = kind_ ? missing_ >= kind_->least && missing_ <= kind_->most + around
-                            : missing_ <= kMostSkipped;
+    const bool fits =
+        kind_ ? missing_ >= kind_->least && missing_ <= kind_->most + around : missing_ <= kMostSkipped;
     if (fits) return "";
     return "a body of " + std::to_string(missing_) + " bytes, in a message of type " + printable(frame_.type);
 }

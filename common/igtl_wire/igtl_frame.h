@@ -1,7 +1,7 @@
-// Cuts what a peer sends by OpenIGTLink into frames, and writes frames: a header of 58 bytes (big-endian), then a
-// body. What comes is believed only after its bounds: version, type, size of the body before any of it is kept,
-// then the checksum. It takes any bytes, never throws on them, and holds no more than the largest body that is
-// wanted. For one thread.
+// Cuts what a peer sends by OpenIGTLink into frames, and writes frames: a header of 58 bytes (big-endian),
+// then a body. What comes is believed only after its bounds: version, type, size of the body before any of it
+// is kept, then the checksum. It takes any bytes, never throws on them, and holds no more than the largest
+// body that is wanted. For one thread.
 #pragma once
 
 #include <cstddef>
@@ -26,8 +26,8 @@ struct Frame {
 // Unix time in ns as OpenIGTLink has it: seconds in the upper 32 bits, their fraction in the lower.
 uint64_t stampOf(int64_t unix_ns) noexcept;
 
-// Returns the whole frame, in version 1 of the header, which every peer reads. Type and device are cut to what
-// the header has room for.
+// Returns the whole frame, in version 1 of the header, which every peer reads. Type and device are cut to
+// what the header has room for.
 std::string frameOf(std::string_view type, std::string_view device, int64_t unix_ns, std::string_view body);
 
 // A type that is wanted, and how long its body may be.
@@ -45,8 +45,8 @@ class FrameReader {
 
     explicit FrameReader(std::vector<WantedType> wanted) : wanted_(std::move(wanted)) {}
 
-    // Takes the next bytes of the line and hands on each wanted frame that they complete. Returns why the line
-    // makes no sense; empty: it goes on. After a complaint it takes nothing more.
+    // Takes the next bytes of the line and hands on each wanted frame that they complete. Returns why the
+    // line makes no sense; empty: it goes on. After a complaint it takes nothing more.
     std::string take(std::string_view bytes, const std::function<void(const Frame&)>& use);
 
     // A frame has begun and lacks something.

@@ -109,8 +109,7 @@ std::string imageFrame(std::string_view device, int64_t unix_ns, const ImagePlac
 std::optional<Eigen::Affine3d> transformOf(std::string_view body) {
     if (body.size() != kTransformBytes) return std::nullopt;
     Eigen::Affine3d transform = Eigen::Affine3d::Identity();
-    for (int n = 0; n < 12; ++n)
-        transform.matrix()(n % 3, n / 3) = double(read<float>(body, 4 * size_t(n)));
+    for (int n = 0; n < 12; ++n) transform.matrix()(n % 3, n / 3) = double(read<float>(body, 4 * size_t(n)));
     return transform.matrix().allFinite() ? std::optional(transform) : std::nullopt;
 }
 

@@ -66,12 +66,11 @@ void Line::hear(Clock::time_point now, const std::function<void(const Frame&)>& 
     const ssize_t count = recv(socket_.get(), piece.data(), piece.size(), 0);
     if (count == 0) return refuse("it has left");
     if (count < 0) return isAgain(errno) ? void() : refuse("the line is lost");
-    const std::string complaint =
-        reader_.take({piece.data(), size_t(count)}, [&](const Frame& frame) {
-            ++heard_frames_;
-            whole_ = now;
-            if (!hasEnded()) use(frame);
-        });
+    const std::string complaint = reader_.take({piece.data(), size_t(count)}, [&](const Frame& frame) {
+        ++heard_frames_;
+        whole_ = now;
+        if (!hasEnded()) use(frame);
+    });
     if (!reader_.isWithin()) whole_ = now;
     if (!complaint.empty()) refuse("it sent " + complaint);
 }

@@ -1,6 +1,6 @@
-// A TCP port that speaks OpenIGTLink with several peers at once: takes their frames, sends them ours, and holds
-// both within bounds of memory and time whatever a peer does. One who sends what makes no sense, or half a message,
-// or does not read, is sent away; nobody waits for another.
+// A TCP port that speaks OpenIGTLink with several peers at once: takes their frames, sends them ours, and
+// holds both within bounds of memory and time whatever a peer does. One who sends what makes no sense, or
+// half a message, or does not read, is sent away; nobody waits for another.
 //
 // For one thread.
 #pragma once
@@ -32,7 +32,8 @@ class Line {
     Line(Descriptor socket, const PeerAddress& from, const std::vector<WantedType>& wanted,
          Clock::time_point now);
 
-    // Queues a frame, if no more than `most_waiting` bytes wait already; false: it was dropped, and is counted.
+    // Queues a frame, if no more than `most_waiting` bytes wait already; false: it was dropped, and is
+    // counted.
     bool say(Blob frame, size_t most_waiting);
     size_t waitingBytes() const noexcept { return waiting_bytes_; }
     uint64_t droppedFrames() const noexcept { return dropped_frames_; }

@@ -13,13 +13,15 @@
 #include "common/cli/command_line.h"
 #include "render_client/web/gateway/guest_list.h"
 #include "render_client/web/relay/relay_greeting.h"
+#include "render_client/web/secrets/secrets.h"
 
 namespace bonemill {
 namespace {
 
 std::string secretOf(const RawRelay& raw) {
-    return readRelaySecret(raw.secret_file.empty() ? (gateway::configFolder() / "relay-secret").string()
-                                                   : raw.secret_file);
+    return readSecret(raw.secret_file.empty() ? (gateway::configFolder() / "relay-secret").string()
+                                              : raw.secret_file,
+                      "a relay");
 }
 
 std::filesystem::path builtPage() {

@@ -3,9 +3,16 @@
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
 #include <openssl/sha.h>
+#include <sys/stat.h>
 
+#include <algorithm>
 #include <array>
+#include <filesystem>
+#include <fstream>
 #include <stdexcept>
+
+#include "common/base/user_error.h"
+#include "common/files/require_file.h"
 
 namespace bonemill {
 
@@ -37,6 +44,29 @@ std::string randomToken() {
 
 bool isSameSecret(std::string_view a, std::string_view b) {
     return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
+}
+
+std::string readSecret(const std::string& path, const std::string& whose) {
+    constexpr size_t kShortest = 32, kLongest = 4096;
+    requireFile(path);
+    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+    const std::string how =
+        "mkdir -p " + folder.string() + " && (umask 077; openssl rand -hex 32 > " + path + ")";
+    struct stat status {};
+    if (stat(path.c_str(), &status) != 0)
+        throw UserError(path + ": there is no secret of " + whose + "; make one: " + how);
+    if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0)
+        throw UserError(path + ": others may read this secret; type: chmod 600 " + path);
+    std::ifstream file(path, std::ios::binary);
+    std::string secret(kLongest, '\0');
+    file.read(secret.data(), std::streamsize(secret.size()));
+    secret.resize(size_t(file.gcount()));
+    constexpr const char* kBlanks = " \t\r\n";
+    secret.erase(0, std::min(secret.find_first_not_of(kBlanks), secret.size()));
+    secret.erase(secret.find_last_not_of(kBlanks) + 1);
+    if (secret.size() < kShortest)
+        throw UserError(path + ": the secret of " + whose + " has at least 32 letters; make one: " + how);
+    return secret;
 }
 
 }  // namespace bonemill

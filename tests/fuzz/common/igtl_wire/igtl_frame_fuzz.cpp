@@ -15,7 +15,8 @@ constexpr size_t kMostHeld = kHeaderBytes + 2 * (4 + kLongestString + FrameReade
 std::string thirdVersionOf(const std::string& text) {
     const std::string content = stringFrame("", 0, text).substr(kHeaderBytes);
     std::string body;
-    append(body, uint16_t(12)), append(body, uint16_t(2)), append(body, uint32_t(3)), append(body, uint32_t(9));
+    append(body, uint16_t(12)), append(body, uint16_t(2)), append(body, uint32_t(3)),
+        append(body, uint32_t(9));
     std::string frame = frameOf("STRING", "third", 0, body + content + "abcde");
     frame[1] = 3;
     return frame;

@@ -45,7 +45,8 @@ class PortTest : public testing::Test, protected LineSink {
 
     int came_ = 0, gone_ = 0;
     std::vector<std::string> heard_;
-    Port port_{"127.0.0.1", 0, {kWantedString}, {.most_lines = 8, .frame_time = 300ms, .read_time = 500ms}, *this};
+    Port port_{
+        "127.0.0.1", 0, {kWantedString}, {.most_lines = 8, .frame_time = 300ms, .read_time = 500ms}, *this};
 };
 
 TEST_F(PortTest, SendsAwayWhoeverSendsNonsense) {
@@ -54,8 +55,9 @@ TEST_F(PortTest, SendsAwayWhoeverSendsNonsense) {
     huge += std::string("STRING\0\0\0\0\0\0", 12) + std::string(28, '\0');
     append(huge, uint64_t(4) << 30);
     append(huge, uint64_t(0));
-    for (const std::string& bytes : {std::string("GET / HTTP/1.1\r\nHost: slicer\r\nAccept: */*\r\nConnection: close\r\n\r\n"),
-                                     std::string(100, '\xff'), huge}) {
+    for (const std::string& bytes :
+         {std::string("GET / HTTP/1.1\r\nHost: slicer\r\nAccept: */*\r\nConnection: close\r\n\r\n"),
+          std::string(100, '\xff'), huge}) {
         const int before = gone_;
         const Descriptor socket = dialled();
         put(socket, bytes);

@@ -69,7 +69,8 @@ TEST(IgtlReference, WritesATransformThatIsReadHere) {
     message->SetDeviceName("Tracker");
     ::igtl::Matrix4x4 matrix;
     for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 4; ++column) matrix[row][column] = float(somewhere().matrix()(row, column));
+        for (int column = 0; column < 4; ++column)
+            matrix[row][column] = float(somewhere().matrix()(row, column));
     message->SetMatrix(matrix);
     const auto frames = readHere(*message);
     ASSERT_EQ(frames.size(), 1u);
@@ -91,8 +92,8 @@ TEST(IgtlReference, WritesAStringThatIsReadHereAndTheOtherWayRound) {
 }
 
 TEST(IgtlReference, ReadsAStatus) {
-    const auto message = readByLibrary<::igtl::StatusMessage>(
-        statusFrame("bonemill", 0, StatusCode::kNotReady, "no session"));
+    const auto message =
+        readByLibrary<::igtl::StatusMessage>(statusFrame("bonemill", 0, StatusCode::kNotReady, "no session"));
     ASSERT_TRUE(message.IsNotNull());
     EXPECT_EQ(message->GetCode(), ::igtl::StatusMessage::STATUS_NOT_READY);
     EXPECT_STREQ(message->GetStatusString(), "no session");
