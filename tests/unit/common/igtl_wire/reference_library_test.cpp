@@ -11,24 +11,12 @@
 #include <numeric>
 
 #include "common/igtl_wire/igtl_messages.h"
+#include "tests/support/openigtlink_reader.h"
 
 namespace bonemill::igtl {
 namespace {
 
-// Lets the library read the frame, with its checksum; null where it does not believe it.
-template <class Message>
-typename Message::Pointer readByLibrary(const std::string& frame) {
-    auto header = ::igtl::MessageHeader::New();
-    header->InitPack();
-    std::memcpy(header->GetPackPointer(), frame.data(), size_t(header->GetPackSize()));
-    header->Unpack();
-    auto message = Message::New();
-    message->SetMessageHeader(header);
-    message->AllocatePack();
-    if (size_t(message->GetPackBodySize()) != frame.size() - kHeaderBytes) return nullptr;
-    std::memcpy(message->GetPackBodyPointer(), frame.data() + kHeaderBytes, frame.size() - kHeaderBytes);
-    return message->Unpack(1) & ::igtl::MessageHeader::UNPACK_BODY ? message : nullptr;
-}
+using test::readByLibrary;
 
 std::vector<Frame> readHere(::igtl::MessageBase& message) {
     message.Pack();
