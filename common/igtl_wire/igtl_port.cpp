@@ -127,12 +127,12 @@ void Port::acceptSome() {
         if (!socket) return;
         if (lines_.size() >= bounds_.most_lines) {
             ++refused_lines_;
-            log("a peer from " + textOf(from) + " is turned away: " + std::to_string(lines_.size()) +
-                " are here");
+            log(refused_, "a peer from " + textOf(from) +
+                              " is turned away: " + std::to_string(lines_.size()) + " are here");
             continue;
         }
         lines_.push_back(std::make_unique<Line>(std::move(socket), from, wanted_, Line::Clock::now()));
-        log("a peer has come from " + textOf(from));
+        log(came_, "a peer has come from " + textOf(from));
         sink_.came(*lines_.back());
     }
 }
@@ -140,17 +140,17 @@ void Port::acceptSome() {
 void Port::forgetEnded() {
     for (const auto& line : lines_) {
         if (!line->hasEnded()) continue;
-        log("the peer from " + textOf(line->from()) + " is gone: " + printableLine(line->end_) + "; " +
-            std::to_string(line->sentBytes()) + " bytes sent, " + std::to_string(line->droppedFrames()) +
-            " messages dropped");
+        log(gone_, "the peer from " + textOf(line->from()) + " is gone: " + printableLine(line->end_) + "; " +
+                       std::to_string(line->sentBytes()) + " bytes sent, " +
+                       std::to_string(line->droppedFrames()) + " messages dropped");
         sink_.gone(*line);
     }
     std::erase_if(lines_, [](const auto& line) { return line->hasEnded(); });
 }
 
-void Port::log(const std::string& text) {
+void Port::log(LogLimit& limit, const std::string& text) {
     const int64_t now_ns = std::chrono::nanoseconds(Line::Clock::now().time_since_epoch()).count();
-    const int64_t left_out = log_limit_.ask(now_ns);
+    const int64_t left_out = limit.ask(now_ns);
     if (left_out < 0) return;
     spdlog::info("{}{}", text,
                  left_out > 0 ? "; " + std::to_string(left_out) + " lines were left out before" : "");

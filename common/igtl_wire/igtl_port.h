@@ -91,7 +91,7 @@ class Port {
   private:
     void acceptSome();
     void forgetEnded();
-    void log(const std::string& text);
+    static void log(LogLimit& limit, const std::string& text);
 
     const std::vector<WantedType> wanted_;
     const PortBounds bounds_;
@@ -99,7 +99,7 @@ class Port {
     Descriptor listener_;
     std::vector<std::unique_ptr<Line>> lines_;
     uint64_t refused_lines_ = 0;
-    LogLimit log_limit_{20, 10'000'000'000};
+    LogLimit came_{20, 10'000'000'000}, gone_{20, 10'000'000'000}, refused_{5, 10'000'000'000};
 };
 
 }  // namespace bonemill::igtl

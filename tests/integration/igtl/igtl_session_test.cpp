@@ -93,21 +93,22 @@ TEST_F(IgtlSession, AHandMillsAndTheBoneToolAndScanShowIt) {
     ASSERT_TRUE(peer.readUntil([&] { return pointsOf(peer).size() > 1000; }));
     const std::vector<Eigen::Vector3d> scanned = pointsOf(peer);
     beginDevice();
-    // It rests 4 mm above the ball, in the end.
-    const Eigen::Vector3d rest = rasOfLps(top(4)), burr = rasOfLps(top(-1));
-    bool was_down = false;
+    // It begins 4 mm above the ball, mills, and comes back.
+    const Eigen::Vector3d rest = rasOfLps(top(4)), burr = rasOfLps(top(-0.5));
+    bool was_there = false, was_down = false;
     ASSERT_TRUE(peer.readUntil([&] {
         const auto hand = peer.frames.find("bonemill_hand");
         if (hand == peer.frames.end()) return false;
         const Eigen::Vector3d p = igtl::transformOf(hand->second.body)->translation();
-        was_down |= (p - burr).norm() < 0.3;
-        return was_down && (p - rest).norm() < 0.02;
+        was_there |= (p - rest).norm() < 0.02;
+        was_down |= p.z() < top(0).z();
+        return was_there && was_down && p.z() > top(3).z();
     }));
     // T's axes in RAS: q_WT turns y into W's z, and z into −y, which RAS calls +y.
     const Eigen::Matrix3d turn = igtl::transformOf(peer.frames["bonemill_hand"].body)->linear();
-    EXPECT_TRUE(turn.col(1).isApprox(Eigen::Vector3d::UnitZ(), 1e-5)) << turn;
-    EXPECT_TRUE(turn.col(2).isApprox(Eigen::Vector3d::UnitY(), 1e-5)) << turn;
-    EXPECT_TRUE(turn.col(0).isApprox(-Eigen::Vector3d::UnitX(), 1e-5)) << turn;
+    EXPECT_TRUE(turn.col(1).isApprox(Eigen::Vector3d::UnitZ(), 1e-3)) << turn;
+    EXPECT_TRUE(turn.col(2).isApprox(Eigen::Vector3d::UnitY(), 1e-3)) << turn;
+    EXPECT_TRUE(turn.col(0).isApprox(-Eigen::Vector3d::UnitX(), 1e-3)) << turn;
     EXPECT_GT(peer.counts["bonemill_tool"], 60);
     EXPECT_GT(peer.counts["bonemill_wrench"], 60);
     const auto deepest = [](const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& at) {
@@ -215,7 +216,8 @@ TEST_F(IgtlSession, HostilePeersCostABoundAndNobodyElseWaits) {
     EXPECT_TRUE(good.readUntil([&] { return good.counts["bonemill"] > before + 2; }))
         << "it is served meanwhile";
     EXPECT_LT(memory_kib() - before_kib, 64 << 10);
-    EXPECT_TRUE(waitFor([&] { return igtl_->errSoFar().find("is turned away") != std::string::npos; }));
+    EXPECT_TRUE(waitFor([&] { return igtl_->errSoFar().find("is turned away") != std::string::npos; }))
+        << igtl_->errSoFar();
     EXPECT_TRUE(waitFor(
         [&] { return igtl_->errSoFar().find("a body of 1099511627776 bytes") != std::string::npos; }));
     crowd.clear();
