@@ -13,8 +13,9 @@ namespace {
 
 constexpr std::chrono::milliseconds kLook{20};
 constexpr size_t kMostWaiting = 8 << 10;  // bytes: a wrench behind more would be old
-constexpr double kFarthest = 10;          // m
-constexpr double kCautiousForce = 5;      // N, where nobody says what the peer can give
+constexpr const char* kButtonsDevice = "bonemill_buttons";
+constexpr double kFarthest = 10;      // m
+constexpr double kCautiousForce = 5;  // N, where nobody says what the peer can give
 
 bool isOfThisPc(const std::string& address) {
     return address.starts_with("127.") || address == "::1";
@@ -47,7 +48,7 @@ ArmDescription IgtlHand::open(const Tell& tell) {
     if (hand_.peer.empty() && !isOfThisPc(hand_.address))
         throw UserError("--igtl-address " + hand_.address +
                         ": whoever reaches it could move the tool; say with --peer which address may");
-    port_.emplace(hand_.address, hand_.port, std::vector{igtl::kWantedTransform},
+    port_.emplace(hand_.address, hand_.port, std::vector{igtl::kWantedTransform, igtl::kWantedString},
                   igtl::PortBounds{.most_lines = 4}, static_cast<igtl::LineSink&>(*this));
     tell_("hands come by OpenIGTLink to " + hand_.address + ":" + std::to_string(port_->number()));
     ArmDescription description;
@@ -97,8 +98,23 @@ void IgtlHand::came(igtl::Line& line) {
     if (!may_come) line.refuse("it may not hold the hand");
 }
 
-// The first who says where the hand is holds it until its line ends.
 void IgtlHand::heard(igtl::Line& line, const igtl::Frame& frame) {
+    frame.type == "STRING" ? hearButtons(line, frame) : hearPose(line, frame);
+}
+
+// Words of what the hand presses: "remove", "add", both or none.
+void IgtlHand::hearButtons(const igtl::Line& line, const igtl::Frame& frame) {
+    const auto text = igtl::stringOf(frame.body);
+    if (frame.device != kButtonsDevice || line.number() != holder_ || !text) return;
+    newest_.buttons = 0;
+    std::istringstream words(*text);
+    for (std::string word; words >> word;)
+        newest_.buttons |= word == "remove" ? kButtonRemove : word == "add" ? kButtonAdd : 0u;
+    heard_.write(newest_);
+}
+
+// The first who says where the hand is holds it until its line ends.
+void IgtlHand::hearPose(igtl::Line& line, const igtl::Frame& frame) {
     if (!hand_.device.empty() && frame.device != hand_.device) return;
     if (holder_ != 0 && holder_ != line.number()) return;
     const auto X_PT = igtl::transformOf(frame.body);
@@ -130,6 +146,7 @@ void IgtlHand::gone(const igtl::Line& line) {
     if (line.number() != holder_) return;
     holder_ = 0;
     newest_.is_held = false;
+    newest_.buttons = 0;
     heard_.write(newest_);
 }
 

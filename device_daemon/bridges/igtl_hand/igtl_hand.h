@@ -44,6 +44,8 @@ class IgtlHand : public Arm, private igtl::LineSink {
     void came(igtl::Line& line) override;
     void heard(igtl::Line& line, const igtl::Frame& frame) override;
     void gone(const igtl::Line& line) override;
+    void hearPose(igtl::Line& line, const igtl::Frame& frame);
+    void hearButtons(const igtl::Line& line, const igtl::Frame& frame);
     void listen() noexcept;
     void run(ArmPeriod& period) noexcept;
 

@@ -17,8 +17,9 @@ struct HeardPose {
     std::array<double, 3> p_D{};  // m
     std::array<double, 4> q_D{1, 0, 0, 0};
     int64_t heard_ns = 0;
-    uint64_t count = 0;  // of poses
-    uint64_t hold = 0;   // another hand holds it than before
+    uint64_t count = 0;    // of poses
+    uint64_t hold = 0;     // another hand holds it than before
+    uint32_t buttons = 0;  // Button bits
     bool is_held = false;
 };
 
@@ -77,6 +78,7 @@ inline ArmReading PacedHand::step(const HeardPose& heard, int64_t now_ns) noexce
     // is.
     reading.is_valid = !has_been_lost;
     reading.is_homed = reading.is_powered = is_fresh;
+    reading.buttons = is_fresh ? heard.buttons : 0;
     reading.X_DT = poseAt(now_ns);
     return reading;
 }

@@ -118,6 +118,13 @@ TEST_F(IgtlBridge, ARobotFeelsTheWrenchInItsOwnAxesAndMovesTheHandInOurs) {
     EXPECT_NEAR(wrench[0], 2, 1e-6) << "D's y is its x";
     EXPECT_NEAR(wrench[1], -1, 1e-6);
     EXPECT_NEAR(wrench[5], 0.1, 1e-6);
+    robot.put(igtl::stringFrame("bonemill_buttons", 0, "remove"));
+    ASSERT_TRUE(sayUntil(host, robot, {110, 20, -15}, [&] {
+        return (host.state().inputs >> wire::kFirstButtonInput & 3) == kButtonRemove;
+    }));
+    robot.put(igtl::stringFrame("bonemill_buttons", 0, ""));
+    ASSERT_TRUE(sayUntil(host, robot, {110, 20, -15},
+                         [&] { return (host.state().inputs >> wire::kFirstButtonInput & 3) == 0; }));
     EXPECT_NEAR(host.state().p_DT[0], -0.020, 1e-9);
     EXPECT_NEAR(host.state().p_DT[1], 0.010, 1e-9);
     EXPECT_NEAR(host.state().p_DT[2], 0.005, 1e-9);

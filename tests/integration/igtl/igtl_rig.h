@@ -42,13 +42,13 @@ class IgtlPeer {
     }
     // Reads until the condition holds; false when the line ended, or it never did.
     template <class Condition>
-    bool readUntil(const Condition& condition, std::chrono::seconds limit = std::chrono::seconds(60)) {
+    bool readUntil(const Condition& condition, std::chrono::milliseconds limit = std::chrono::seconds(60)) {
         const auto end = std::chrono::steady_clock::now() + limit;
         std::vector<char> piece(1 << 20);
         while (!condition()) {
             if (std::chrono::steady_clock::now() > end) return false;
             pollfd file{socket_.get(), POLLIN, 0};
-            if (poll(&file, 1, 20) <= 0) continue;
+            if (poll(&file, 1, 2) <= 0) continue;
             const ssize_t count = recv(socket_.get(), piece.data(), piece.size(), MSG_DONTWAIT);
             if (count == 0) return condition();
             if (count < 0) continue;

@@ -1,10 +1,13 @@
 // Peers of bonemill_igtl see tool, bone and scan where the scan's own file has them, and order only what they
 // may.
 #include <gtest/gtest.h>
+#include <igtlNDArrayMessage.h>
 #include <signal.h>
 
+#include <atomic>
 #include <cmath>
 #include <sstream>
+#include <thread>
 
 #include "tests/integration/igtl/igtl_rig.h"
 #include "tests/support/places.h"
@@ -128,6 +131,71 @@ TEST_F(IgtlSession, AHandMillsAndTheBoneToolAndScanShowIt) {
     const auto* values = static_cast<const int16_t*>(image->GetScalarPointer());
     EXPECT_LT(values[(v.z() * ObliqueBall::kEdge + v.y()) * ObliqueBall::kEdge + v.x()], ObliqueBall::kIso)
         << "where the burr was there is no bone";
+}
+
+// Says without a pause where its hand is, above D's origin.
+class ToldHand {
+  public:
+    explicit ToldHand(uint16_t port) : peer_(port), thread_([this] { run(); }) {}
+    ~ToldHand() {
+        shall_end_ = true;
+        thread_.join();
+    }
+    // It goes there at 3 mm/s.
+    void goDownTo(double above_mm) { goal_mm_ = above_mm; }
+    void remove() { shall_remove_ = true; }
+    double feltUp() const { return felt_n_; }  // the most, N
+
+  private:
+    void run() {
+        double above_mm = goal_mm_;
+        Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
+        while (!shall_end_) {
+            if (shall_remove_.exchange(false)) peer_.send(igtl::stringFrame("bonemill_buttons", 0, "remove"));
+            above_mm = std::max(above_mm - 0.015, goal_mm_.load());
+            place.translation() = Eigen::Vector3d(0, above_mm, 0);
+            peer_.send(igtl::transformFrame("Robot", 0, place));
+            peer_.readUntil([] { return false; }, std::chrono::milliseconds(5));
+            if (peer_.counts["bonemill_wrench"] == 0) continue;
+            const auto wrench = peer_.byLibrary<::igtl::NDArrayMessage>("bonemill_wrench");
+            felt_n_ = std::max(felt_n_.load(), static_cast<double*>(wrench->GetArray()->GetRawArray())[1]);
+        }
+    }
+
+    IgtlPeer peer_;
+    std::atomic<double> goal_mm_{4}, felt_n_{0};
+    std::atomic<bool> shall_remove_{false}, shall_end_{false};
+    std::thread thread_;
+};
+
+// A robot holds the drill: its poses go in by the bridge, the bone comes out here. D lies at the ball's top,
+// its y is W's z.
+TEST_F(IgtlSession, AToldHandMills) {
+    begin();
+    IgtlPeer peer(port_);
+    ASSERT_TRUE(peer.readUntil([&] { return pointsOf(peer).size() > 1000; }));
+    Process bridge({"bonemill_bridge_igtl", "--igtl-port", "0"});
+    const uint16_t udp = portBehind(bridge, "listening on 127.0.0.1:");
+    ToldHand robot(portBehind(bridge, "OpenIGTLink to 127.0.0.1:"));
+    const Process daemon({"device_daemon", "--device", "bridge:127.0.0.1:" + std::to_string(udp),
+                          "--no-enabling-switch", "--scene", folder_ / "s.textproto", "--session",
+                          std::to_string(testSession())});
+    ASSERT_TRUE(peer.readUntil([&] {
+        const auto hand = peer.frames.find("bonemill_hand");
+        return hand != peer.frames.end() &&
+               (igtl::transformOf(hand->second.body)->translation() - rasOfLps(top(4))).norm() < 0.01;
+    }));
+    robot.goDownTo(0.8);
+    EXPECT_TRUE(waitFor([&] { return robot.feltUp() > 0.1; }, std::chrono::seconds(20)))
+        << "the bone pushes it, in its own axes: " << robot.feltUp() << " N";
+    robot.remove();
+    robot.goDownTo(-0.5);
+    const auto lowest = [&] {
+        double least = 1e9;
+        for (const auto& p : pointsOf(peer)) least = std::min(least, (p - rasOfLps(ball_.middle())).norm());
+        return least;
+    };
+    EXPECT_TRUE(peer.readUntil([&] { return lowest() < ObliqueBall::kRadius_mm - 1; })) << lowest();
 }
 
 // Debian's own example program prints what it is sent.
