@@ -13,7 +13,7 @@
 #include "common/cli/command_line.h"
 #include "render_client/web/gateway/guest_list.h"
 #include "render_client/web/relay/relay_greeting.h"
-#include "render_client/web/secrets/secrets.h"
+#include "common/secrets/secrets.h"
 
 namespace bonemill {
 namespace {

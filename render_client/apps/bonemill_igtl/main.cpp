@@ -15,7 +15,7 @@
 #include "common/process/standard_output.h"
 #include "common/rt/stop_signals.h"
 #include "render_client/peers/igtl_session/igtl_session.h"
-#include "render_client/web/secrets/secrets.h"
+#include "common/secrets/secrets.h"
 
 namespace bonemill {
 namespace {

@@ -26,7 +26,7 @@
 #include "render_client/web/gateway/gateway_server.h"
 #include "render_client/web/gateway/guest_list.h"
 #include "render_client/web/relay/relay.h"
-#include "render_client/web/secrets/secrets.h"
+#include "common/secrets/secrets.h"
 
 namespace bonemill {
 namespace {

@@ -11,7 +11,7 @@
 #include "common/text/foreign_text.h"
 #include "render_client/link/subscribe/command_words.h"
 #include "render_client/peers/igtl_session/patient_axes.h"
-#include "render_client/web/secrets/secrets.h"
+#include "common/secrets/secrets.h"
 
 namespace bonemill::igtl {
 namespace {

@@ -14,7 +14,7 @@
 #include "common/files/require_private.h"
 #include "common/files/whole_file.h"
 #include "common/security/certificate.h"
-#include "render_client/web/secrets/secrets.h"
+#include "common/secrets/secrets.h"
 
 namespace bonemill::gateway {
 namespace {

@@ -13,7 +13,7 @@
 #include "common/files/file_stamp.h"
 #include "common/files/whole_file.h"
 #include "common/text/foreign_text.h"
-#include "render_client/web/secrets/secrets.h"
+#include "common/secrets/secrets.h"
 
 namespace bonemill::gateway {
 namespace {

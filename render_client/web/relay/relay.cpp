@@ -12,7 +12,7 @@
 #include <cstring>
 
 #include "common/tcp/listen.h"
-#include "render_client/web/secrets/secrets.h"
+#include "common/secrets/secrets.h"
 
 namespace bonemill {
 

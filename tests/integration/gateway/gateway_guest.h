@@ -21,7 +21,7 @@
 #include "render_client/web/gateway/gateway.h"
 #include "render_client/web/gateway/gateway_server.h"
 #include "render_client/web/gateway/guest.h"
-#include "render_client/web/secrets/secrets.h"
+#include "common/secrets/secrets.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/process.h"
 #include "tests/support/synthetic_nodes.h"

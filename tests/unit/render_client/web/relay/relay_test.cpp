@@ -16,7 +16,7 @@
 #include "common/tcp/dial.h"
 #include "common/tcp/listen.h"
 #include "render_client/web/relay/relay_dialer.h"
-#include "render_client/web/secrets/secrets.h"
+#include "common/secrets/secrets.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bonemill {

@@ -1,4 +1,4 @@
-#include "render_client/web/secrets/secrets.h"
+#include "common/secrets/secrets.h"
 
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
