@@ -14,8 +14,8 @@
 #include "common/process/run_program.h"
 #include "common/process/standard_output.h"
 #include "common/rt/stop_signals.h"
-#include "render_client/peers/igtl_session/igtl_session.h"
 #include "common/secrets/secrets.h"
+#include "render_client/peers/igtl_session/igtl_session.h"
 
 namespace bonemill {
 namespace {

@@ -8,10 +8,10 @@
 #include "common/base/user_error.h"
 #include "common/commands/role_rules.h"
 #include "common/igtl_wire/igtl_messages.h"
+#include "common/secrets/secrets.h"
 #include "common/text/foreign_text.h"
 #include "render_client/link/subscribe/command_words.h"
 #include "render_client/peers/igtl_session/patient_axes.h"
-#include "common/secrets/secrets.h"
 
 namespace bonemill::igtl {
 namespace {

@@ -11,8 +11,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "common/tcp/listen.h"
 #include "common/secrets/secrets.h"
+#include "common/tcp/listen.h"
 
 namespace bonemill {
 

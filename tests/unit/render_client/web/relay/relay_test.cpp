@@ -13,10 +13,10 @@
 #include <thread>
 
 #include "common/base/user_error.h"
+#include "common/secrets/secrets.h"
 #include "common/tcp/dial.h"
 #include "common/tcp/listen.h"
 #include "render_client/web/relay/relay_dialer.h"
-#include "common/secrets/secrets.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bonemill {
