@@ -139,18 +139,18 @@ class Recorder {
         journal_.putBone(rerun_.history().snapshot(*simulation_.bone), order);
         journal_.round();
     }
-    // Times and tunings as the recording counts them.
+    // Times, orders and tunings as the recording counts them.
     void add(const JournalTick& tick, TickRecord record) {
         record.start_ns = tick.start_ns;
-        record.input.decisions.tuning = tick.input.decisions.tuning;
+        record.input.decisions = tick.input.decisions;
         journal_.add(record);
         if ((record.tick + 1) % kBoneEvery == 0 && !rerun_.history().isRestoring())
             noteBone(record.bone_order);
     }
     RecordedAttempt finish(const TickSpan& span, uint64_t count) {
         RecordedAttempt attempt = run_.attempt;
-        attempt.end = run_.first + count;
         if (attempt.time_s) {
+            attempt.end = run_.first + count;
             const double longer = double(attempt.end) - double(span.end);
             attempt.time_s = *attempt.time_s + longer * simulation_.tick.dt;
             noteEnd(attempt);
