@@ -27,8 +27,9 @@ class WhatIf : public testing::Test {
   protected:
     // Session and scene, with attempts of P1, P2 and P3, the last of which did not end.
     test::RecordedSession withAttempts() {
-        return test::recordSession(
-            folder_.path(), {.has_orders = false, .scene_text = kGroove, .attempts = {500, 1500, 2500}});
+        return test::recordSession(folder_.path(), {.has_orders = false,
+                                                    .scene_text = std::string(kGroove) + kFineTool,
+                                                    .attempts = {500, 1500, 2500}});
     }
     WhatIfOptions from(double at_s, const test::RecordedSession& session) const {
         WhatIfOptions options;
