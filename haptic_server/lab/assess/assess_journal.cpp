@@ -8,7 +8,7 @@ namespace bonemill {
 namespace {
 
 AssessmentTarget targetOf(const AssessOptions& options, const Recording& recording,
-                          const RecordedAttempt& attempt, const JudgedAttempt& judged) {
+                          const RecordedAttempt& attempt, const AttemptOutcome& judged) {
     AssessmentTarget target;
     target.folder = options.out;
     target.pseudonym = attempt.trainee;
@@ -33,7 +33,7 @@ int assessJournal(const AssessOptions& options, std::ostream& said) {
                         ": holds no attempt of a trainee; nothing can be assessed");
     FinalFiles files;
     AttemptsJudge judge(recording, attempts);
-    judge.run([&](const JudgedAttempt& judged) {
+    judge.run([&](const AttemptOutcome& judged) {
         const AssessmentTarget target = targetOf(options, recording, attempts[judged.index], judged);
         const size_t problems = files.problems().size();
         const std::string stem = writeAssessment(target, judge.loaded(), judged.result, files);

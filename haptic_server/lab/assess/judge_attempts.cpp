@@ -11,7 +11,7 @@ AttemptsJudge::AttemptsJudge(const Recording& recording, const std::vector<Recor
       eyes_(recordedEyes(recording)),
       rerun_(recording, simulation_, bones_.checkpoints, *simulation_.bone, bones_.keyframes.front()) {}
 
-void AttemptsJudge::run(const std::function<void(const JudgedAttempt&)>& tell) {
+void AttemptsJudge::run(const std::function<void(const AttemptOutcome&)>& tell) {
     tell_ = tell;
     while (!rerun_.isAtEnd() && (run_ || next_ < attempts_.size())) {
         const uint64_t tick = rerun_.next();

@@ -12,7 +12,7 @@
 
 namespace bonemill {
 
-struct JudgedAttempt {
+struct AttemptOutcome {
     size_t index;                        // of the attempts asked for
     double begin_s = 0, duration_s = 0;  // of the session; without pauses, where that was recorded
     TaskRun::Result result;
@@ -24,7 +24,7 @@ class AttemptsJudge {
     AttemptsJudge(const Recording& recording, const std::vector<RecordedAttempt>& attempts);
 
     // Tells of each when it has ended; one that did not ends with the recording.
-    void run(const std::function<void(const JudgedAttempt&)>& tell);
+    void run(const std::function<void(const AttemptOutcome&)>& tell);
 
     const LoadedScene& loaded() const noexcept { return loaded_; }
 
@@ -42,7 +42,7 @@ class AttemptsJudge {
     Recording::Bones bones_;
     std::vector<RecordedEye> eyes_;
     Rerun rerun_;
-    std::function<void(const JudgedAttempt&)> tell_;
+    std::function<void(const AttemptOutcome&)> tell_;
     std::unique_ptr<TaskRun> run_;  // of the attempt that is on
     size_t next_ = 0;               // attempt
     size_t next_eye_ = 0;

@@ -83,7 +83,7 @@ Otherwise otherwiseOf(const WhatIfOptions& options, const LoadedScene& loaded, s
 Course courseOf(const Recording& recording, const RecordedAttempt& attempt) {
     Course course;
     const std::vector<RecordedAttempt> attempts{attempt};
-    AttemptsJudge(recording, attempts).run([&](const JudgedAttempt& judged) {
+    AttemptsJudge(recording, attempts).run([&](const AttemptOutcome& judged) {
         course = {judged.result.assessment, judged.begin_s, judged.duration_s};
     });
     return course;
