@@ -23,7 +23,7 @@ struct IgtlOptions {
     std::string address = "127.0.0.1";
     uint16_t port = 18944;  // 0: any
     std::string secret;     // whoever says it may order; empty: nobody
-    double bone_mbit_per_s = 16;
+    double bone_mbit_per_s = 64;
     PortBounds bounds = {};
 };
 
