@@ -11,6 +11,7 @@
 
 #include "common/base/user_error.h"
 #include "common/cli/command_line.h"
+#include "common/secrets/secrets.h"
 #include "render_client/web/gateway/guest_list.h"
 #include "render_client/web/relay/relay_greeting.h"
 
@@ -18,8 +19,9 @@ namespace bonemill {
 namespace {
 
 std::string secretOf(const RawRelay& raw) {
-    return readRelaySecret(raw.secret_file.empty() ? (gateway::configFolder() / "relay-secret").string()
-                                                   : raw.secret_file);
+    return readSecret(
+        raw.secret_file.empty() ? (gateway::configFolder() / "relay-secret").string() : raw.secret_file,
+        "a relay");
 }
 
 std::filesystem::path builtPage() {

@@ -10,7 +10,7 @@
 
 #include "common/base/user_error.h"
 #include "common/rt/clock.h"
-#include "render_client/web/secrets/secrets.h"
+#include "common/secrets/secrets.h"
 #include "tests/bench/bench_commands.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/processor_time.h"

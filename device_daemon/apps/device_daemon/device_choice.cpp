@@ -148,6 +148,7 @@ ChosenDevice deviceOf(const std::string& word, const FollowedScene& scene, const
     if (kind == "force-dimension") return bridged("bonemill_bridge_force_dimension");
     if (kind == "touch") return bridged("bonemill_bridge_touch");
     if (kind == "haply") return bridged("bonemill_bridge_haply");
+    if (kind == "igtl") return bridged("bonemill_bridge_igtl");
     if (kind == "spacemouse")
         return {nullptr, std::make_unique<SpaceMouseDevice>(setup.rates, setup.X_DT_start)};
     if (kind == "pointer") return pointer(scene, options);
@@ -173,7 +174,8 @@ const char* deviceChoices() {
            "ares:ADDRESS:PORT (a controller that speaks docs/reference/ares_link.md), bridge:ADDRESS:PORT (a "
            "program "
            "that speaks "
-           "its pose packets), force-dimension, touch, haply, spacemouse, gamepad[:PATH], pointer (the mouse "
+           "its pose packets), force-dimension, touch, haply, igtl (told by OpenIGTLink), spacemouse, "
+           "gamepad[:PATH], pointer (the mouse "
            "in a "
            "viewer)";
 }

@@ -14,6 +14,7 @@
 #include "common/process/run_program.h"
 #include "common/process/standard_output.h"
 #include "common/process/supervisor.h"
+#include "common/secrets/secrets.h"
 #include "common/tcp/listen.h"
 #include "render_client/apps/render_client/scene_feed.h"
 #include "render_client/apps/render_client/unattended_viewer.h"
@@ -26,7 +27,6 @@
 #include "render_client/web/gateway/gateway_server.h"
 #include "render_client/web/gateway/guest_list.h"
 #include "render_client/web/relay/relay.h"
-#include "render_client/web/secrets/secrets.h"
 
 namespace bonemill {
 namespace {

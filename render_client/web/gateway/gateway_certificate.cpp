@@ -13,8 +13,8 @@
 #include "common/base/user_error.h"
 #include "common/files/require_private.h"
 #include "common/files/whole_file.h"
+#include "common/secrets/secrets.h"
 #include "common/security/certificate.h"
-#include "render_client/web/secrets/secrets.h"
 
 namespace bonemill::gateway {
 namespace {

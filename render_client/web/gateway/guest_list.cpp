@@ -12,8 +12,8 @@
 #include "common/base/user_error.h"
 #include "common/files/file_stamp.h"
 #include "common/files/whole_file.h"
+#include "common/secrets/secrets.h"
 #include "common/text/foreign_text.h"
-#include "render_client/web/secrets/secrets.h"
 
 namespace bonemill::gateway {
 namespace {

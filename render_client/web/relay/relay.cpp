@@ -11,8 +11,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "common/secrets/secrets.h"
 #include "common/tcp/listen.h"
-#include "render_client/web/secrets/secrets.h"
 
 namespace bonemill {
 

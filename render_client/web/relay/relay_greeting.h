@@ -35,10 +35,6 @@ inline constexpr size_t kGuestCameBytes = 1 + std::tuple_size_v<GuestId> + std::
 std::string greetingOf(RelayAsk ask, const GuestId& guest);
 RelayProof proofOf(std::string_view secret, std::string_view greeting, const RelayNonce& nonce);
 
-// Returns the secret that a relay and its gateway share, out of a file that others may not read: at least 32
-// letters, without blanks at its ends. Throws UserError.
-std::string readRelaySecret(const std::string& path);
-
 // What a relay is to do (render_client --relay), and what a gateway must know of its relay (--via).
 struct RelayOptions {
     std::string address = "127.0.0.1";  // it listens there

@@ -14,6 +14,7 @@
 
 #include "common/dds/node_digest.h"
 #include "common/mesh_codec/mesh_codec.h"
+#include "common/secrets/secrets.h"
 #include "common/web_socket/web_socket_client.h"
 #include "haptic_server/server/publish/publisher.h"
 #include "proto/gateway.pb.h"
@@ -21,7 +22,6 @@
 #include "render_client/web/gateway/gateway.h"
 #include "render_client/web/gateway/gateway_server.h"
 #include "render_client/web/gateway/guest.h"
-#include "render_client/web/secrets/secrets.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/process.h"
 #include "tests/support/synthetic_nodes.h"

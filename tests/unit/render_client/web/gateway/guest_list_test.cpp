@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "common/base/user_error.h"
+#include "common/secrets/secrets.h"
 #include "render_client/web/gateway/guest_voice.h"
-#include "render_client/web/secrets/secrets.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "common/base/user_error.h"
+#include "common/secrets/secrets.h"
 #include "common/tcp/dial.h"
 #include "common/tcp/listen.h"
 #include "render_client/web/relay/relay_dialer.h"
@@ -293,12 +294,12 @@ TEST(RelaySecret, MustBePrivateAndLong) {
     const std::string path = folder / "secret";
     std::ofstream(path) << kSecret << "\n";
     chmod(path.c_str(), 0644);
-    EXPECT_THROW(readRelaySecret(path), UserError);
+    EXPECT_THROW(readSecret(path, "a relay"), UserError);
     chmod(path.c_str(), 0600);
-    EXPECT_EQ(readRelaySecret(path), kSecret);
+    EXPECT_EQ(readSecret(path, "a relay"), kSecret);
     std::ofstream(path) << "short";
-    EXPECT_THROW(readRelaySecret(path), UserError);
-    EXPECT_THROW(readRelaySecret(path + "_not_there"), UserError);
+    EXPECT_THROW(readSecret(path, "a relay"), UserError);
+    EXPECT_THROW(readSecret(path + "_not_there", "a relay"), UserError);
 }
 
 }  // namespace

@@ -19,4 +19,8 @@ std::string randomToken();
 // Takes the same time wherever they differ; texts of other lengths are different at once.
 bool isSameSecret(std::string_view a, std::string_view b);
 
+// Returns the secret that is shared by hand, out of a file that others may not read: at least 32 letters,
+// without blanks at its ends. `whose` is for people: "a relay". Throws UserError.
+std::string readSecret(const std::string& path, const std::string& whose);
+
 }  // namespace bonemill

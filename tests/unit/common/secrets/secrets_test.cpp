@@ -1,4 +1,4 @@
-#include "render_client/web/secrets/secrets.h"
+#include "common/secrets/secrets.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
