@@ -1,0 +1,139 @@
+"""Z-width: the stiffest wall that a program renders quietly in a closed loop, beside what moving through air costs.
+
+The device is that of the stability tests: 0.25 kg, 2 N·s/m and 0.2 N of friction, amplifier of 500 Hz, encoder of 5 µm, one tick
+late; on it a hand of 0.1 kg, 8 N·s/m, 600 N/m that presses the ball of the scene plane with 2 N, for a second. It is quiet when
+over the second half the force stays within 0.05 N and the handle within 10 µm (root mean square about the mean). The coupling's
+stiffness is doubled until that fails, then bisected to 5 %; the bed is 16 times as stiff as in the scene, in proportion. The
+figure is what is rendered there: the change of force over the hand's place, ±20 µm about where it came to rest. Only a
+program with at most 3 N·s/m of drag in free air has a width: damping the air away would buy any wall."""
+import collections
+import dataclasses
+import json
+import math
+import subprocess
+
+import numpy as np
+
+import bodies
+
+MASS, DAMPING, FRICTION, AMPLIFIER_HZ, ENCODER = 0.25, 2.0, 0.2, 500.0, 5e-6
+HAND_MASS, HAND_DAMPING, HAND_STIFFNESS, PUSH = 0.1, 8.0, 600.0, 2.0
+TICK, SUBSTEPS, TICKS = 1e-3, 20, 1000
+QUIET_N, QUIET_M, RESOLUTION, MOST_N_PER_MM, MOST_DRAG = 0.05, 10e-6, 1.05, 400.0, 3.0
+BED_FACTOR, PROBE, AIR_SPEED = 16, 20e-6, 0.05
+
+
+class Program:
+    """A program's own loop: a line with a pose in, a line with a wrench out."""
+
+    def __init__(self, command, folder, scene):
+        self.scene = scene
+        self.R = scene.placement.R_WB @ scene.way.R[0]
+        self.pose = " ".join(repr(float(v)) for v in bodies.quaternion(self.R))
+        self.process = subprocess.Popen([*command, str(folder), "--loop"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1)
+        if self.process.stdout.readline().strip() != "ready":
+            raise ValueError("its loop did not begin")
+
+    def force(self, z):
+        """Along the face's normal, with the ball's middle z over the face."""
+        p = self.scene.placement.to_world(np.array([0.0, 0.0, z]))
+        self.process.stdin.write(f"{p[0]!r} {p[1]!r} {p[2]!r} {self.pose} 0\n")
+        self.process.stdin.flush()
+        words = self.process.stdout.readline().split()
+        if len(words) < 3:
+            raise ValueError("its loop ended")
+        return float(self.scene.placement.turned_to_body([float(w) for w in words[:3]])[2])
+
+    def close(self):
+        self.process.stdin.close()
+        self.process.wait(timeout=20)
+
+
+@dataclasses.dataclass
+class Pressed:
+    is_quiet: bool
+    rendered: float  # N/m
+
+
+class Handle:
+    """The device's handle with the hand on it, along the normal; friction takes what momentum it can."""
+
+    def __init__(self, z):
+        self.z, self.v, self.drive, self.h = z, 0.0, 0.0, TICK / SUBSTEPS
+        self.settled = -math.expm1(-2 * math.pi * AMPLIFIER_HZ * self.h)
+        self.target = z - PUSH / HAND_STIFFNESS
+
+    def live(self, force):
+        mass, damping = MASS + HAND_MASS, DAMPING + HAND_DAMPING
+        for _ in range(SUBSTEPS):
+            self.drive += self.settled * (force - self.drive)
+            middle = self.z + self.h / 2 * self.v
+            momentum = mass * self.v + self.h * (HAND_STIFFNESS * (self.target - middle) + self.drive)
+            left = max(abs(momentum) - self.h * FRICTION, 0.0)
+            self.v = math.copysign(left, momentum) / (mass + self.h * damping)
+            self.z = middle + self.h / 2 * self.v
+
+
+def press(program):
+    handle, late, forces, places = Handle(program.scene.radius + 0.1e-3), collections.deque([0.0]), [], []
+    for _ in range(TICKS):
+        late.append(program.force(round(handle.z / ENCODER) * ENCODER))
+        forces.append(late[-1])
+        places.append(handle.z)
+        handle.live(late.popleft())
+    is_quiet = np.std(forces[TICKS // 2:]) <= QUIET_N and np.std(places[TICKS // 2:]) <= QUIET_M and np.mean(forces[TICKS // 2:]) > 0.1
+    if not is_quiet:
+        return Pressed(False, 0.0)
+    rest = float(np.mean(places[TICKS // 2:]))
+    felt = []
+    for z in (rest - PROBE, rest + PROBE):
+        for _ in range(200):
+            force = program.force(z)
+        felt.append(force)
+    return Pressed(True, (felt[0] - felt[1]) / (2 * PROBE))
+
+
+def drag_in_air(program):
+    start = program.scene.radius + 3e-3
+    for n in range(300):
+        force = program.force(start + AIR_SPEED * TICK * n)
+    return -force / AIR_SPEED
+
+
+class Search:
+    def __init__(self, command, scene, scratch):
+        self.command, self.scene, self.scratch = command, scene, scratch
+
+    def _tell(self, stiffness):
+        told = json.loads((self.scratch / "scene.json").read_text(encoding="utf-8"))
+        contact = dict(self.scene.contact)
+        contact["stiffness_n_per_mm3"] *= BED_FACTOR * stiffness / contact["coupling_n_per_mm"]
+        told["contact"] = contact | {"coupling_n_per_mm": stiffness}
+        (self.scratch / "scene.json").write_text(json.dumps(told), encoding="utf-8")
+
+    def at(self, stiffness, what):
+        self._tell(stiffness)
+        program = Program(self.command, self.scratch, self.scene)
+        try:
+            return what(program)
+        finally:
+            program.close()
+
+    def widest(self):
+        """(rendered N/m, drag N·s/m), or a reason why there is none."""
+        low, best = self.scene.contact["coupling_n_per_mm"], None
+        while low > 0.05 and not (best := self.at(low, press)).is_quiet:
+            low /= 2
+        if not best.is_quiet:
+            return None, None, "it is not quiet at any stiffness"
+        high = 2 * low
+        while high <= MOST_N_PER_MM and (tried := self.at(high, press)).is_quiet:
+            low, best, high = high, tried, 2 * high
+        while high / low > RESOLUTION and high <= MOST_N_PER_MM:
+            middle = math.sqrt(low * high)
+            tried = self.at(middle, press)
+            low, best, high = (middle, tried, high) if tried.is_quiet else (low, best, middle)
+        drag = self.at(low, drag_in_air)
+        if drag > MOST_DRAG * 1.02:
+            return None, drag, f"its drag in free air is above {MOST_DRAG:g} N·s/m"
+        return best.rendered, drag, ""
