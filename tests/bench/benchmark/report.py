@@ -105,18 +105,18 @@ def forces_picture(path, result, scene, answers):
         script += data_block(f"f{n}", [(t / scenes.RATE_HZ, f) for t, f in list(enumerate(force))[::4]])
     rows = -(-len(programs) // 3)
     script += f"""
-{terminal(path, 1200, 90 + 210 * rows)}
+{terminal(path, 1200, 60 + 240 * rows)}
 set multiplot layout {rows},3 title "{scene.name}: force along the face's normal; circles: truth of the bed where the hand holds" noenhanced
 set yrange [-0.2:3.2]
 set xrange [0:{len(scene.way.p) / scenes.RATE_HZ:.2f}]
 set grid lc rgb "#dddddd"
 set xlabel "time, s"
 set ylabel "N"
-set key top right
+unset key
 """
     for n, name in enumerate(programs):
-        script += (f"plot $f{n} using 1:2 with lines lw 1.5 lc rgb '{COLOURS[n % len(COLOURS)]}' title \"{name}\" noenhanced, "
-                   f"${TRUTH} using 1:2 with points pt 6 ps 1.6 lc rgb '#000000' notitle\n")
+        script += (f"set title \"{name}\" noenhanced offset 0,-0.6\nplot $f{n} using 1:2 with lines lw 1.5 lc rgb '{COLOURS[n % len(COLOURS)]}', "
+                   f"${TRUTH} using 1:2 with points pt 6 ps 1.6 lc rgb '#000000'\n")
     gnuplot(script)
 
 
