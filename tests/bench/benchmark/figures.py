@@ -17,6 +17,7 @@ UNITS = {
     "z_width": "N/mm", "z_width_drag": "N·s/m", "cut_to_screen_p99": "ms",
 }
 OF_SCENES = [name for name in UNITS if name not in ("z_width", "z_width_drag", "cut_to_screen_p99")]
+BY_THE_CLOCK = ("voxels_per_second", "tick_p50", "tick_p99_9")
 LEAST_NORMAL_N = 0.05  # with less the tool has lost the bone
 NEEDED = ["fx_n", "fy_n", "fz_n", "px_m", "py_m", "pz_m"]
 
@@ -53,8 +54,11 @@ def read_answer(scene, path):
 
     place = scene.placement
     torque, tick, removed = columns("tx_nm", "ty_nm", "tz_nm"), columns("tick_us"), columns("removed_voxels")
-    answer = Answer(place.turned_to_body(columns("fx_n", "fy_n", "fz_n")), None if torque is None else place.turned_to_body(torque),
-                    place.to_body(columns("px_m", "py_m", "pz_m")), None if tick is None else tick[:, 0], None if removed is None else removed[:, 0])
+    answer = Answer(force=place.turned_to_body(columns("fx_n", "fy_n", "fz_n")),
+                    torque=None if torque is None else place.turned_to_body(torque),
+                    tool=place.to_body(columns("px_m", "py_m", "pz_m")),
+                    tick_us=None if tick is None else tick[:, 0],
+                    removed=None if removed is None else removed[:, 0])
     if not (np.isfinite(answer.force).all() and np.isfinite(answer.tool).all()):
         raise ValueError(f"{path.name} has numbers that are not finite")
     return answer
@@ -84,7 +88,8 @@ def errors(scene, answer, can):
         elif answer.torque is None or "turn" not in can:
             told[name] = figure(name, None, "the program has no torque")
         else:
-            told[name] = figure(name, share_off([m for a, b, _ in turns for m in answer.torque[a:b]], [t.torque for a, b, t in turns for _ in range(b - a)]))
+            felt_turns = [torque for a, b, _ in turns for torque in answer.torque[a:b]]
+            told[name] = figure(name, share_off(felt_turns, [t.torque for a, b, t in turns for _ in range(b - a)]))
     return told
 
 

@@ -29,16 +29,16 @@ class Program:
 
     def __init__(self, command, folder, scene):
         self.scene = scene
-        self.R = scene.placement.R_WB @ scene.way.R[0]
-        self.pose = " ".join(repr(float(v)) for v in bodies.quaternion(self.R))
-        self.process = subprocess.Popen([*command, str(folder), "--loop"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1)
+        self.turn = bodies.quaternion(scene.placement.R_WB @ scene.way.R[0])
+        self.process = subprocess.Popen([*command, str(folder), "--loop"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                        text=True, bufsize=1)
         if self.process.stdout.readline().strip() != "ready":
             raise ValueError("its loop did not begin")
 
     def force(self, z):
         """Along the face's normal, with the ball's middle z over the face."""
-        p = self.scene.placement.to_world(np.array([0.0, 0.0, z]))
-        self.process.stdin.write(f"{p[0]!r} {p[1]!r} {p[2]!r} {self.pose} 0\n")
+        pose = [*self.scene.placement.to_world(np.array([0.0, 0.0, z])), *self.turn]
+        self.process.stdin.write(" ".join(repr(float(value)) for value in pose) + " 0\n")
         self.process.stdin.flush()
         words = self.process.stdout.readline().split()
         if len(words) < 3:

@@ -9,6 +9,7 @@ import subprocess
 from figures import UNITS
 
 FORMAT, VERSION = "haptic-milling-benchmark", 1
+MACHINE = ("processor", "cores", "system", "load_before", "load_after")
 
 
 def processor():
@@ -60,11 +61,12 @@ def faults(result):
     if not isinstance(result, dict) or result.get("format") != FORMAT or result.get("version") != VERSION:
         return [f"it is no {FORMAT} of version {VERSION}"]
     found = [f"it has no {key}" for key in ("date", "commit", "is_quick", "machine", "scenes_left_out", "programs") if key not in result]
-    found += [f"machine has no {key}" for key in ("processor", "cores", "system", "load_before", "load_after") if key not in result.get("machine", {})]
+    found += [f"machine has no {key}" for key in MACHINE if key not in result.get("machine", {})]
     for program in result.get("programs", []):
         name = program.get("name", "a program without a name")
         found += [f"{name} has no {key}" for key in ("version", "notes", "can", "scenes", "figures") if key not in program]
-        for place, figures in [(name, program.get("figures", {})), *((f"{name}, {scene}", f) for scene, f in program.get("scenes", {}).items())]:
+        places = {name: program.get("figures", {})} | {f"{name}, {scene}": told for scene, told in program.get("scenes", {}).items()}
+        for place, figures in places.items():
             found += [fault for figure, told in figures.items() for fault in _faults_of_figure(place, figure, told)]
     return found
 

@@ -55,7 +55,8 @@ class _Walk:
         ticks = max(1, int(np.ceil(seconds * RATE_HZ)))
         t = np.arange(1, ticks + 1) / ticks * seconds
         ramp = lambda u: soft * (u / 2 - np.sin(np.pi * u) / (2 * np.pi))  # integral of (1 - cos) / 2
-        s = speed * np.where(t < soft, ramp(t / soft), np.where(t > seconds - soft, length / speed - ramp((seconds - t) / soft), t - soft / 2))
+        late = length / speed - ramp((seconds - t) / soft)
+        s = speed * np.where(t < soft, ramp(t / soft), np.where(t > seconds - soft, late, t - soft / 2))
         for time, way in zip(t, s):
             even = soft + 1 / RATE_HZ < time < seconds - soft
             self.add(place_at(way), phase if even else "", buttons, loop)

@@ -149,7 +149,8 @@ class Run(unittest.TestCase):
     def test_ten_percent_more_stiffness_is_seen(self):
         with tempfile.TemporaryDirectory() as folder:
             program = str(HERE / "adapters/pure_python")
-            done = self.run_it(folder, "--quick", "--scene", "thin_wall", "--program", "pure_python", "--program", f"{program} --stiffer 1.1")
+            done = self.run_it(folder, "--quick", "--scene", "thin_wall", "--program", "pure_python",
+                               "--program", f"{program} --stiffer 1.1")
             self.assertEqual(done.returncode, 0, done.stderr)
             result = results.read(pathlib.Path(folder) / "result.json")
             right, stiffer = (program["scenes"]["thin_wall"]["rigid_force_error"]["value"] for program in result["programs"])
@@ -186,16 +187,17 @@ class ResultFile(unittest.TestCase):
     def result(self):
         told = results.begin(True)
         told["machine"]["load_after"] = 0.0
-        program = {"name": "p", "version": "1", "notes": "", "can": [], "figures": {}, "scenes": {"plane": {"force_error": figures.figure("force_error", 1.5)}}}
-        told["programs"].append(program)
-        return told, program["scenes"]["plane"]
+        plane = {"force_error": figures.figure("force_error", 1.5)}
+        told["programs"].append({"name": "p", "version": "1", "notes": "", "can": [], "figures": {}, "scenes": {"plane": plane}})
+        return told, plane
 
     def test_a_right_one_is_right(self):
         told, _ = self.result()
         self.assertEqual(results.faults(json.loads(json.dumps(told))), [])
 
     def test_mistakes_are_named(self):
-        for wrong in ({"value": 1.0, "unit": "N"}, {"value": None, "unit": "%"}, {"value": None, "unit": "%", "reason": ""}, {"value": "1", "unit": "%"}):
+        for wrong in ({"value": 1.0, "unit": "N"}, {"value": "1", "unit": "%"}, {"value": None, "unit": "%"},
+                      {"value": None, "unit": "%", "reason": ""}):
             told, plane = self.result()
             plane["force_error"] = wrong
             self.assertEqual(len(results.faults(told)), 1, wrong)

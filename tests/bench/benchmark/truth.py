@@ -103,7 +103,8 @@ class Truth:
             return self._along(p_hand, np.array([0, 0, 1.0]), self.radius - p_hand[2], lambda d: on_plane(self.kappa, self.radius, d))
         if kind == "sphere":
             far = np.linalg.norm(p_hand)
-            return self._along(p_hand, p_hand / far, self.body.size + self.radius - far, lambda d: on_sphere(self.kappa, self.radius, self.body.size, d))
+            sphere = self.body.size
+            return self._along(p_hand, p_hand / far, sphere + self.radius - far, lambda d: on_sphere(self.kappa, self.radius, sphere, d))
         return self._slot(p_hand)
 
     def _along(self, p_hand, normal, depth, push):
@@ -133,7 +134,8 @@ class Truth:
         if self.kappa is None:
             at = min(lean, float(np.arcsin(gap / self.half)))
         else:
-            at = bisect(lambda a: self.k_turn * (lean - a) - lean_energy_slope(self.kappa, self.radius, self.body.size, self.half, a), 0, lean)
+            push = lambda a: lean_energy_slope(self.kappa, self.radius, self.body.size, self.half, a)
+            at = bisect(lambda a: self.k_turn * (lean - a) - push(a), 0, lean)
         return Answer(np.zeros(3), -self.k_turn * (lean - at) * about, p_hand, at)
 
     def _edge(self, p_hand, R_hand):
