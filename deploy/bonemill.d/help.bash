@@ -13,6 +13,7 @@ Usage: bonemill [COMMAND] [options]
   host [SCENE]     start a session that other PCs watch
   invite NAME      let somebody join a session in a browser: prints a link and its QR code
   replay [FILE]    show a recorded session again, the last one or FILE
+  what-if [FILE]   let a recorded session go on otherwise from a moment on, and see what would have come of it
   scan [FILE]      make a training case of a scan, in a window
   doctor           what this PC lacks, and what to type
   handbook [PAGE]  read how to use all this, in a browser
@@ -98,6 +99,20 @@ usage_of() {  # COMMAND
             echo "  --view A,E,D,X,Y,Z  the clip's camera: azimuth, elevation (degrees), distance, target (mm); default: the scene's"
             echo "  --session N       number of the session (default: the first free one)"
             echo "  --no-viewer       without a window of its own"
+            echo "  --window-size WxH size of the window"
+            network_options ;;
+        what-if)
+            echo "Usage: bonemill what-if [FILE] [--at S] WHAT IS OTHERWISE [options]"
+            echo "Goes on from a moment of a recording, bit by bit as it was until then, and shows score, damage, heat and force"
+            echo "beside what happened: here, as a page, and in a replay with the other tool as a ghost (docs/howto/replay.md)."
+            echo "  FILE              a recording (default: the last session's), or an attempt's result (results/*.json)"
+            echo "  --at S            from this second of the session on (default: 3 s before the worst moment of a result)"
+            echo "  --shift-mm X,Y,Z  the hand elsewhere, in mm along the axes of the scene"
+            echo "  --tool NAME       another tool of the scene"
+            echo "  --accuracy NAME   another accuracy preset or contact law, as exact or vps"
+            echo "  --pace F          the hand F times as fast"
+            echo "  --expert          the expert's hand, where the task has one"
+            echo "  --no-viewer       without the replay in a window"
             echo "  --window-size WxH size of the window"
             network_options ;;
         sessions)

@@ -156,6 +156,16 @@ find_recording() {
     [[ -f $recording ]] || fail "there is no recording $(basename -- "$recording") (bonemill list shows the last ones)"
 }
 
+# A new name for what might have been from here on: the recording's, with the moment and a number.
+what_if_path() {
+    local stem folder number=1
+    folder=$(recordings_folder)/what_if
+    mkdir -p -- "$folder" || fail "$folder cannot be made"
+    stem=$folder/$(basename -- "$recording" .mcap)_at_${option[at]}
+    while [[ -e ${stem}_$number.mcap || -e ${stem}_$number.html || -e ${stem}_$number.json ]]; do ((++number)); done
+    echo "${stem}_$number.mcap"
+}
+
 # find_against: the other attempt, as a whole path.
 find_against() {
     [[ -n ${option[against]:-} ]] || return 0

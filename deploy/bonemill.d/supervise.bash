@@ -39,6 +39,23 @@ run_replay() {
     go_on
 }
 
+# It says what came out; the replay is a look at it, and can be had later.
+run_what_if() {
+    local other words=()
+    find_recording "$operand"
+    [[ -n ${option[at]:-} ]] || fail "say with --at from which second on (see: bonemill what-if --help)"
+    [[ " ${flags}" != *" --expert "* ]] || words+=(--expert)
+    for word in shift-mm tool accuracy pace; do
+        [[ -z ${option[$word]:-} ]] || words+=("--$word" "${option[$word]}")
+    done
+    other=$(what_if_path)
+    "$bin/bonemill_lab" session what-if "$recording" --at "${option[at]}" --out "$other" "${words[@]}" || exit
+    if [[ $flags == *" --no-viewer "* ]] || ! has_display; then return; fi
+    option[against]=$other option[at]=$(before "${option[at]}" 3)
+    operand=$recording
+    run_replay
+}
+
 # A video off screen, of a replay that waits for each picture. Who looks at another session meanwhile has the processors first.
 begin_clip() {
     clip=$(realpath -m -- "${option[clip]}")

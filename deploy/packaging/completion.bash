@@ -9,7 +9,7 @@ _bonemill() {
     if [[ ${program##*/} != bonemill ]]; then
         [[ $word != -* ]] || words=$(_bonemill_options "$program")
     elif [[ $COMP_CWORD == 1 ]]; then
-        words=$("$program" --help | sed -nE 's/^  ([a-z]+) .*/\1/p')
+        words=$("$program" --help | sed -nE 's/^  ([a-z-]+) .*/\1/p')
     elif [[ $word == -* ]]; then
         words=$(_bonemill_options "$program" "${COMP_WORDS[1]}")
     elif [[ ${COMP_WORDS[1]} == @(start|host) && $before != -* ]]; then

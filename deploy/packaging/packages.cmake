@@ -53,6 +53,7 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "haptic bone milling for programs (library)
 The tick of a bone-milling session, one call a tick: a hand goes in, force,
 contact and removed bone come out. It needs no device and no other process.")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_LIST_DIR}/debian/library/triggers")
 set(CPACK_COMPONENT_DEV_DEPENDS library)
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME bonemill-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)

@@ -18,6 +18,7 @@
 #include "haptic_server/cases/casework/case_request.h"
 #include "haptic_server/lab/accuracy_report/accuracy_report.h"
 #include "haptic_server/lab/assess/assess_journal.h"
+#include "haptic_server/lab/what_if/what_if.h"
 #include "haptic_server/recording/export/export_journal.h"
 #include "haptic_server/recording/rerun/verify_journal.h"
 #include "haptic_server/scans/import/import_volume.h"
@@ -80,6 +81,25 @@ void addExportOptions(CLI::App& app, ExportOptions& files) {
         ->check(within(0, 100000));
 }
 
+void addWhatIfOptions(CLI::App& app, WhatIfOptions& what_if) {
+    app.add_option("journal", what_if.journal, "the recorded session (.mcap)")->required();
+    app.add_option("--at", what_if.at_s, "from this moment of the session on, s")
+        ->required()
+        ->check(within(0, kMaxSeconds));
+    app.add_option("--out", what_if.out,
+                   "the other recording (.mcap); beside it go its page (.html) and figures (.json)")
+        ->required()
+        ->type_name("FILE");
+    app.add_option("--shift-mm", what_if.shift_mm, "the hand elsewhere: X,Y,Z in frame W")
+        ->expected(3)
+        ->delimiter(',')
+        ->check(within(-100, 100));
+    app.add_option("--tool", what_if.tool, "another tool of the scene: its name, or number from 1");
+    app.add_option("--accuracy", what_if.accuracy, "another preset, or contact law, by its name");
+    app.add_option("--pace", what_if.pace, "the hand so many times as fast")->check(within(0.1, 10));
+    app.add_flag("--expert", what_if.is_experts, "the hand is the expert's of the scene's task");
+}
+
 void addReportOptions(CLI::App& app, AccuracyReportOptions& report) {
     app.add_option("--scene", report.scene, "scene file (.textproto)")->required();
     app.add_option("--out", report.out,
@@ -129,6 +149,7 @@ struct Options {
     std::string series_folder;
     ForgetOptions forget;
     AssessOptions assess;
+    WhatIfOptions what_if;
     std::string journal, noted_link;
     ExportOptions files;
 };
@@ -183,6 +204,15 @@ void addSessionCommands(CLI::App& session, Options& options, Run& chosen) {
                          "measure and judge the attempts of a recording anew (docs/reference/assessment.md)",
                          chosen, [&] { return assessJournal(options.assess, std::cout); }),
                      options.assess);
+    addWhatIfOptions(
+        add(session, "what-if",
+            "go on otherwise from a moment on, and judge that beside what happened (docs/howto/replay.md)",
+            chosen,
+            [&] {
+                whatIf(options.what_if, std::cout);
+                return 0;
+            }),
+        options.what_if);
     CLI::App& verifying = add(session, "verify", "run a recording again and compare every bit", chosen,
                               [&] { return verify(options.journal, options.noted_link); });
     verifying.add_option("JOURNAL", options.journal, "recording (.mcap)")->required();
@@ -204,7 +234,7 @@ int runLab(int argc, char** argv) {
     CLI::App app("What is done with files before and after a session", "bonemill_lab");
     app.require_subcommand(1);
     Options options;
-    options.replay.version = versionText();
+    options.replay.version = options.what_if.version = versionText();
     Run chosen;
     addLogLevelOption(app, options.log_level);
     addFileCommands(app, options, chosen);

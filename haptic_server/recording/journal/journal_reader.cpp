@@ -14,11 +14,6 @@ namespace {
 // As hostile files could unpack to far more than they are.
 constexpr uint64_t kMaxKept = uint64_t(4) << 30;
 
-template <class Message>
-bool parse(const mcap::Message& bytes, Message& out) {
-    return bytes.data.size() <= INT32_MAX && out.ParseFromArray(bytes.data.data(), int(bytes.data.size()));
-}
-
 // Takes one message after the other into the content.
 class Keeper {
   public:

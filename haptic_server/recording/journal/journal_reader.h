@@ -36,6 +36,12 @@ struct JournalContent {
 // One message, as it stands in the file; parse() with its type. Its data is good until the visit returns.
 using JournalVisit = std::function<void(JournalTopic topic, const mcap::Message& message)>;
 
+// The message as its type; false if it is none of it.
+template <class Message>
+bool parse(const mcap::Message& bytes, Message& out) {
+    return bytes.data.size() <= INT32_MAX && out.ParseFromArray(bytes.data.data(), int(bytes.data.size()));
+}
+
 // Both throw UserError if it is no journal, or one of a newer format. The first hands all messages to the
 // visit, in the file's order; the second does, too, after it has taken what it keeps. Without inputs it keeps
 // little.

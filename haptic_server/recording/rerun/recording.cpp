@@ -216,7 +216,7 @@ Recording::Bones Recording::readBones(const BoneModel& bone, size_t most_bytes) 
     readJournal(path_, [&](JournalTopic topic, const mcap::Message& message) {
         if (topic != JournalTopic::kBone) return;
         journal::Bone state;
-        if (!state.ParseFromArray(message.data.data(), int(message.data.size())) || !reader.add(state)) {
+        if (!parse(message, state) || !reader.add(state)) {
             ++unusable;
             return;
         }
@@ -252,9 +252,7 @@ std::vector<RecordedEye> recordedEyes(const Recording& recording) {
     std::vector<RecordedEye> eyes;
     readJournal(recording.path(), [&](JournalTopic topic, const mcap::Message& message) {
         journal::Camera camera;
-        if (topic != JournalTopic::kCamera ||
-            !camera.ParseFromArray(message.data.data(), int(message.data.size())))
-            return;
+        if (topic != JournalTopic::kCamera || !parse(message, camera)) return;
         const topics::Eye& eye = camera.eye();
         if (eye.p_wc_m_size() == 3 && eye.q_wc_size() == 4 && areFinite(eye.p_wc_m()) &&
             areFinite(eye.q_wc()) && camera.tick() < recording.ticks())

@@ -195,7 +195,18 @@ void Rerun::putBack(const TickDecisions& decisions) {
 
 const TickRecord& Rerun::step() {
     BONEMILL_ASSERT(!has_left_);
-    JournalTick tick = ticks_.at(next_);
+    run(ticks_.at(next_));
+    ++next_;
+    return record_;
+}
+
+const TickRecord& Rerun::stepOtherwise(const JournalTick& tick) {
+    run(tick);
+    has_left_ = true;
+    return record_;
+}
+
+void Rerun::run(JournalTick tick) {
     choose(tick.input.decisions);
     tick.input.decisions.tool = uint32_t(tools_.chosen());
     tick.input.decisions.accuracy = uint32_t(accuracy_.choice());
@@ -206,8 +217,6 @@ const TickRecord& Rerun::step() {
     is_device_told_ = true;
     run(inputOf(tick, device));
     tunings_.choose(tick.input.decisions.tuning);
-    ++next_;
-    return record_;
 }
 
 void Rerun::run(const DeviceInput& input) {

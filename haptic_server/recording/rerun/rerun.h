@@ -38,6 +38,8 @@ class Rerun {
     // Leaves the recording: runs a tick with this hand instead, held by an engaged device, and with what the
     // switches below choose. What is in force stays so. From then on no tick of the recording is run.
     const TickRecord& step(const Pose& X_WT_hand, uint32_t buttons);
+    // Leaves it, too, with all that this tick says; where that is what is recorded, to the same bits.
+    const TickRecord& stepOtherwise(const JournalTick& tick);
     bool hasLeft() const noexcept { return has_left_; }
     // An order of the recording has put the bone back, or has begun to, in the last step.
     bool isBonePutBack() const noexcept { return is_put_back_; }
@@ -51,6 +53,7 @@ class Rerun {
   private:
     void makeTick();
     void run(const DeviceInput& input);
+    void run(JournalTick tick);
     void addTunings(const TunableScene& scene);
     uint32_t tuningOf(const TickDecisions& decisions) const;
     void choose(const TickDecisions& decisions);

@@ -16,6 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Below the recordings; so `bonemill what-if` puts them.
+constexpr char kWhatIfs[] = "what_if";
+
 void forgetInTables(const ForgetOptions& options, Forgotten& forgotten) {
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(options.folder, error)) {
@@ -38,6 +41,14 @@ std::set<std::string> traineesOf(const fs::path& journal) {
     return trainees;
 }
 
+void remove(const fs::path& file, Forgotten& forgotten) {
+    std::error_code error;
+    if (fs::remove(file, error))
+        forgotten.deleted.push_back(file.string());
+    else
+        forgotten.problems.push_back(file.string() + ": cannot be deleted: " + error.message());
+}
+
 // What its writer has not yet written may be of any person.
 void forgetRecording(const fs::path& file, const std::string& pseudonym, Forgotten& forgotten) {
     if (isJournalWritten(file)) {
@@ -47,14 +58,16 @@ void forgetRecording(const fs::path& file, const std::string& pseudonym, Forgott
     }
     const std::set<std::string> trainees = traineesOf(file);
     if (!trainees.contains(pseudonym)) return;
-    std::error_code error;
-    if (trainees.size() > 1)
+    if (trainees.size() > 1) {
         forgotten.problems.push_back(
             file.string() + ": holds other people's attempts, too; it is left, decide what to do with it");
-    else if (fs::remove(file, error))
-        forgotten.deleted.push_back(file.string());
-    else
-        forgotten.problems.push_back(file.string() + ": cannot be deleted: " + error.message());
+        return;
+    }
+    remove(file, forgotten);
+    std::error_code error;
+    for (const char* ending : {".html", ".json"})  // of a what-if
+        if (const fs::path page = fs::path(file).replace_extension(ending); fs::exists(page, error))
+            remove(page, forgotten);
 }
 
 // A recording is one session's, which may have been several people's. It says itself whose it is, also where
@@ -63,9 +76,10 @@ void forgetRecordings(const ForgetOptions& options, Forgotten& forgotten) {
     std::error_code error;
     std::vector<fs::path> files;
     const std::string& folder = options.recordings.empty() ? options.folder : options.recordings;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-        if (entry.path().extension() == ".mcap" && fs::is_regular_file(entry.symlink_status(error)))
-            files.push_back(entry.path());
+    for (const fs::path& part : {fs::path(folder), fs::path(folder) / kWhatIfs})
+        for (const fs::directory_entry& entry : fs::directory_iterator(part, error))
+            if (entry.path().extension() == ".mcap" && fs::is_regular_file(entry.symlink_status(error)))
+                files.push_back(entry.path());
     std::ranges::sort(files);
     for (const fs::path& file : files) {
         try {

@@ -111,6 +111,31 @@ TEST_F(BonemillClass, ReplaysTheWorstMomentOfAnAttempt) {
     }
 }
 
+TEST_F(BonemillClass, GoesOnOtherwiseFromTheWorstMomentAndReplaysBoth) {
+    const std::string recordings = rig_.folder() / "logs/bonemill/recordings",
+                      result = rig_.folder() / "r.json", other = recordings + "/what_if/1_a_at_37.5_1.mcap";
+    std::filesystem::create_directories(recordings);
+    test::writeFile(recordings + "/1_a.mcap", "a");
+    test::writeFile(result, R"({"journal": "1_a.mcap", "moments": [{"t_s": 40.5, "severity": 10}]})");
+    const std::string told = " session what-if " + recordings + "/1_a.mcap --at 37.5 --out " + other +
+                             " --expert --shift-mm 0,0,-0.5 --tool fine\n";
+    const auto whatIf = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), "what-if");
+        words.emplace_back("--no-viewer");
+        return rig_.call(words);
+    };
+    rig_.letLeave("bonemill_lab", 0);
+    EXPECT_EQ(whatIf({result, "--shift-mm", "0,0,-0.5", "--tool", "fine", "--expert"}).exit_code, 0);
+    EXPECT_TRUE(has(rig_.events(), told)) << rig_.events();
+    EXPECT_FALSE(has(rig_.events(), " replay ")) << rig_.events();
+    test::writeFile(other, "taken");
+    whatIf({result, "--pace", "2"});
+    EXPECT_TRUE(has(rig_.events(), "1_a_at_37.5_2.mcap --pace 2\n")) << rig_.events();
+    test::expectRefusal(whatIf({"1_a.mcap", "--pace", "2"}), "say with --at");
+    rig_.letLeave("bonemill_lab", 2);
+    EXPECT_EQ(whatIf({result, "--tool", "none"}).exit_code, 2);
+}
+
 TEST_F(BonemillClass, ReplaysAnAttemptBesideAnother) {
     const std::string recordings = rig_.folder() / "logs/bonemill/recordings",
                       result = rig_.folder() / "r.json";

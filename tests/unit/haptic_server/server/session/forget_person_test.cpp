@@ -80,6 +80,20 @@ TEST_F(ForgetPerson, ARecordingOfSeveralPeopleIsLeftAndSaid) {
     EXPECT_TRUE(std::filesystem::exists(folder_ / "a.mcap"));
 }
 
+TEST_F(ForgetPerson, WhatMightHaveBeenGoesWithItsPages) {
+    std::filesystem::create_directory(folder_ / "what_if");
+    for (const auto& [name, whose] : {std::pair("a", "P07"), std::pair("b", "P08")}) {
+        record(std::string("what_if/") + name + ".mcap", whose);
+        for (const char* ending : {".html", ".json"})
+            std::ofstream(folder_ / (std::string("what_if/") + name + ending)) << "P07";
+    }
+    forget("P07");
+    for (const char* ending : {".mcap", ".html", ".json"}) {
+        EXPECT_FALSE(std::filesystem::exists(folder_ / (std::string("what_if/a") + ending)));
+        EXPECT_TRUE(std::filesystem::exists(folder_ / (std::string("what_if/b") + ending)));
+    }
+}
+
 TEST_F(ForgetPerson, ARecordingWithoutAResultIsFoundAndALinkIsNotFollowed) {
     const test::TemporaryFolder elsewhere;
     record("killed.mcap", "P07");
