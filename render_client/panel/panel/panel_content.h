@@ -62,6 +62,7 @@ class PanelContent {
     void buildSigns();
     void buildQualityPick();
     void buildReading();
+    void buildLanguages();
     // These say which structures are seen, and how (panel_view.cpp).
     bool hasStructures() const;
     void buildStructures();

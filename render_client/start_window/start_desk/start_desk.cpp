@@ -5,6 +5,7 @@
 
 #include "common/process/start_apart.h"
 #include "common/text/foreign_text.h"
+#include "render_client/language/language.h"
 
 namespace bonemill {
 namespace {
@@ -110,7 +111,7 @@ void StartDesk::run(const std::vector<std::string>& words) {
 }
 
 void StartDesk::apart(const std::vector<std::string>& words) {
-    if (!startApart(words)) problem_ = words.front() + " cannot be started";
+    if (!startApart(words)) problem_ = tr("{1} cannot be started", {words.front()});
 }
 
 void StartDesk::start(const SceneCard& card) {
