@@ -57,6 +57,13 @@ std::optional<double> plotHistogram(const Histogram& histogram, const std::optio
 constexpr size_t kLongestText = 4096;
 constexpr float kPlotHeight = 84;  // pixels at scale 1
 
+// Returns how much of a line these two buttons at its end take, `usual` (pixels) in English.
+float roomForButtons(const char* first, const char* second, float usual) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float texts = ImGui::CalcTextSize(first).x + ImGui::CalcTextSize(second).x;
+    return std::max(usual, texts + 4 * style.FramePadding.x + 2 * style.ItemSpacing.x);
+}
+
 bool isStepOpen(const char* title) {
     ImGui::Dummy(ImVec2(0, ImGui::GetStyle().ItemSpacing.y / 2));
     return ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen);
@@ -137,7 +144,7 @@ void CaseScreen::buildSteps() {
 }
 
 void CaseScreen::buildScan() {
-    const float buttons = 124 * stage_.scale();
+    const float buttons = roomForButtons(tr("Open"), tr("Browse"), 124 * stage_.scale());
     const bool is_entered = isTyped("##scan", tr("folder or file of a scan"), typed_path_, buttons);
     ImGui::SameLine();
     if ((button(tr("Open"), !typed_path_.empty()) || is_entered) && !typed_path_.empty())
@@ -283,7 +290,7 @@ void CaseScreen::buildPlace() {
 }
 
 void CaseScreen::buildStructures() {
-    const float buttons = 148 * stage_.scale();
+    const float buttons = roomForButtons(tr("Open map"), tr("Browse"), 148 * stage_.scale());
     const bool is_entered = isTyped("##labels", tr("label map, if there is one"), typed_labels_, buttons);
     ImGui::SameLine();
     if ((button(tr("Open map"), !typed_labels_.empty()) || is_entered) && !typed_labels_.empty())

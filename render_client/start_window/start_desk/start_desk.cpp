@@ -163,8 +163,8 @@ std::string firstErrorOf(const ChildBeside& child) {
     const std::string line = child.err().substr(0, child.err().find('\n'));
     if (!line.empty()) return printableLine(withoutName(line), 400);
     const int code = child.exitCode().value_or(0);
-    return code > 128 ? "bonemill was ended by signal " + std::to_string(code - 128)
-                      : "bonemill left with code " + std::to_string(code);
+    return code > 128 ? tr("bonemill was ended by signal {1}", {std::to_string(code - 128)})
+                      : tr("bonemill left with code {1}", {std::to_string(code)});
 }
 
 }  // namespace bonemill
