@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 
 namespace bonemill::test {
 
@@ -16,9 +17,9 @@ inline bool isLetter(const std::array<ImDrawVert, 4>& quad) {
     return left->uv.x < right->uv.x && top->uv.y < bottom->uv.y;
 }
 
-// Returns how many letters are cut; `letters` takes how many there are.
-inline int countCutLetters(const ImDrawData& drawing, int& letters) {
-    int cut = 0;
+// Returns where letters are cut (pixels); empty: nowhere. `letters` takes how many there are.
+inline std::string placesOfCutLetters(const ImDrawData& drawing, int& letters) {
+    std::string places;
     for (int n = 0; n < drawing.CmdListsCount; ++n) {
         const ImDrawList& list = *drawing.CmdLists[n];
         for (const ImDrawCmd& command : list.CmdBuffer) {
@@ -30,11 +31,12 @@ inline int countCutLetters(const ImDrawData& drawing, int& letters) {
                 if (!isLetter(quad)) continue;
                 ++letters;
                 const auto right = std::ranges::max(quad, {}, [](const auto& v) { return v.pos.x; }).pos.x;
-                cut += right > command.ClipRect.z + 1;
+                if (right <= command.ClipRect.z + 1) continue;
+                places += " " + std::to_string(int(quad[0].pos.x)) + "," + std::to_string(int(quad[0].pos.y));
             }
         }
     }
-    return cut;
+    return places;
 }
 
 }  // namespace bonemill::test
