@@ -146,6 +146,14 @@ void PanelContent::button(const char* text, Action action, const char* what) {
     if (button(withKey(text, action), what)) act(action);
 }
 
+void PanelContent::buttonBeside(const char* text, Action action, const char* what) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float width = ImGui::CalcTextSize(withKey(text, action).c_str()).x + 2 * style.FramePadding.x;
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
+    button(text, action, what);
+}
+
 void PanelContent::box(const char* text, Action action, bool is_on, const char* what) {
     if (box(withKey(text, action), is_on, what)) act(action);
 }

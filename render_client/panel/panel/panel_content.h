@@ -122,6 +122,8 @@ class PanelContent {
     std::optional<double> slider(const char* label, double fraction, double least, const char* what);
     // These controls do what a key does; the key stands beside the text.
     void button(const char* text, Action action, const char* what);
+    // Stands beside the control before it, or below it where there is no room.
+    void buttonBeside(const char* text, Action action, const char* what);
     void box(const char* text, Action action, bool is_on, const char* what);
     void note(const std::string& label, const char* what);
     void explain(const std::string& text);

@@ -52,13 +52,10 @@ void PanelContent::buildReplay() {
     }
     button(replay.is_playing() ? tr("Pause") : tr("Play"), Action::kPauseMilling,
            tr("Holds the recording, or goes on"));
-    ImGui::SameLine();
-    button("-5 s", Action::kReplayBack, trIn("replay", "Back"));
-    ImGui::SameLine();
-    button("+5 s", Action::kReplayAhead, tr("Ahead"));
+    buttonBeside("-5 s", Action::kReplayBack, trIn("replay", "Back"));
+    buttonBeside("+5 s", Action::kReplayAhead, tr("Ahead"));
     button(tr("Slower"), Action::kReplaySlower, tr("Half as fast"));
-    ImGui::SameLine();
-    button(tr("Faster"), Action::kReplayFaster, tr("Twice as fast"));
+    buttonBeside(tr("Faster"), Action::kReplayFaster, tr("Twice as fast"));
     ImGui::SameLine();
     sayQuietly(readableText(replay.speed(), " \u00d7"));
     button(tr("Event before"), Action::kPreviousEvent, tr("To what happened before this moment"));

@@ -10,6 +10,8 @@
 namespace bonemill {
 namespace {
 
+constexpr float kSteps = 0.45f * 1280;  // pixels; what is drawn on the slices ends at their edges
+
 TEST(CaseLanguage, NoLanguageHasWordsThatAreCut) {
     const test::TemporaryFolder folder;
     test::writeHead(folder.path() / "scans/head");
@@ -22,7 +24,8 @@ TEST(CaseLanguage, NoLanguageHasWordsThatAreCut) {
         const test::Spoken spoken(language.code);
         screen.look();
         int letters = 0;
-        EXPECT_EQ(test::placesOfCutLetters(*screen.screen.stage().drawData(), letters), "") << language.name;
+        EXPECT_EQ(test::placesOfCuts(*screen.screen.stage().drawData(), letters, kSteps), "")
+            << language.name;
         EXPECT_GT(letters, 500) << language.name;
     }
     const test::Spoken spoken("de");

@@ -48,7 +48,7 @@ class WholePanel : public test::PanelClicks {
             const test::Spoken spoken(language.code);
             for (int n = 0; n < 4; ++n) layOut();
             int letters = 0;
-            EXPECT_EQ(test::placesOfCutLetters(*panel_.drawData(), letters), "") << language.name;
+            EXPECT_EQ(test::placesOfCuts(*panel_.drawData(), letters), "") << language.name;
             EXPECT_GT(letters, least) << language.name;
         }
     }

@@ -37,7 +37,7 @@ TEST_F(StartLanguage, NoLanguageHasWordsThatAreCut) {
         const test::Spoken spoken(language.code);
         start_->look();
         int letters = 0;
-        EXPECT_EQ(test::placesOfCutLetters(*start_->screen.stage().drawData(), letters), "") << language.name;
+        EXPECT_EQ(test::placesOfCuts(*start_->screen.stage().drawData(), letters), "") << language.name;
         EXPECT_GT(letters, 500) << language.name;
     }
 }
