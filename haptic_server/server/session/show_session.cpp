@@ -21,6 +21,7 @@ namespace bonemill {
 namespace {
 
 constexpr int64_t kToolStatePeriodNs = 9 * kNsPerMillisecond;
+constexpr int64_t kTicksPeriodNs = 5 * kNsPerMillisecond;
 constexpr int64_t kStatusPeriodNs = 250 * kNsPerMillisecond;
 // Densities may take so much of the stream's bytes.
 constexpr double kDensityShare = 0.25;
@@ -107,6 +108,9 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const SceneSetup& simulat
     describeToViewers(shown, info);
     describeZones(scene, info);
     describeShades(shadesOf(shown, simulation.mapping), info);
+    const Eigen::Quaterniond& q_WD = simulation.X_WD.rotation;
+    assign(info.mutable_p_wd_m(), simulation.X_WD.position);
+    assign(info.mutable_q_wd(), Eigen::Vector4d(q_WD.w(), q_WD.x(), q_WD.y(), q_WD.z()));
     info.set_leaf_count(simulation.bone->lattice.leafCount());
     if (simulation.surroundings)  // their nodes are numbered behind those of the bone
         info.set_leaf_count(info.leaf_count() + surroundingsLeafCount(*simulation.surroundings));
@@ -215,6 +219,7 @@ void ShowSession::round() {
     publishStructures();
     const int64_t now_ns = monotonicNowNs();
     if (now_ns - last_tool_state_ns_ > kToolStatePeriodNs) publishToolState(now_ns);
+    if (now_ns - last_ticks_ns_ > kTicksPeriodNs) publishTicks(now_ns);
     commands_.attempts().round();
     task_.round();
     if (const auto eye = publisher_.takeEye()) {
@@ -259,6 +264,12 @@ void ShowSession::publishToolState(int64_t now_ns) {
     if (effects_.areShown()) effects = effects_.at(since->latest.effects, since->events, since->removed);
     publisher_.publishToolState(since->latest, std::move(effects), expertNow());
     last_tool_state_ns_ = now_ns;
+}
+
+// Most sessions have nobody who wants every tick.
+void ShowSession::publishTicks(int64_t now_ns) {
+    if (publisher_.areTicksRead()) publisher_.publishTicks(recorder_.takeAll());
+    last_ticks_ns_ = now_ns;
 }
 
 // During an attempt, where the expert was at that time of it; in a replay, the tool that it is compared with.
