@@ -100,6 +100,24 @@ std::string CdrBytes::text() {
     return text;
 }
 
+template <class Number>
+CdrMaker& CdrMaker::put(Number value) {
+    while ((bytes_.size() - 4) % sizeof value != 0) bytes_.push_back(0);
+    bytes_.resize(bytes_.size() + sizeof value);
+    std::memcpy(&bytes_[bytes_.size() - sizeof value], &value, sizeof value);
+    return *this;
+}
+
+template CdrMaker& CdrMaker::put(double);
+template CdrMaker& CdrMaker::put(int32_t);
+template CdrMaker& CdrMaker::put(uint32_t);
+
+CdrMaker& CdrMaker::text(const std::string& text) {
+    u32(uint32_t(text.size() + 1));
+    bytes_.insert(bytes_.end(), text.c_str(), text.c_str() + text.size() + 1);
+    return *this;
+}
+
 struct FastNode::Inside {
     fast::DomainParticipant* participant = nullptr;
     fast::Subscriber* subscriber = nullptr;

@@ -37,6 +37,22 @@ class CdrBytes {
     bool is_good_ = false;
 };
 
+// Puts such bytes together.
+class CdrMaker {
+  public:
+    CdrMaker& f64(double value) { return put(value); }
+    CdrMaker& i32(int32_t value) { return put(value); }
+    CdrMaker& u32(uint32_t value) { return put(value); }
+    CdrMaker& text(const std::string& text);
+    const std::vector<uint8_t>& bytes() const { return bytes_; }
+
+  private:
+    template <class Number>
+    CdrMaker& put(Number value);
+
+    std::vector<uint8_t> bytes_{0, 1, 0, 0};
+};
+
 struct RosQos {
     bool is_reliable = true;
     bool is_transient_local = false;
