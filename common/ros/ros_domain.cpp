@@ -47,7 +47,8 @@ RosOptions rosOptionsOfEnvironment() {
     RosOptions options;
     const std::string text = variable("ROS_DOMAIN_ID");
     const char* const end = text.data() + text.size();
-    if (!text.empty() && (std::from_chars(text.data(), end, options.domain).ptr != end))
+    const auto read = std::from_chars(text.data(), end, options.domain);
+    if (!text.empty() && (read.ptr != end || read.ec != std::errc()))
         throw UserError("ROS_DOMAIN_ID is " + text + ": it should be a number, 0 to " +
                         std::to_string(dds::kMaxDomain));
     return options;

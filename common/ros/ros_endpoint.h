@@ -35,13 +35,13 @@ class Writer : public dds::AnyWriter {
 template <class Message>
 class Reader : public dds::AnyReader {
   public:
-    Reader(const dds::Participant& participant, const std::string& name)
-        : AnyReader(participant, describeRosTopic(name, typeOf<Message>(), Delivery::kHeard)) {}
+    Reader(const dds::Participant& participant, const std::string& name, Delivery delivery = Delivery::kHeard)
+        : AnyReader(participant, describeRosTopic(name, typeOf<Message>(), delivery)) {}
 
-    // Calls take_message(const Message&, const dds::SampleInfo&) for what has come, at most kHeardDepth of it.
+    // Calls take_message(const Message&, const dds::SampleInfo&) for what has come, at most kBatch of it.
     template <class Handler>
     void take(Handler&& take_message) {
-        const Batch batch(handle(), kHeardDepth);
+        const Batch batch(handle(), kBatch);
         for (size_t i = 0; i < batch.size(); ++i)
             if (batch.info(i).has_data)
                 take_message(*static_cast<const Message*>(batch.sample(i)), batch.info(i));

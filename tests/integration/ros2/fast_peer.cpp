@@ -142,11 +142,11 @@ struct FastNode::Writer::Inside {
     fast::DataWriter* writer = nullptr;
 };
 
-FastNode::FastNode(uint32_t domain) : inside_(std::make_unique<Inside>()) {
+FastNode::FastNode(uint32_t domain, bool is_localhost_only) : inside_(std::make_unique<Inside>()) {
     fast::DomainParticipantQos qos;
     qos.transport().use_builtin_transports = false;
     const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-    udp->interfaceWhiteList = {"127.0.0.1"};
+    if (is_localhost_only) udp->interfaceWhiteList = {"127.0.0.1"};
     udp->receiveBufferSize = 4 << 20;
     qos.transport().user_transports.push_back(udp);
     inside_->participant = fast::DomainParticipantFactory::get_instance()->create_participant(domain, qos);

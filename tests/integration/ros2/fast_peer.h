@@ -61,8 +61,8 @@ struct RosQos {
 
 class FastNode {
   public:
-    // Only on this PC, as with ROS_LOCALHOST_ONLY=1.
-    explicit FastNode(uint32_t domain);
+    // Only on this PC, as with ROS_LOCALHOST_ONLY=1; else on all its networks, as nodes are by default.
+    explicit FastNode(uint32_t domain, bool is_localhost_only = true);
     ~FastNode();
 
     // They belong to the node, and go with it.

@@ -31,32 +31,46 @@ RosSession::RosSession() {
               "  waypoint { time_s: 36000 p_WT_mm { x: 0 y: 0.1 z: -0.1 } " + upright + " } }\n");
 }
 
-std::unique_ptr<Process> RosSession::startServer(const std::vector<std::string>& more) const {
-    std::vector<std::string> words{"haptic_server",
-                                   "--scene",
-                                   folder_ / "s.textproto",
-                                   "--session",
-                                   std::to_string(testSession()),
-                                   "--domain",
-                                   std::to_string(testDomain()),
-                                   "--no-recording"};
-    words.insert(words.end(), more.begin(), more.end());
-    return std::make_unique<Process>(words);
+std::vector<std::string> RosSession::serverWords() const {
+    return {"haptic_server",
+            "--scene",
+            folder_ / "s.textproto",
+            "--session",
+            std::to_string(testSession()),
+            "--domain",
+            std::to_string(testDomain()),
+            "--no-recording"};
+}
+
+std::vector<std::string> RosSession::daemonWords(const std::string& device) const {
+    return {"device_daemon",
+            "--device",
+            device,
+            "--scene",
+            folder_ / "s.textproto",
+            "--session",
+            std::to_string(testSession()),
+            "--stop-dir",
+            folder_ / "stops"};
+}
+
+std::vector<std::string> RosSession::rosWords() {
+    return {"bonemill_ros2", "--session", std::to_string(testSession()), "--domain", std::to_string(testDomain())};
+}
+
+std::unique_ptr<Process> RosSession::startServer() const {
+    return std::make_unique<Process>(serverWords());
 }
 
 std::unique_ptr<Process> RosSession::startDaemon(const std::string& device,
                                                  const std::vector<std::string>& more) const {
-    std::vector<std::string> words{"device_daemon",  "--device",  device,
-                                   "--scene",        folder_ / "s.textproto",
-                                   "--session",      std::to_string(testSession()),
-                                   "--stop-dir",     folder_ / "stops"};
+    std::vector<std::string> words = daemonWords(device);
     words.insert(words.end(), more.begin(), more.end());
     return std::make_unique<Process>(words);
 }
 
 std::unique_ptr<Process> RosSession::startRos() const {
-    return std::make_unique<Process>(std::vector<std::string>{"bonemill_ros2", "--session", std::to_string(testSession()),
-                                                              "--domain", std::to_string(testDomain())});
+    return std::make_unique<Process>(rosWords());
 }
 
 dds::Participant RosSession::joinAsNode() const {

@@ -20,7 +20,11 @@ class RosSession {
     // The surface of the slab is at z = 0, its scripted hand presses on it, for hours.
     RosSession();
 
-    std::unique_ptr<Process> startServer(const std::vector<std::string>& more = {}) const;
+    // Each program with its words, for a start elsewhere.
+    std::vector<std::string> serverWords() const;
+    std::vector<std::string> daemonWords(const std::string& device) const;
+    static std::vector<std::string> rosWords();
+    std::unique_ptr<Process> startServer() const;
     std::unique_ptr<Process> startDaemon(const std::string& device, const std::vector<std::string>& more = {}) const;
     std::unique_ptr<Process> startRos() const;
     // Joins the domain of ROS as a node of Cyclone DDS.
