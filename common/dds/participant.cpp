@@ -136,10 +136,9 @@ std::shared_ptr<Domain> acquireDomain(uint32_t id, const std::optional<std::stri
     if (!domain) {
         requireMemory(kDomainBytes, "the network");
         dds_set_log_sink(sayWithinLimit, nullptr);
-        domain = std::make_shared<Domain>(
-            id, configuration          ? *configuration
-                : chosen_configuration ? *chosen_configuration
-                                       : networkConfiguration({}));
+        domain = std::make_shared<Domain>(id, configuration          ? *configuration
+                                              : chosen_configuration ? *chosen_configuration
+                                                                     : networkConfiguration({}));
         domains[id] = domain;
     }
     return domain;

@@ -16,12 +16,15 @@ constexpr size_t kLongestNamespace = 100;
 
 // Others may claim any length for a message; ours are far shorter (BoneMarkers::kPartBytes).
 constexpr char kBounds[] =
-    "<CycloneDDS><Domain Id=\"any\"><Internal><MaxSampleSize>4 MB</MaxSampleSize></Internal></Domain></CycloneDDS>";
+    "<CycloneDDS><Domain Id=\"any\"><Internal><MaxSampleSize>4 "
+    "MB</MaxSampleSize></Internal></Domain></CycloneDDS>";
 
-// Nodes that are confined to the loopback find each other by their ports, or by multicast: this is found by both.
+// Nodes that are confined to the loopback find each other by their ports, or by multicast: this is found by
+// both.
 constexpr char kByPorts[] =
     ",<CycloneDDS><Domain Id=\"any\"><Discovery><ParticipantIndex>auto</ParticipantIndex>"
-    "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex><Peers><Peer Address=\"127.0.0.1\"/></Peers></Discovery>"
+    "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex><Peers><Peer "
+    "Address=\"127.0.0.1\"/></Peers></Discovery>"
     "</Domain></CycloneDDS>";
 
 std::string variable(const char* name) {

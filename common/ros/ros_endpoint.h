@@ -1,4 +1,5 @@
-// Writers and readers of ROS 2 topics. Each belongs to one thread; none is for the tick. Constructors throw UserError.
+// Writers and readers of ROS 2 topics. Each belongs to one thread; none is for the tick. Constructors throw
+// UserError.
 #pragma once
 
 #include <string>
@@ -25,7 +26,8 @@ dds::TopicDescription describeRosTopic(const std::string& name, const dds_topic_
 template <class Message>
 class Writer : public dds::AnyWriter {
   public:
-    Writer(const dds::Participant& participant, const std::string& name, Delivery delivery = Delivery::kStream)
+    Writer(const dds::Participant& participant, const std::string& name,
+           Delivery delivery = Delivery::kStream)
         : AnyWriter(participant, describeRosTopic(name, typeOf<Message>(), delivery)) {}
 
     // False where a reader is behind: it may be tried again.

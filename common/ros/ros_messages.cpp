@@ -74,7 +74,8 @@ WrenchStamped wrenchOf(int64_t stamp_ns, const char* frame, const Wrench& wrench
     return {headerOf(stamp_ns, frame), {vectorOf<Vector>(wrench.force), vectorOf<Vector>(wrench.torque)}};
 }
 
-TransformStamped transformOf(int64_t stamp_ns, const char* parent, const char* child, const Pose& X_PC) noexcept {
+TransformStamped transformOf(int64_t stamp_ns, const char* parent, const char* child,
+                             const Pose& X_PC) noexcept {
     using Vector = geometry_msgs_msg_dds__Vector3_;
     return {headerOf(stamp_ns, parent),
             textOf(child),

@@ -1,5 +1,5 @@
-// The messages of ROS 2 that bonemill says and hears (proto/ros2.idl), and how ours become theirs: m, N, N·m, rad, s,
-// their quaternions x, y, z, w. For any thread.
+// The messages of ROS 2 that bonemill says and hears (proto/ros2.idl), and how ours become theirs: m, N, N·m,
+// rad, s, their quaternions x, y, z, w. For any thread.
 //
 // What a message points to must outlive it: texts are of static storage.
 #pragma once
@@ -46,7 +46,8 @@ PoseStamped poseOf(int64_t stamp_ns, const char* frame, const Pose& X_FT) noexce
 TwistStamped twistOf(int64_t stamp_ns, const char* frame, const Eigen::Vector3d& v,
                      const Eigen::Vector3d& w) noexcept;
 WrenchStamped wrenchOf(int64_t stamp_ns, const char* frame, const Wrench& wrench) noexcept;
-TransformStamped transformOf(int64_t stamp_ns, const char* parent, const char* child, const Pose& X_PC) noexcept;
+TransformStamped transformOf(int64_t stamp_ns, const char* parent, const char* child,
+                             const Pose& X_PC) noexcept;
 
 // The rotation is as it came, of any length.
 Pose poseOf(const PoseStamped& message) noexcept;

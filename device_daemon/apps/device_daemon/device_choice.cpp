@@ -143,8 +143,8 @@ ChosenDevice deviceOf(const std::string& word, const FollowedScene& scene, const
     if (kind == "gamepad")
         return {nullptr, std::make_unique<GamepadDevice>(setup.rates, setup.X_DT_start, gamepadAt(place))};
     if (kind == "ros2")
-        return bridged("bonemill_bridge_ros2",
-                       place.empty() ? std::vector<std::string>{} : std::vector<std::string>{"--device", place});
+        return bridged("bonemill_bridge_ros2", place.empty() ? std::vector<std::string>{}
+                                                             : std::vector<std::string>{"--device", place});
     if (!place.empty())
         throw UserError("--device " + word + ": only ares, bridge, gamepad and ros2 take more than a word");
     if (kind == kScriptedHand) return simulated(scene, options);
@@ -175,7 +175,8 @@ const char* deviceChoices() {
     return "The hand: auto (the best that is there), simulated (a scripted hand on the emulated ARES), "
            "ares:ADDRESS:PORT (a controller that speaks docs/reference/ares_link.md), bridge:ADDRESS:PORT (a "
            "program that speaks its pose packets), ros2[:NAMESPACE] (a robot or program of ROS 2, "
-           "docs/howto/ros2.md), force-dimension, touch, haply, spacemouse, gamepad[:PATH], pointer (the mouse in a "
+           "docs/howto/ros2.md), force-dimension, touch, haply, spacemouse, gamepad[:PATH], pointer (the "
+           "mouse in a "
            "viewer)";
 }
 

@@ -17,12 +17,13 @@ int main(int argc, char** argv) {
         std::cerr << "error: " << error.what() << std::endl;
         return kUserErrorExitCode;
     }
-    return bridge::runBridge(
-        argc, argv,
-        {.about = "Bridge between device_daemon and a hand of ROS 2: NAMESPACE/servo_cp comes, NAMESPACE/measured_cf "
-                  "goes; --device NAMESPACE",
-         .add_options = [&](CLI::App& app) { ros2::addRosDomainOption(app, ros); },
-         .make_arm = [&](const bridge::BridgeOptions& options) {
-             return std::make_unique<bridge::Ros2Arm>(options, ros);
-         }});
+    return bridge::runBridge(argc, argv,
+                             {.about = "Bridge between device_daemon and a hand of ROS 2: NAMESPACE/servo_cp "
+                                       "comes, NAMESPACE/measured_cf "
+                                       "goes; --device NAMESPACE",
+                              .add_options = [&](CLI::App& app) { ros2::addRosDomainOption(app, ros); },
+                              .make_arm =
+                                  [&](const bridge::BridgeOptions& options) {
+                                      return std::make_unique<bridge::Ros2Arm>(options, ros);
+                                  }});
 }

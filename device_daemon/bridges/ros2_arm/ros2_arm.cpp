@@ -47,7 +47,8 @@ Ros2Arm::Ros2Arm(const BridgeOptions& options, const ros2::RosOptions& ros)
 ArmDescription Ros2Arm::open(const Tell& tell) {
     topics_.emplace(ros_, name_space_);
     tell("topics: /" + name_space_ + "/servo_cp and /" + name_space_ + "/buttons, in ROS domain " +
-         std::to_string(ros_.domain) + (ros2::isLocalhostOnly() ? " of this PC" : ": whoever is in it may lead the hand"));
+         std::to_string(ros_.domain) +
+         (ros2::isLocalhostOnly() ? " of this PC" : ": whoever is in it may lead the hand"));
     ArmDescription description;
     description.name = nameOf(name_space_);
     description.kind = DeviceKind::kBridge;
@@ -59,7 +60,8 @@ ArmDescription Ros2Arm::open(const Tell& tell) {
 }
 
 void Ros2Arm::start(ArmPeriod& period) {
-    thread_ = startArmLoop(options_, [](const std::string&) {}, [this, &period] { run(period); });
+    thread_ = startArmLoop(
+        options_, [](const std::string&) {}, [this, &period] { run(period); });
     has_thread_ = true;
 }
 
@@ -86,7 +88,8 @@ void Ros2Arm::hear(int64_t now_ns) {
         hand_.take(message, info.writer, now_ns);
     });
     complain();
-    topics_->buttons.take([&](const ros2::Joy& message, const dds::SampleInfo&) { hand_.take(message, now_ns); });
+    topics_->buttons.take(
+        [&](const ros2::Joy& message, const dds::SampleInfo&) { hand_.take(message, now_ns); });
 }
 
 // Each once: whoever wrote it has to change something.
@@ -102,11 +105,14 @@ void Ros2Arm::say(const ArmOrder& order, int64_t now_ns) {
     const int64_t stamp_ns = unixNowNs();
     topics_->measured_cf.write(ros2::wrenchOf(stamp_ns, ros2::kDeviceFrame, order.wrench_D));
     const bool is_homed = hand_.reading(now_ns).is_homed;
-    const char* const state = is_homed && !hand_.isFresh(now_ns) ? "FAULT" : order.is_driving ? "ENABLED" : "DISABLED";
+    const char* const state = is_homed && !hand_.isFresh(now_ns) ? "FAULT"
+                              : order.is_driving                 ? "ENABLED"
+                                                                 : "DISABLED";
     if (state == state_ && now_ns - said_ns_ < kStateAgainNs) return;
     state_ = state;
     said_ns_ = now_ns;
-    topics_->operating_state.write({ros2::headerOf(stamp_ns, ros2::kDeviceFrame), ros2::textOf(state), is_homed, false});
+    topics_->operating_state.write(
+        {ros2::headerOf(stamp_ns, ros2::kDeviceFrame), ros2::textOf(state), is_homed, false});
 }
 
 }  // namespace bonemill::bridge

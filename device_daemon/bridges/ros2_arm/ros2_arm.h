@@ -1,5 +1,5 @@
-// A robot, or another program's hand, as an arm: it comes as servo_cp of ROS 2 and is given the wrench as measured_cf
-// (docs/howto/ros2.md). BridgeLink makes of it what it makes of every arm.
+// A robot, or another program's hand, as an arm: it comes as servo_cp of ROS 2 and is given the wrench as
+// measured_cf (docs/howto/ros2.md). BridgeLink makes of it what it makes of every arm.
 #pragma once
 
 #include <atomic>

@@ -21,7 +21,6 @@ namespace bonemill {
 namespace {
 
 constexpr int64_t kToolStatePeriodNs = 9 * kNsPerMillisecond;
-constexpr int64_t kTicksPeriodNs = 5 * kNsPerMillisecond;
 constexpr int64_t kStatusPeriodNs = 250 * kNsPerMillisecond;
 // Densities may take so much of the stream's bytes.
 constexpr double kDensityShare = 0.25;
@@ -219,7 +218,6 @@ void ShowSession::round() {
     publishStructures();
     const int64_t now_ns = monotonicNowNs();
     if (now_ns - last_tool_state_ns_ > kToolStatePeriodNs) publishToolState(now_ns);
-    if (now_ns - last_ticks_ns_ > kTicksPeriodNs) publishTicks(now_ns);
     commands_.attempts().round();
     task_.round();
     if (const auto eye = publisher_.takeEye()) {
@@ -257,19 +255,15 @@ void ShowSession::leaveAnswers() {
                                    commands_.takeResult().value_or(Answer::failed("the scene has ended")));
 }
 
+// Most sessions have nobody who reads every tick.
 void ShowSession::publishToolState(int64_t now_ns) {
+    if (publisher_.areTicksRead()) publisher_.publishTicks(recorder_.takeAll());
     const auto since = recorder_.takeSince();
     if (!since) return;
     std::optional<topics::EffectState> effects;
     if (effects_.areShown()) effects = effects_.at(since->latest.effects, since->events, since->removed);
     publisher_.publishToolState(since->latest, std::move(effects), expertNow());
     last_tool_state_ns_ = now_ns;
-}
-
-// Most sessions have nobody who wants every tick.
-void ShowSession::publishTicks(int64_t now_ns) {
-    if (publisher_.areTicksRead()) publisher_.publishTicks(recorder_.takeAll());
-    last_ticks_ns_ = now_ns;
 }
 
 // During an attempt, where the expert was at that time of it; in a replay, the tool that it is compared with.

@@ -57,7 +57,6 @@ class ShowSession {
     void publishStructures();
     void publishDensities();
     void publishToolState(int64_t now_ns);
-    void publishTicks(int64_t now_ns);
     std::optional<Pose> expertNow() const;
     void publishStatus();
     void publishSceneInfo();
@@ -94,7 +93,6 @@ class ShowSession {
     LogLimit orders_logged_{20, 3 * kNsPerSecond};
     size_t next_picture_ = 0;  // of the scenes of the lesson
     int64_t last_tool_state_ns_ = 0;
-    int64_t last_ticks_ns_ = 0;
     int64_t last_status_ns_ = 0;
     bool has_changed_ = false;  // since the last status
     bool are_surroundings_shown_ = false;

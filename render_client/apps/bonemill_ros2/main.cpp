@@ -38,7 +38,8 @@ std::optional<Options> parseOptions(int argc, char** argv) {
         ->check(CLI::Range(0, 230))
         ->capture_default_str();
     ros2::addRosDomainOption(app, options.session.ros);
-    app.add_option("--namespace", options.session.name_space, "The topics are called /NAMESPACE/measured_cp and so on")
+    app.add_option("--namespace", options.session.name_space,
+                   "The topics are called /NAMESPACE/measured_cp and so on")
         ->capture_default_str();
     app.add_option("--seconds", options.seconds, "End after so many s")->check(within(1e-3, kMaxSeconds));
     dds::addNetworkOptions(app, options.network);
@@ -58,10 +59,12 @@ void warnOfSecrets(const Options& options) {
 int serve(const Options& options, const StopSignals& stop_signals) {
     using Clock = std::chrono::steady_clock;
     ros2::Ros2Session session(options.session);
-    spdlog::info("session {} is said in ROS domain {}{}, as /{}", options.session.session, options.session.ros.domain,
-                 ros2::isLocalhostOnly() ? " of this PC" : "", options.session.name_space);
+    spdlog::info("session {} is said in ROS domain {}{}, as /{}", options.session.session,
+                 options.session.ros.domain, ros2::isLocalhostOnly() ? " of this PC" : "",
+                 options.session.name_space);
     const auto start = Clock::now();
-    while (stop_signals.await(0) == 0 && (!options.seconds || Clock::now() - start < std::chrono::duration<double>(*options.seconds))) {
+    while (stop_signals.await(0) == 0 &&
+           (!options.seconds || Clock::now() - start < std::chrono::duration<double>(*options.seconds))) {
         session.wait(kLook);
         session.step();
     }

@@ -1,5 +1,5 @@
-// The bone as markers of ROS 2: one TRIANGLE_LIST per node of the octree, in V. What has changed goes out in parts;
-// for who comes late everything counts as changed. It is for one thread.
+// The bone as markers of ROS 2: one TRIANGLE_LIST per node of the octree, in V. What has changed goes out in
+// parts; for who comes late everything counts as changed. It is for one thread.
 #pragma once
 
 #include <cstddef>

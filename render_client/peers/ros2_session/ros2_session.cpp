@@ -111,7 +111,8 @@ void Ros2Session::sayFrames(const topics::ToolState& state) {
     const int64_t stamp_ns = state.stamp_ns();
     std::vector<TransformStamped> frames{
         transformOf(stamp_ns, kWorldFrame, kToolFrame, poseOfFields(state.p_wt_m(), state.q_wt())),
-        transformOf(stamp_ns, kWorldFrame, kHandFrame, poseOfFields(state.p_wt_device_m(), state.q_wt_device()))};
+        transformOf(stamp_ns, kWorldFrame, kHandFrame,
+                    poseOfFields(state.p_wt_device_m(), state.q_wt_device()))};
     if (scene_info_)
         frames.push_back(transformOf(stamp_ns, kWorldFrame, kVolumeFrame,
                                      poseOfFields(scene_info_->p_wv_m(), scene_info_->q_wv())));
@@ -127,16 +128,17 @@ void Ros2Session::sayOperatingState(const topics::ToolState& state) {
     const auto device = SafetyState(state.device_state());
     const bool is_homed = device != SafetyState::kDisconnected && device != SafetyState::kConnected &&
                           device != SafetyState::kHoming;
-    operating_state_.write({headerOf(state.stamp_ns(), kDeviceFrame), textOf(operatingStateOf(state.device_state())),
-                            is_homed, device == SafetyState::kHoming});
+    operating_state_.write({headerOf(state.stamp_ns(), kDeviceFrame),
+                            textOf(operatingStateOf(state.device_state())), is_homed,
+                            device == SafetyState::kHoming});
 }
 
 void Ros2Session::sayEvents(const std::vector<std::string>& lines) {
     for (const std::string& line : lines) events_.write({textOf(line.c_str())});
 }
 
-// Who comes late gets all nodes, whatever durability it asked for: with one topic for all of them DDS keeps the last
-// parts only. Parts are far enough apart for a reader that keeps ten.
+// Who comes late gets all nodes, whatever durability it asked for: with one topic for all of them DDS keeps
+// the last parts only. Parts are far enough apart for a reader that keeps ten.
 void Ros2Session::sayBone() {
     const auto now = Clock::now();
     if (now - bone_said_ < kBoneEvery) return;

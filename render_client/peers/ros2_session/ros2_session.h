@@ -1,5 +1,6 @@
-// A session for nodes of ROS 2: what its server shows by DDS, said again in their messages and names (docs/howto/ros2.md).
-// It orders nothing, and the server knows no more of it than of a viewer that looks. For one thread.
+// A session for nodes of ROS 2: what its server shows by DDS, said again in their messages and names
+// (docs/howto/ros2.md). It orders nothing, and the server knows no more of it than of a viewer that looks.
+// For one thread.
 #pragma once
 
 #include <chrono>

@@ -10,7 +10,8 @@ std::vector<std::string> SaidEvents::of(const topics::ToolState& state) {
     std::vector<std::string> lines;
     const uint32_t before = std::exchange(events_, state.effects().events());
     for (uint32_t bit = 1; bit != 0 && bit <= topics::EffectState::Event_MAX; bit <<= 1)
-        if (events_ & ~before & bit) lines.push_back(topics::EffectState::Event_Name(topics::EffectState::Event(bit)));
+        if (events_ & ~before & bit)
+            lines.push_back(topics::EffectState::Event_Name(topics::EffectState::Event(bit)));
     const bool is_other = device_state_ != state.device_state() || stop_cause_ != state.stop_cause();
     device_state_ = state.device_state();
     stop_cause_ = state.stop_cause();

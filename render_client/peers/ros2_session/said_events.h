@@ -13,7 +13,8 @@ namespace bonemill::ros2 {
 class SaidEvents {
   public:
     void beginRun() { *this = {}; }
-    // Each warning of the effects, by its name in topics::EffectState, once while it lasts; and the device's states.
+    // Each warning of the effects, by its name in topics::EffectState, once while it lasts; and the device's
+    // states.
     std::vector<std::string> of(const topics::ToolState& state);
     // How orders ended: "order done: checkpoint 3".
     std::vector<std::string> of(const topics::Status& status);

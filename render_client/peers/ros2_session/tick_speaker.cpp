@@ -14,7 +14,8 @@ Eigen::Vector3d vectorOfFields(const google::protobuf::RepeatedField<double>& v)
 
 }  // namespace
 
-Pose poseOfFields(const google::protobuf::RepeatedField<double>& p, const google::protobuf::RepeatedField<double>& q) {
+Pose poseOfFields(const google::protobuf::RepeatedField<double>& p,
+                  const google::protobuf::RepeatedField<double>& q) {
     return {vectorOfFields(p), {q[0], q[1], q[2], q[3]}};
 }
 

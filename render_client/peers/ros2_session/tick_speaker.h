@@ -1,6 +1,6 @@
-// Tells every tick in CRTK's words: measured_cp, where the hand really holds the tool; setpoint_cp, the simulated tool
-// that the bone holds back; measured_cv, the hand's velocity; measured_cf, the wrench on the hand. All are in W; the
-// stamp is when the tick began. It is for one thread.
+// Tells every tick in CRTK's words: measured_cp, where the hand really holds the tool; setpoint_cp, the
+// simulated tool that the bone holds back; measured_cv, the hand's velocity; measured_cf, the wrench on the
+// hand. All are in W; the stamp is when the tick began. It is for one thread.
 #pragma once
 
 #include <cstdint>
@@ -53,6 +53,7 @@ class TickSpeaker {
 };
 
 // The pose of three and four numbers of a message that was checked.
-Pose poseOfFields(const google::protobuf::RepeatedField<double>& p, const google::protobuf::RepeatedField<double>& q);
+Pose poseOfFields(const google::protobuf::RepeatedField<double>& p,
+                  const google::protobuf::RepeatedField<double>& q);
 
 }  // namespace bonemill::ros2

@@ -1,5 +1,7 @@
 #include "tests/integration/ros2/fast_peer.h"
 
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+
 #include <cstring>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -11,7 +13,6 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <map>
 #include <stdexcept>
 
@@ -50,7 +51,8 @@ class RawType final : public fast::TopicDataType {
 
 template <class Qos>
 Qos withQos(Qos qos, const RosQos& wanted) {
-    qos.reliability().kind = wanted.is_reliable ? fast::RELIABLE_RELIABILITY_QOS : fast::BEST_EFFORT_RELIABILITY_QOS;
+    qos.reliability().kind =
+        wanted.is_reliable ? fast::RELIABLE_RELIABILITY_QOS : fast::BEST_EFFORT_RELIABILITY_QOS;
     qos.durability().kind =
         wanted.is_transient_local ? fast::TRANSIENT_LOCAL_DURABILITY_QOS : fast::VOLATILE_DURABILITY_QOS;
     qos.history().kind = fast::KEEP_LAST_HISTORY_QOS;
@@ -63,7 +65,8 @@ Qos withQos(Qos qos, const RosQos& wanted) {
 }  // namespace
 
 CdrBytes::CdrBytes(Bytes bytes) : bytes_(std::move(bytes)) {
-    // The coding is CDR, little endian (RTPS 10.2); the other two bytes are for options, and tell how much fills the end.
+    // The coding is CDR, little endian (RTPS 10.2); the other two bytes are for options, and tell how much
+    // fills the end.
     is_good_ = bytes_.size() >= 4 && bytes_[0] == 0 && bytes_[1] == 1;
 }
 
@@ -163,8 +166,8 @@ FastNode::~FastNode() {
 FastNode::Reader FastNode::read(const std::string& topic, const std::string& type, const RosQos& qos) {
     Reader reader;
     reader.inside_ = std::make_shared<Reader::Inside>();
-    reader.inside_->reader = inside_->subscriber->create_datareader(inside_->topic(topic, type),
-                                                                   withQos(fast::DATAREADER_QOS_DEFAULT, qos));
+    reader.inside_->reader = inside_->subscriber->create_datareader(
+        inside_->topic(topic, type), withQos(fast::DATAREADER_QOS_DEFAULT, qos));
     if (!reader.inside_->reader) throw std::runtime_error("Fast DDS has no reader of " + topic);
     return reader;
 }
@@ -187,8 +190,8 @@ int FastNode::Reader::matchedWriters() const {
 FastNode::Writer FastNode::writer(const std::string& topic, const std::string& type, const RosQos& qos) {
     Writer writer;
     writer.inside_ = std::make_shared<Writer::Inside>();
-    writer.inside_->writer = inside_->publisher->create_datawriter(inside_->topic(topic, type),
-                                                                   withQos(fast::DATAWRITER_QOS_DEFAULT, qos));
+    writer.inside_->writer = inside_->publisher->create_datawriter(
+        inside_->topic(topic, type), withQos(fast::DATAWRITER_QOS_DEFAULT, qos));
     if (!writer.inside_->writer) throw std::runtime_error("Fast DDS has no writer of " + topic);
     return writer;
 }

@@ -1,6 +1,6 @@
-// A node as ROS 2 with Fast DDS would be it, made of the published message definitions alone: it knows topics and types by
-// their names, and messages as bytes, which it takes apart or puts together itself. Nothing of proto/ros2.idl or of
-// Cyclone DDS is in it.
+// A node as ROS 2 with Fast DDS would be it, made of the published message definitions alone: it knows topics
+// and types by their names, and messages as bytes, which it takes apart or puts together itself. Nothing of
+// proto/ros2.idl or of Cyclone DDS is in it.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace bonemill::test {
 
-// Reads plain CDR, little endian, as ROS 2 writes it: every number at a multiple of its own size behind the four bytes
-// that say how it is coded. Beyond the end everything is 0 and isWhole() is false.
+// Reads plain CDR, little endian, as ROS 2 writes it: every number at a multiple of its own size behind the
+// four bytes that say how it is coded. Beyond the end everything is 0 and isWhole() is false.
 class CdrBytes {
   public:
     explicit CdrBytes(std::vector<uint8_t> bytes);

@@ -26,7 +26,8 @@ RobotNode::RobotNode(uint32_t domain)
     : node_(domain),
       servo_cp_(node_.writer(topic("servo_cp"), "geometry_msgs::msg::dds_::PoseStamped_")),
       joy_(node_.writer(topic("buttons"), "sensor_msgs::msg::dds_::Joy_")),
-      measured_cf_(node_.read(topic("measured_cf"), "geometry_msgs::msg::dds_::WrenchStamped_", {.depth = 100})),
+      measured_cf_(
+          node_.read(topic("measured_cf"), "geometry_msgs::msg::dds_::WrenchStamped_", {.depth = 100})),
       operating_state_(node_.read(topic("operating_state"), "crtk_msgs::msg::dds_::OperatingState_")),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 

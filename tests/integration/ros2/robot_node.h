@@ -1,5 +1,5 @@
-// A robot's node, of Fast DDS: it writes servo_cp every millisecond, wherever the test wants it to be, and reads what it is
-// given.
+// A robot's node, of Fast DDS: it writes servo_cp every millisecond, wherever the test wants it to be, and
+// reads what it is given.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// A robot of ROS 2 is device_daemon's hand: it mills by servo_cp, feels measured_cf, and is stopped as every hand is.
+// A robot of ROS 2 is device_daemon's hand: it mills by servo_cp, feels measured_cf, and is stopped as every
+// hand is.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
@@ -29,7 +30,9 @@ double forceOf(const std::array<double, 6>& wrench) {
 // The bridge alone, whose host is played by the test.
 class Ros2Bridge : public testing::Test {
   protected:
-    Ros2Bridge() : bridge_({"bonemill_bridge_ros2", "--device", RobotNode::kNamespace}), robot_(test::rosTestDomain()) {}
+    Ros2Bridge()
+        : bridge_({"bonemill_bridge_ros2", "--device", RobotNode::kNamespace}),
+          robot_(test::rosTestDomain()) {}
 
     test::RosSession session_;
     test::Process bridge_;
@@ -66,7 +69,8 @@ TEST_F(Ros2Bridge, FollowsServoCpAndGivesTheWrenchWithinItsLimits) {
     EXPECT_NEAR(robot_.wrench()[3], 0.5, 1e-6);
 
     robot_.press({1, 0});
-    EXPECT_TRUE(host.runUntil([&] { return host.state().inputs >> wire::kFirstButtonInput == kButtonRemove; }));
+    EXPECT_TRUE(
+        host.runUntil([&] { return host.state().inputs >> wire::kFirstButtonInput == kButtonRemove; }));
     robot_.press({0, 1, 1});
     EXPECT_TRUE(host.runUntil([&] { return host.state().inputs >> wire::kFirstButtonInput == kButtonAdd; }));
     robot_.press({0, 0, 0});  // who has a third button gives force while it is held
@@ -83,8 +87,9 @@ TEST_F(Ros2Bridge, FollowsOneNodeAlone) {
     ASSERT_TRUE(host.engage());
     RobotNode other(test::rosTestDomain());
     other.goTo({.p = {0.5, 0, 0}});
-    EXPECT_TRUE(host.runUntil(
-        [&] { return bridge_.errSoFar().find("a second node writes /lab/robot/servo_cp") != std::string::npos; }));
+    EXPECT_TRUE(host.runUntil([&] {
+        return bridge_.errSoFar().find("a second node writes /lab/robot/servo_cp") != std::string::npos;
+    }));
     host.runPeriods(100);
     EXPECT_EQ(host.state().p_DT[0], 0.01);
 }
@@ -103,8 +108,8 @@ TEST_F(Ros2Bridge, LeavesWhenTheNodeIsSilentAndSaysWhichFrameItWants) {
     EXPECT_NE(finished.err.find("its frame_id should be bonemill_device"), std::string::npos) << finished.err;
 }
 
-// Bytes of any kind come as servo_cp and buttons, with valid ones in between. What DDS takes for a pose may be any, and is
-// the daemon's to judge; here the bridge lives, gives no more force than it may, and goes on.
+// Bytes of any kind come as servo_cp and buttons, with valid ones in between. What DDS takes for a pose may
+// be any, and is the daemon's to judge; here the bridge lives, gives no more force than it may, and goes on.
 TEST_F(Ros2Bridge, OutlivesWhatIsNoMessage) {
     test::FastNode node(test::rosTestDomain());
     const std::string topic = std::string("rt/") + RobotNode::kNamespace;
@@ -113,13 +118,16 @@ TEST_F(Ros2Bridge, OutlivesWhatIsNoMessage) {
     BridgeHost host(bridge_);
     host.want(true, {30, 0, 0, 0, 0, 0});
     ASSERT_TRUE(host.runUntil([&] { return servo_cp.matchedReaders() > 0 && buttons.matchedReaders() > 0; }));
-    const auto textOf = [](const std::vector<uint8_t>& bytes) { return std::string(bytes.begin(), bytes.end()); };
+    const auto textOf = [](const std::vector<uint8_t>& bytes) {
+        return std::string(bytes.begin(), bytes.end());
+    };
     test::CdrMaker joy;
     joy.i32(1).u32(2).text("").u32(0).u32(3).i32(1).i32(0).i32(1);
     const std::string pose = textOf(test::poseStampedBytes({.p = {0.01, 0, 0}}));
     std::mt19937 random(5);
     for (int n = 0; n < 1500; ++n) {
-        const std::string bad_pose = test::mutated(pose, random), bad_joy = test::mutated(textOf(joy.bytes()), random);
+        const std::string bad_pose = test::mutated(pose, random),
+                          bad_joy = test::mutated(textOf(joy.bytes()), random);
         servo_cp.write({bad_pose.begin(), bad_pose.end()});
         buttons.write({bad_joy.begin(), bad_joy.end()});
         if (n % 3 == 0) servo_cp.write({pose.begin(), pose.end()});
@@ -143,14 +151,15 @@ TEST(Ros2BridgeWords, RefusesWhatIsNoNameAndNoDomain) {
     EXPECT_NE(test::run({"bonemill_bridge_ros2", "--ros-domain", "231"}).exit_code, 0);
 }
 
-// The whole way: robot, bridge, device_daemon, haptic_server, and a viewer that sees what is milled. D's +y is W's up; the
-// robot begins 1.6 mm above the bone's reach.
+// The whole way: robot, bridge, device_daemon, haptic_server, and a viewer that sees what is milled. D's +y
+// is W's up; the robot begins 1.6 mm above the bone's reach.
 class RobotMills : public testing::Test {
   protected:
     RobotMills()
         : robot_(test::rosTestDomain()),
           server_(session_.startServer()),
-          daemon_(session_.startDaemon(std::string("ros2:") + RobotNode::kNamespace, {"--no-enabling-switch"})),
+          daemon_(
+              session_.startDaemon(std::string("ros2:") + RobotNode::kNamespace, {"--no-enabling-switch"})),
           viewer_({.domain = testDomain(), .session = testSession()}) {
         robot_.goTo({.p = {0, 1.6e-3, 0}});
     }
@@ -164,8 +173,8 @@ class RobotMills : public testing::Test {
         for (size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1)) ++count;
         return count;
     }
-    // A busy machine may silence the robot for as long as a dead one: then the device is reset, and the robot comes from
-    // above once more.
+    // A busy machine may silence the robot for as long as a dead one: then the device is reset, and the robot
+    // comes from above once more.
     void beginToMill() {
         robot_.press({1});
         ASSERT_TRUE(test::waitFor([&] {
@@ -180,7 +189,8 @@ class RobotMills : public testing::Test {
                 resetDevice();
             }
             return state == SafetyState::kEngaged && forceOf(robot_.wrench()) > 0.2 && removed > 0.1;
-        })) << forceOf(robot_.wrench()) << ' ' << removedNow() << daemon_->errSoFar();
+        })) << forceOf(robot_.wrench())
+            << ' ' << removedNow() << daemon_->errSoFar();
     }
     void resetDevice() {
         if (++looks_ % 100 != 0) return;
@@ -201,8 +211,10 @@ TEST_F(RobotMills, ACorridor) {
     const double before = removedNow();
     robot_.goTo({.p = {3e-3, -2.3e-3, 0}}, 0.003);
     ASSERT_TRUE(test::waitFor([&] { return robot_.hasArrived() || removedNow() > before + 0.5; }));
-    EXPECT_TRUE(test::waitFor([&] { return removedNow() > before + 0.5; })) << removedNow() - before << " mm³";
-    EXPECT_NE(server_->errSoFar().find("the device is ROS 2 /lab/robot"), std::string::npos) << server_->errSoFar();
+    EXPECT_TRUE(test::waitFor([&] { return removedNow() > before + 0.5; }))
+        << removedNow() - before << " mm³";
+    EXPECT_NE(server_->errSoFar().find("the device is ROS 2 /lab/robot"), std::string::npos)
+        << server_->errSoFar();
     daemon_->signal(SIGTERM);
     EXPECT_EQ(daemon_->wait().exit_code, 0);
 }
@@ -262,7 +274,8 @@ TEST_P(RobotIsStopped, AndMillsNoMore) {
     GetParam().happen(robot_);
     ASSERT_TRUE(test::waitFor([&] { return timesSaid(cause) > before; })) << daemon_->errSoFar();
     EXPECT_TRUE(test::waitFor([&] { return forceOf(robot_.wrench()) == 0; }));
-    // The robot is well again, where it was, with its pedal down: nothing begins anew before somebody resets the device.
+    // The robot is well again, where it was, with its pedal down: nothing begins anew before somebody resets
+    // the device.
     robot_.goTo({.p = {0, -2.3e-3, 0}});
     usleep(300'000);
     const double removed = removedNow();

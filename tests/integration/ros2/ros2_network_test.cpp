@@ -1,5 +1,5 @@
-// A session on one PC, nodes of ROS 2 on another: poses and wrenches come at the loop's rate, the bone comes late, and the
-// session's own topics stay on their PC.
+// A session on one PC, nodes of ROS 2 on another: poses and wrenches come at the loop's rate, the bone comes
+// late, and the session's own topics stay on their PC.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -31,8 +31,8 @@ Counted countOf(const std::string& line, const std::string& topic) {
     Counted counted;
     const size_t at = line.find(topic + ": ");
     if (at == std::string::npos ||
-        std::sscanf(line.c_str() + at + topic.size() + 2, "%lu messages, %lf %% missing, %lf Hz", &counted.messages,
-                    &counted.missing_percent, &counted.rate_hz) != 3)
+        std::sscanf(line.c_str() + at + topic.size() + 2, "%lu messages, %lf %% missing, %lf Hz",
+                    &counted.messages, &counted.missing_percent, &counted.rate_hz) != 3)
         return {};
     return counted;
 }
@@ -45,21 +45,24 @@ TEST(Ros2Network, NodesOfAnotherPcHearEveryTickAndTheBoneLate) {
     const auto server = haptics_pc.start(session.serverWords());
     const auto daemon = haptics_pc.start(session.daemonWords("simulated"));
     const auto ros = haptics_pc.start(inRosNetwork(test::RosSession::rosWords(), test::binDir()));
-    ASSERT_TRUE(test::waitFor([&] { return daemon->errSoFar().find("device is engaged") != std::string::npos; }))
-        << daemon->errSoFar();
+    ASSERT_TRUE(test::waitFor([&] {
+        return daemon->errSoFar().find("device is engaged") != std::string::npos;
+    })) << daemon->errSoFar();
     for (const char* const kind : {"cyclone", "fast"}) {
-        const test::Finished node = robot_pc
-                                        .start(inRosNetwork({"ros_listener", kind,
-                                                             std::to_string(test::rosTestDomain()), "4"},
-                                                            test::helperDir()))
-                                        ->wait();
+        const test::Finished node =
+            robot_pc
+                .start(inRosNetwork({"ros_listener", kind, std::to_string(test::rosTestDomain()), "4"},
+                                    test::helperDir()))
+                ->wait();
         for (const char* const topic : {"measured_cp", "measured_cf"}) {
             const Counted counted = countOf(node.out, topic);
             EXPECT_GT(counted.messages, 500u) << node.out << node.err << ros->errSoFar();
             EXPECT_LE(counted.missing_percent, 1) << kind << ": " << node.out;
         }
         unsigned long nodes = 0;
-        EXPECT_EQ(std::sscanf(node.out.c_str() + std::min(node.out.find("bone: "), node.out.size()), "bone: %lu", &nodes), 1);
+        EXPECT_EQ(std::sscanf(node.out.c_str() + std::min(node.out.find("bone: "), node.out.size()),
+                              "bone: %lu", &nodes),
+                  1);
         EXPECT_GT(nodes, kind == std::string("cyclone") ? 20u : 0u) << node.out;
         std::printf("%s: %s", kind, node.out.c_str());
     }

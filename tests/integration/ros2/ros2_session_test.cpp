@@ -1,5 +1,5 @@
-// A session, read by two nodes of ROS 2: one of Cyclone DDS with the types of proto/ros2.idl, and one of Fast DDS that
-// knows only the names and takes the bytes apart by the published definitions.
+// A session, read by two nodes of ROS 2: one of Cyclone DDS with the types of proto/ros2.idl, and one of Fast
+// DDS that knows only the names and takes the bytes apart by the published definitions.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
@@ -69,8 +69,10 @@ Numbers numbersOf(const ros2::WrenchStamped& m) {
 template <class Message>
 class ReadTwice {
   public:
-    ReadTwice(const dds::Participant& cyclone, test::FastNode& fast, const std::string& name, const std::string& type)
-        : cyclone_(cyclone, "bonemill/" + name), fast_(fast.read("rt/bonemill/" + name, type, {.depth = 1000})) {}
+    ReadTwice(const dds::Participant& cyclone, test::FastNode& fast, const std::string& name,
+              const std::string& type)
+        : cyclone_(cyclone, "bonemill/" + name),
+          fast_(fast.read("rt/bonemill/" + name, type, {.depth = 1000})) {}
 
     void take() {
         cyclone_.take([this](const Message& message, const dds::SampleInfo&) {
@@ -90,7 +92,8 @@ class ReadTwice {
         return same;
     }
 
-    // Of what Cyclone's reader has between the first and the last of the other's, the share that the other lacks.
+    // Of what Cyclone's reader has between the first and the last of the other's, the share that the other
+    // lacks.
     double shareMissed() const {
         size_t had = 0, missed = 0;
         for (const auto& [stamp, stamped] : by_cyclone) {
@@ -170,7 +173,9 @@ TEST_F(Ros2Session, SaysFramesStateAndStatus) {
                 children.insert(cdr.text());
                 Numbers numbers;
                 for (int n = 0; n < 7; ++n) numbers.push_back(cdr.f64());
-                EXPECT_NEAR(std::hypot(std::hypot(numbers[3], numbers[4]), std::hypot(numbers[5], numbers[6])), 1, 1e-9);
+                EXPECT_NEAR(
+                    std::hypot(std::hypot(numbers[3], numbers[4]), std::hypot(numbers[5], numbers[6])), 1,
+                    1e-9);
             }
             EXPECT_TRUE(cdr.isWhole());
         }
@@ -188,11 +193,14 @@ TEST_F(Ros2Session, SaysFramesStateAndStatus) {
             EXPECT_TRUE(cdr.isWhole());
         }
         for (const Bytes& bytes : events.take()) said += CdrBytes(bytes).text() + "\n";
-        return children.size() == 4 && words.contains("ENABLED") && text.find("\"scene\":\"ros\"") != std::string::npos &&
+        return children.size() == 4 && words.contains("ENABLED") &&
+               text.find("\"scene\":\"ros\"") != std::string::npos &&
                said.find("device engaged") != std::string::npos;
-    })) << children.size() << ' ' << text << said << ros_->errSoFar();
+    })) << children.size()
+        << ' ' << text << said << ros_->errSoFar();
     EXPECT_TRUE(is_homed);
-    EXPECT_EQ(children, (std::set<std::string>{"bonemill_device", "bonemill_hand", "bonemill_tool", "bonemill_volume"}));
+    EXPECT_EQ(children, (std::set<std::string>{"bonemill_device", "bonemill_hand", "bonemill_tool",
+                                               "bonemill_volume"}));
 }
 
 struct Markers {
@@ -213,25 +221,25 @@ struct Markers {
         EXPECT_EQ(cdr.i32(), 11);  // TRIANGLE_LIST
         const int32_t action = cdr.i32();
         for (const double expected : {0., 0., 0., 0., 0., 0., 1.}) EXPECT_EQ(cdr.f64(), expected);  // pose
-        for (int n = 0; n < 3; ++n) EXPECT_EQ(cdr.f64(), 1);                                       // scale
-        for (int n = 0; n < 4; ++n) EXPECT_GT(cdr.f32(), 0);                                       // colour
-        EXPECT_EQ(int64_t(cdr.i32()) + cdr.u32(), 0);                                         // lifetime
-        EXPECT_FALSE(cdr.flag());                                                                  // frame_locked
+        for (int n = 0; n < 3; ++n) EXPECT_EQ(cdr.f64(), 1);                                        // scale
+        for (int n = 0; n < 4; ++n) EXPECT_GT(cdr.f32(), 0);                                        // colour
+        EXPECT_EQ(int64_t(cdr.i32()) + cdr.u32(), 0);  // lifetime
+        EXPECT_FALSE(cdr.flag());                      // frame_locked
         const uint32_t size = cdr.u32();
         for (uint32_t n = 0; n < size && cdr.bytes().size() > size; ++n) {
             cdr.f64(), cdr.f64();
             const double z = cdr.f64();
             lowest = std::min(lowest, z), highest = std::max(highest, z);
         }
-        EXPECT_EQ(cdr.u32(), 0u);  // colors
+        EXPECT_EQ(cdr.u32(), 0u);   // colors
         EXPECT_EQ(cdr.text(), "");  // texture_resource
         EXPECT_EQ(headerOf(cdr).frame, "");
-        EXPECT_EQ(cdr.text(), "");                            // texture.format
+        EXPECT_EQ(cdr.text(), "");                       // texture.format
         EXPECT_EQ(uint64_t(cdr.u32()) + cdr.u32(), 0u);  // texture.data, uv_coordinates
-        EXPECT_EQ(cdr.text(), "");                            // text
-        EXPECT_EQ(cdr.text() + cdr.text(), "");  // mesh_resource, mesh_file.filename
-        EXPECT_EQ(cdr.u32(), 0u);                              // mesh_file.data
-        EXPECT_FALSE(cdr.flag());                              // mesh_use_embedded_materials
+        EXPECT_EQ(cdr.text(), "");                       // text
+        EXPECT_EQ(cdr.text() + cdr.text(), "");          // mesh_resource, mesh_file.filename
+        EXPECT_EQ(cdr.u32(), 0u);                        // mesh_file.data
+        EXPECT_FALSE(cdr.flag());                        // mesh_use_embedded_materials
         if (action == 3) points.clear();
         if (action == 2) points.erase(id);
         if (action != 0) return;
@@ -241,7 +249,8 @@ struct Markers {
     }
 };
 
-// A node that keeps ten messages and asks for nothing that was before, as rviz2 does, and one that asks for what is kept.
+// A node that keeps ten messages and asks for nothing that was before, as rviz2 does, and one that asks for
+// what is kept.
 TEST_F(Ros2Session, GivesTheWholeBoneToWhoComesLate) {
     auto status = fast_.read("rt/bonemill/status", "std_msgs::msg::dds_::String_");
     std::string text;
@@ -251,7 +260,9 @@ TEST_F(Ros2Session, GivesTheWholeBoneToWhoComesLate) {
         return at == std::string::npos ? 0 : std::stoul(text.substr(at + 12));
     };
     // All of it was said before anybody listened.
-    ASSERT_TRUE(test::waitFor([&] { return nodesNow() > 20 && text.find("isModelPartial") == std::string::npos; })) << text;
+    ASSERT_TRUE(test::waitFor([&] {
+        return nodesNow() > 20 && text.find("isModelPartial") == std::string::npos;
+    })) << text;
     for (const bool is_transient_local : {false, true}) {
         auto bone = fast_.read("rt/bonemill/bone", "visualization_msgs::msg::dds_::MarkerArray_",
                                {.is_transient_local = is_transient_local});
@@ -260,7 +271,8 @@ TEST_F(Ros2Session, GivesTheWholeBoneToWhoComesLate) {
             usleep(5000);
             for (const Bytes& bytes : bone.take()) markers.take(bytes);
             return !HasFailure() && markers.points.size() == nodesNow() && !markers.points.empty();
-        })) << markers.points.size() << " of " << nodesNow();
+        })) << markers.points.size()
+            << " of " << nodesNow();
         EXPECT_GT(markers.highest - markers.lowest, 1e-3) << "m";
     }
 }

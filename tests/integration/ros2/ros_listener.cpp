@@ -2,8 +2,9 @@
 //
 //   ros_listener cyclone|fast DOMAIN SECONDS
 //
-// messages of measured_cp and measured_cf, how many of the ticks between their first and last are not among them, in
-// percent, the rate, and the nodes of the bone. measured_cp and measured_cf are read reliably, as rviz2 and rosbag2 do.
+// messages of measured_cp and measured_cf, how many of the ticks between their first and last are not among
+// them, in percent, the rate, and the nodes of the bone. measured_cp and measured_cf are read reliably, as
+// rviz2 and rosbag2 do.
 #include <unistd.h>
 
 #include <algorithm>
@@ -31,7 +32,9 @@ struct Heard {
     std::set<int64_t> stamps;
 
     double rate() const {
-        return stamps.size() < 2 ? 0 : double(stamps.size() - 1) * 1e9 / double(*stamps.rbegin() - *stamps.begin());
+        return stamps.size() < 2
+                   ? 0
+                   : double(stamps.size() - 1) * 1e9 / double(*stamps.rbegin() - *stamps.begin());
     }
     // A gap of 2.9 ms lacks two ticks.
     double lossPercent() const {
@@ -51,8 +54,8 @@ struct Counts {
 };
 
 void print(const char* name, const Heard& heard) {
-    std::printf("%s: %zu messages, %.3f %% missing, %.1f Hz; ", name, heard.stamps.size(), heard.lossPercent(),
-                heard.rate());
+    std::printf("%s: %zu messages, %.3f %% missing, %.1f Hz; ", name, heard.stamps.size(),
+                heard.lossPercent(), heard.rate());
 }
 
 void listen(double seconds, const std::function<void()>& take) {
@@ -74,8 +77,12 @@ void listenByCyclone(uint32_t domain, double seconds, Counts& counts) {
     ros2::Reader<ros2::WrenchStamped> cf(participant, "bonemill/measured_cf", reliable);
     ros2::Reader<ros2::MarkerArray> bone(participant, "bonemill/bone", reliable);
     listen(seconds, [&] {
-        cp.take([&](const ros2::PoseStamped& m, const dds::SampleInfo&) { counts.cp.stamps.insert(stampOf(m.header)); });
-        cf.take([&](const ros2::WrenchStamped& m, const dds::SampleInfo&) { counts.cf.stamps.insert(stampOf(m.header)); });
+        cp.take([&](const ros2::PoseStamped& m, const dds::SampleInfo&) {
+            counts.cp.stamps.insert(stampOf(m.header));
+        });
+        cf.take([&](const ros2::WrenchStamped& m, const dds::SampleInfo&) {
+            counts.cf.stamps.insert(stampOf(m.header));
+        });
         bone.take([&](const ros2::MarkerArray& m, const dds::SampleInfo&) {
             for (uint32_t i = 0; i < m.markers._length; ++i)
                 if (m.markers._buffer[i].action == 0) counts.bone.insert(m.markers._buffer[i].id);

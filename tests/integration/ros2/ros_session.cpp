@@ -22,13 +22,19 @@ RosSession::RosSession() {
     setenv("ROS_DOMAIN_ID", std::to_string(rosTestDomain()).c_str(), 1);
     EXPECT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder_ / "slab.nrrd"}).exit_code, 0);
     const std::string upright = "q_WT { w: 0.70710678 x: 0.70710678 }";
-    writeFile(folder_ / "s.textproto",
-              "name: \"ros\" volume { path: \"slab.nrrd\" } effects { time_removal { rate_density_per_s: 10 } }\n"
-              "device { p_WD_mm { x: 0 y: 0.1 z: 2 } q_WD { w: 0.70710678 x: 0.70710678 } }\n"
-              "simulated_operator { tremor_mm: 0.1\n"
-              "  waypoint { time_s: 0 p_WT_mm { x: 0 y: 0.1 z: 3.6 } " + upright + " }\n"
-              "  waypoint { time_s: 0.3 p_WT_mm { x: 0 y: 0.1 z: 0 } " + upright + " remove: true }\n"
-              "  waypoint { time_s: 36000 p_WT_mm { x: 0 y: 0.1 z: -0.1 } " + upright + " } }\n");
+    writeFile(
+        folder_ / "s.textproto",
+        "name: \"ros\" volume { path: \"slab.nrrd\" } effects { time_removal { rate_density_per_s: 10 } }\n"
+        "device { p_WD_mm { x: 0 y: 0.1 z: 2 } q_WD { w: 0.70710678 x: 0.70710678 } }\n"
+        "simulated_operator { tremor_mm: 0.1\n"
+        "  waypoint { time_s: 0 p_WT_mm { x: 0 y: 0.1 z: 3.6 } " +
+            upright +
+            " }\n"
+            "  waypoint { time_s: 0.3 p_WT_mm { x: 0 y: 0.1 z: 0 } " +
+            upright +
+            " remove: true }\n"
+            "  waypoint { time_s: 36000 p_WT_mm { x: 0 y: 0.1 z: -0.1 } " +
+            upright + " } }\n");
 }
 
 std::vector<std::string> RosSession::serverWords() const {
@@ -55,7 +61,8 @@ std::vector<std::string> RosSession::daemonWords(const std::string& device) cons
 }
 
 std::vector<std::string> RosSession::rosWords() {
-    return {"bonemill_ros2", "--session", std::to_string(testSession()), "--domain", std::to_string(testDomain())};
+    return {"bonemill_ros2", "--session", std::to_string(testSession()), "--domain",
+            std::to_string(testDomain())};
 }
 
 std::unique_ptr<Process> RosSession::startServer() const {

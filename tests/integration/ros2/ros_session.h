@@ -25,7 +25,8 @@ class RosSession {
     std::vector<std::string> daemonWords(const std::string& device) const;
     static std::vector<std::string> rosWords();
     std::unique_ptr<Process> startServer() const;
-    std::unique_ptr<Process> startDaemon(const std::string& device, const std::vector<std::string>& more = {}) const;
+    std::unique_ptr<Process> startDaemon(const std::string& device,
+                                         const std::vector<std::string>& more = {}) const;
     std::unique_ptr<Process> startRos() const;
     // Joins the domain of ROS as a node of Cyclone DDS.
     dds::Participant joinAsNode() const;

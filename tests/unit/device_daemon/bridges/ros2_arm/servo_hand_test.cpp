@@ -16,7 +16,9 @@ ros2::PoseStamped at(double x, const char* frame = ros2::kDeviceFrame) {
 }
 
 struct Pressed {
-    explicit Pressed(std::vector<int32_t> values) : values_(std::move(values)) { ros2::pointAt(joy.buttons, values_); }
+    explicit Pressed(std::vector<int32_t> values) : values_(std::move(values)) {
+        ros2::pointAt(joy.buttons, values_);
+    }
     ros2::Joy joy{};
 
   private:
