@@ -219,6 +219,19 @@ TEST_F(RobotMills, ACorridor) {
     EXPECT_EQ(daemon_->wait().exit_code, 0);
 }
 
+// Its node has died: the bridge ends, and device_daemon starts it anew; the robot comes back, somebody resets
+// the device.
+TEST_F(RobotMills, GoesOnAfterItsNodeHasDiedAndTheDeviceWasReset) {
+    beginToMill();
+    const std::string dies = "bonemill_bridge_ros2 has died: it is started again";
+    const size_t before = timesSaid(dies);
+    robot_.beSilent();
+    ASSERT_TRUE(test::waitFor([&] { return timesSaid(dies) > before; })) << daemon_->errSoFar();
+    const double removed = removedNow();
+    beginToMill();
+    EXPECT_TRUE(test::waitFor([&] { return removedNow() > removed; })) << daemon_->errSoFar();
+}
+
 struct RobotFault {
     const char* name;
     void (*happen)(RobotNode& robot);
