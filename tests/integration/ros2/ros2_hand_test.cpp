@@ -219,17 +219,20 @@ TEST_F(RobotMills, ACorridor) {
     EXPECT_EQ(daemon_->wait().exit_code, 0);
 }
 
-// Its node has died: the bridge ends, and device_daemon starts it anew; the robot comes back, somebody resets
-// the device.
-TEST_F(RobotMills, GoesOnAfterItsNodeHasDiedAndTheDeviceWasReset) {
+TEST_F(RobotMills, AgainWhenTheDeviceWasReset) {
     beginToMill();
-    const std::string dies = "bonemill_bridge_ros2 has died: it is started again";
-    const size_t before = timesSaid(dies);
-    robot_.beSilent();
-    ASSERT_TRUE(test::waitFor([&] { return timesSaid(dies) > before; })) << daemon_->errSoFar();
+    robot_.goTo({.p = {0.03, -2.3e-3, 0}});
+    ASSERT_TRUE(test::waitFor([&] { return timesSaid(nameOf(StopCause::kPoseJump)) > 0; }));
     const double removed = removedNow();
     beginToMill();
     EXPECT_TRUE(test::waitFor([&] { return removedNow() > removed; })) << daemon_->errSoFar();
+}
+
+// What every bridge does that has lost its arm for good.
+TEST_F(RobotMills, LeavesWhenItsNodeHasDied) {
+    beginToMill();
+    robot_.beSilent();
+    EXPECT_EQ(daemon_->wait().exit_code, 0) << daemon_->errSoFar();
 }
 
 struct RobotFault {
