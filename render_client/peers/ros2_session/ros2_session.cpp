@@ -31,7 +31,7 @@ Ros2Session::Ros2Session(const Ros2SessionOptions& options)
       speaker_(ros_, options.name_space),
       tf_(ros_, "tf"),
       operating_state_(ros_, options.name_space + "/operating_state", Delivery::kKept),
-      events_(ros_, options.name_space + "/events"),
+      events_(ros_, options.name_space + "/events", Delivery::kKept),
       status_(ros_, options.name_space + "/status", Delivery::kKept),
       bone_(ros_, options.name_space + "/bone", Delivery::kKept) {
     join();

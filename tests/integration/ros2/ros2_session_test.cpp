@@ -159,7 +159,8 @@ TEST_F(Ros2Session, SaysFramesStateAndStatus) {
     auto frames = fast_.read("rt/tf", "tf2_msgs::msg::dds_::TFMessage_");
     auto states = fast_.read("rt/bonemill/operating_state", "crtk_msgs::msg::dds_::OperatingState_");
     auto status = fast_.read("rt/bonemill/status", "std_msgs::msg::dds_::String_");
-    auto events = fast_.read("rt/bonemill/events", "std_msgs::msg::dds_::String_");
+    auto events =
+        fast_.read("rt/bonemill/events", "std_msgs::msg::dds_::String_", {.is_transient_local = true});
     std::set<std::string> children, words;
     std::string text, said;
     bool is_homed = false;
