@@ -53,14 +53,7 @@ TEST_F(PanelPast, ARecordingGoesOnOtherwiseWhereSomethingIs) {
     show();
     click("Go on otherwise");
     EXPECT_TRUE(wishes_.what_if.empty()) << "nothing is otherwise";
-    ASSERT_TRUE(panel_.find("What if pace"));
-    PixelPoint slower = *panel_.find("What if pace");
-    slower.x -= 40;
-    send(MouseMoveEvent{slower});
-    send(MouseButtonEvent{MouseButton::kLeft, true, slower, {}, 0});
-    show();
-    send(MouseButtonEvent{MouseButton::kLeft, false, slower, {}, 0});
-    show();
+    click("What if pace");  // at its left end
     click("Go on otherwise");
     ASSERT_EQ(wishes_.what_if.size(), 2u);
     EXPECT_EQ(wishes_.what_if[0], "--pace");
