@@ -68,6 +68,7 @@ void PanelContent::buildReplay() {
     if (!session_.recording.empty() &&
         button("Clip", "Writes the ten seconds around this moment as a video, seen from here"))
         wishes_.make_clip = true;
+    if (!session_.recording.empty()) buildWhatIf();
     gap();
     buildComparison();
 }
