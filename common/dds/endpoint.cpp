@@ -102,6 +102,12 @@ int AnyWriter::matchedReaders() const {
     return static_cast<int>(status.current_count);
 }
 
+uint32_t AnyWriter::readersSoFar() const {
+    dds_publication_matched_status_t status{};
+    if (isAllowed()) dds_get_publication_matched_status(writer_.handle(), &status);
+    return status.total_count;
+}
+
 AnyReader::AnyReader(const Participant& participant, const TopicDescription& description)
     : participant_(participant.handle()),
       topic_(createTopic(participant_, description)),

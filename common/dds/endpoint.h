@@ -38,6 +38,8 @@ class AnyWriter {
     // learns it.
     bool dispose(const void* sample);
     int matchedReaders() const;
+    // Counts all that ever were: with a larger number somebody has come since.
+    uint32_t readersSoFar() const;
     // It is false when this program's identity (--secure) may not write there: then nothing is ever written.
     bool isAllowed() const noexcept { return writer_.handle() > 0; }
 

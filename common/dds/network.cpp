@@ -174,7 +174,7 @@ std::string networkConfiguration(const NetworkOptions& options) {
 }
 
 bool isOnePc(const std::string& configuration) {
-    return configuration == kOnePcProfile;
+    return configuration.starts_with(kOnePcProfile);
 }
 
 bool isOpenToOthers(const NetworkOptions& options) {

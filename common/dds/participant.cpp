@@ -125,15 +125,20 @@ std::mutex domains_mutex;
 std::optional<std::string> chosen_configuration;  // guarded by domains_mutex
 std::optional<SecurityFolder> chosen_security;    // guarded by domains_mutex
 
-std::shared_ptr<Domain> acquireDomain(uint32_t id) {
+// Within this process a foreigners' domain has its number plus this one; on the network it has its own.
+constexpr uint32_t kFirstForeign = 1000;
+
+// `configuration`: none is the one that was chosen.
+std::shared_ptr<Domain> acquireDomain(uint32_t id, const std::optional<std::string>& configuration = {}) {
     static std::map<uint32_t, std::weak_ptr<Domain>> domains;
     const std::lock_guard lock(domains_mutex);
     std::shared_ptr<Domain> domain = domains[id].lock();
     if (!domain) {
         requireMemory(kDomainBytes, "the network");
         dds_set_log_sink(sayWithinLimit, nullptr);
-        domain = std::make_shared<Domain>(
-            id, chosen_configuration ? *chosen_configuration : networkConfiguration({}));
+        domain = std::make_shared<Domain>(id, configuration          ? *configuration
+                                              : chosen_configuration ? *chosen_configuration
+                                                                     : networkConfiguration({}));
         domains[id] = domain;
     }
     return domain;
@@ -171,19 +176,38 @@ void requireInForce(const SecurityFolder& security, dds_entity_t participant) {
                     ": this Cyclone DDS joins without security; is it Debian's, and not built without it?");
 }
 
+void requireDomain(uint32_t domain) {
+    if (domain <= kMaxDomain) return;
+    throw UserError("DDS domain " + std::to_string(domain) + " does not exist: choose 0 to " +
+                    std::to_string(kMaxDomain));
+}
+
 }  // namespace
 
 Participant::Participant(uint32_t domain) {
-    if (domain > kMaxDomain) {
-        throw UserError("DDS domain " + std::to_string(domain) + " does not exist: choose 0 to " +
-                        std::to_string(kMaxDomain));
-    }
+    requireDomain(domain);
     domain_ = acquireDomain(domain);
     const std::optional<SecurityFolder> security = chosenSecurity();
     entity_ = requireEntity(
         dds_create_participant(domain, security ? secured(*security).get() : nullptr, nullptr),
         "participant in DDS domain " + std::to_string(domain) + (security ? ", with --secure" : ""));
     if (security) requireInForce(*security, entity_.handle());
+}
+
+Participant::Participant(std::shared_ptr<Domain> domain, Entity entity) noexcept
+    : domain_(std::move(domain)), entity_(std::move(entity)) {}
+
+Participant Participant::ofForeigners(uint32_t domain, const std::string& configuration) {
+    requireDomain(domain);
+    const std::string own_number = "<CycloneDDS><Domain Id=\"any\"><Discovery><ExternalDomainId>" +
+                                   std::to_string(domain) +
+                                   "</ExternalDomainId></Discovery></Domain></CycloneDDS>";
+    const uint32_t id = kFirstForeign + domain;
+    std::shared_ptr<Domain> joined =
+        acquireDomain(id, configuration + (configuration.empty() ? "" : ",") + own_number);
+    Entity entity = requireEntity(dds_create_participant(id, nullptr, nullptr),
+                                  "participant in DDS domain " + std::to_string(domain));
+    return {std::move(joined), std::move(entity)};
 }
 
 Participant::Participant(Participant&&) noexcept = default;

@@ -45,6 +45,9 @@ class Participant {
   public:
     // Throws UserError when the domain cannot be joined, or when security was asked for and is not in force.
     explicit Participant(uint32_t domain);
+    // Joins a domain of others than bonemill, by this configuration of Cyclone and without DDS Security,
+    // whatever is set below. It may have the number of a domain of ours: they share nothing.
+    static Participant ofForeigners(uint32_t domain, const std::string& configuration);
     Participant(Participant&&) noexcept;
 
     ~Participant();
@@ -58,6 +61,8 @@ class Participant {
     int32_t handle() const noexcept { return entity_.handle(); }
 
   private:
+    Participant(std::shared_ptr<Domain> domain, Entity entity) noexcept;
+
     std::shared_ptr<Domain> domain_;  // outlives entity_
     Entity entity_;
 };

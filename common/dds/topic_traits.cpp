@@ -10,6 +10,8 @@ constexpr dds_duration_t kMaxBlocking = DDS_SECS(1), kMaxCommandBlocking = DDS_M
 constexpr int kMaxQueuedCommands = 1024;
 // A viewer finds so many tool states when it has drawn: at 100 per second those of a third of a second.
 constexpr int kQueuedToolStates = 32;
+// Of the messages of some ten ticks each: a third of a second.
+constexpr int kQueuedTicks = 32;
 
 Qos reliableQos(dds_duration_t most_blocking = kMaxBlocking) {
     Qos qos = makeQos();
@@ -48,6 +50,13 @@ Qos streamQos() {
     return qos;
 }
 
+// None may be lost, but the writer waits for nobody: what is older than the depth makes way.
+Qos ticksQos() {
+    Qos qos = reliableQos();
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kQueuedTicks);
+    return qos;
+}
+
 // Beyond what a reader holds the writer waits, but no longer than a window may stand still.
 Qos commandQos() {
     Qos qos = reliableQos(kMaxCommandBlocking);
@@ -75,6 +84,8 @@ constexpr Topic kTopic<StructureMeshSample>{"bonemill_structure_mesh", &bonemill
 template <>
 constexpr Topic kTopic<ToolStateSample>{"bonemill_tool_state", &bonemill_dds_ToolStateSample_desc,
                                         streamQos<kQueuedToolStates>, kMaxStreamKeys / 2};
+template <>
+constexpr Topic kTopic<TicksSample>{"bonemill_ticks", &bonemill_dds_TicksSample_desc, ticksQos};
 template <>
 constexpr Topic kTopic<StatusSample>{"bonemill_status", &bonemill_dds_StatusSample_desc, stateQos};
 template <>
@@ -120,6 +131,7 @@ template TopicDescription describeTopic<NodeMeshSample>();
 template TopicDescription describeTopic<SceneInfoSample>();
 template TopicDescription describeTopic<StructureMeshSample>();
 template TopicDescription describeTopic<ToolStateSample>();
+template TopicDescription describeTopic<TicksSample>();
 template TopicDescription describeTopic<StatusSample>();
 template TopicDescription describeTopic<LessonSample>();
 template TopicDescription describeTopic<ScenePictureSample>();

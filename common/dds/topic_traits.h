@@ -22,6 +22,7 @@ using NodeMeshSample = bonemill_dds_NodeMeshSample;
 using SceneInfoSample = bonemill_dds_SceneInfoSample;
 using StructureMeshSample = bonemill_dds_StructureMeshSample;
 using ToolStateSample = bonemill_dds_ToolStateSample;
+using TicksSample = bonemill_dds_TicksSample;
 using StatusSample = bonemill_dds_StatusSample;
 using LessonSample = bonemill_dds_LessonSample;
 using ScenePictureSample = bonemill_dds_ScenePictureSample;

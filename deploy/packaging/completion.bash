@@ -20,4 +20,5 @@ _bonemill() {
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
 }
 complete -o default -F _bonemill bonemill bonemill-make-case bonemill-study haptic_server device_daemon render_client \
-    bonemill_lab make_phantom ares_emulator bonemill_bridge_force_dimension bonemill_bridge_haply bonemill_bridge_igtl bonemill_bridge_touch bonemill_igtl
+    bonemill_lab make_phantom ares_emulator bonemill_bridge_force_dimension bonemill_bridge_haply bonemill_bridge_igtl \
+    bonemill_bridge_ros2 bonemill_bridge_touch bonemill_igtl bonemill_ros2

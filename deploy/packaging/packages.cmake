@@ -41,8 +41,8 @@ set(CPACK_DEBIAN_SESSION_PACKAGE_CONTROL_EXTRA
 set(CPACK_DEBIAN_VIEWER_PACKAGE_NAME bonemill-viewer)
 set(CPACK_DEBIAN_VIEWER_DESCRIPTION "viewer of haptic bone-milling sessions
 Watches a session of another PC, in a window or as pictures, over DDS or
-through a gateway; is that gateway, and its relay. It is what the PC of a
-pupil needs: bonemill watch HOST.")
+through a gateway; is that gateway, and its relay; says it to ROS 2. It is
+what the PC of a pupil needs: bonemill watch HOST.")
 set(CPACK_DEBIAN_VIEWER_PACKAGE_DEPENDS "fonts-dejavu-core, iproute2, libgl1, openssl")
 set(CPACK_DEBIAN_VIEWER_PACKAGE_RECOMMENDS "xdg-utils")
 set(CPACK_DEBIAN_VIEWER_PACKAGE_SUGGESTS "ffmpeg, qrencode")

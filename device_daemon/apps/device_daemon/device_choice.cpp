@@ -113,8 +113,8 @@ ChosenDevice simulated(const FollowedScene& scene, const DaemonOptions& options)
     return {std::move(own.program), std::move(device), true};
 }
 
-ChosenDevice bridged(const std::string& program_name) {
-    OwnProgram own(program_name, {});
+ChosenDevice bridged(const std::string& program_name, std::vector<std::string> words = {}) {
+    OwnProgram own(program_name, std::move(words));
     auto device = std::make_unique<UdpPoseDevice>(std::move(own.wire));
     return {.program = std::move(own.program), .device = std::move(device), .is_of_scene = false};
 }
@@ -142,8 +142,11 @@ ChosenDevice deviceOf(const std::string& word, const FollowedScene& scene, const
                 .is_of_scene = false};
     if (kind == "gamepad")
         return {nullptr, std::make_unique<GamepadDevice>(setup.rates, setup.X_DT_start, gamepadAt(place))};
+    if (kind == "ros2")
+        return bridged("bonemill_bridge_ros2", place.empty() ? std::vector<std::string>{}
+                                                             : std::vector<std::string>{"--device", place});
     if (!place.empty())
-        throw UserError("--device " + word + ": only ares, bridge and gamepad take more than a word");
+        throw UserError("--device " + word + ": only ares, bridge, gamepad and ros2 take more than a word");
     if (kind == kScriptedHand) return simulated(scene, options);
     if (kind == "force-dimension") return bridged("bonemill_bridge_force_dimension");
     if (kind == "touch") return bridged("bonemill_bridge_touch");
@@ -172,11 +175,9 @@ std::vector<ListedDevice> foundDevices() {
 const char* deviceChoices() {
     return "The hand: auto (the best that is there), simulated (a scripted hand on the emulated ARES), "
            "ares:ADDRESS:PORT (a controller that speaks docs/reference/ares_link.md), bridge:ADDRESS:PORT (a "
-           "program "
-           "that speaks "
-           "its pose packets), force-dimension, touch, haply, igtl (told by OpenIGTLink), spacemouse, "
-           "gamepad[:PATH], pointer (the mouse "
-           "in a "
+           "program that speaks its pose packets), ros2[:NAMESPACE] (a robot or program of ROS 2, "
+           "docs/howto/ros2.md), force-dimension, touch, haply, igtl (told by OpenIGTLink), spacemouse, "
+           "gamepad[:PATH], pointer (the mouse in a "
            "viewer)";
 }
 

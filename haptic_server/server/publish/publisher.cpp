@@ -60,6 +60,18 @@ topics::ToolState toolState(const TickRecord& record, uint64_t epoch) {
     return state;
 }
 
+// `to_unix_ns` leads from CLOCK_MONOTONIC to CLOCK_REALTIME.
+void assign(const TickRecord& record, int64_t to_unix_ns, topics::Tick& tick) {
+    tick.set_tick(record.tick);
+    tick.set_stamp_ns(record.start_ns + to_unix_ns);
+    assign(tick.mutable_p_wt_m(), record.p_WT);
+    assign(tick.mutable_q_wt(), record.q_WT);
+    assign(tick.mutable_p_wt_device_m(), record.p_WT_device);
+    assign(tick.mutable_q_wt_device(), record.q_WT_device);
+    assign(tick.mutable_force_n(), record.f_hand_W);
+    assign(tick.mutable_torque_nm(), record.t_hand_W);
+}
+
 }  // namespace
 
 Publisher::Publisher(const PublisherOptions& options)
@@ -70,6 +82,7 @@ Publisher::Publisher(const PublisherOptions& options)
       scene_info_writer_(participant_),
       structure_writer_(participant_),
       tool_state_writer_(participant_),
+      ticks_writer_(participant_),
       status_writer_(participant_),
       lesson_writer_(participant_),
       picture_writer_(participant_),
@@ -190,6 +203,18 @@ bool Publisher::publishToolState(const TickRecord& record, std::optional<topics:
         for (const double part : {q.w(), q.x(), q.y(), q.z()}) state.add_q_wt_expert(part);
     }
     return writeMessage(tool_state_writer_, session_, state);
+}
+
+void Publisher::publishTicks(std::span<const TickRecord> records) {
+    const int64_t to_unix_ns = unixTime_ns() - monotonicNowNs();
+    while (!records.empty()) {
+        const auto part = records.first(std::min(records.size(), kMostTicks));
+        topics::Ticks ticks;
+        ticks.set_epoch(epoch_);
+        for (const TickRecord& record : part) assign(record, to_unix_ns, *ticks.add_ticks());
+        writeMessage(ticks_writer_, session_, ticks);
+        records = records.subspan(part.size());
+    }
 }
 
 bool Publisher::publishStatus(topics::Status status) {

@@ -87,6 +87,11 @@ class Publisher {
     // `X_WT_expert` is where an expert's tool was, or another attempt's, if there is one to show.
     bool publishToolState(const TickRecord& record, std::optional<topics::EffectState> effects = {},
                           const std::optional<Pose>& X_WT_expert = {});
+    // Somebody reads every tick: then publishTicks() is to be called some 100 times per second.
+    bool areTicksRead() const { return ticks_writer_.matchedReaders() > 0; }
+    // Writes them in messages of at most kMostTicks; what nobody reads is not written.
+    void publishTicks(std::span<const TickRecord> records);
+    static constexpr size_t kMostTicks = 64;
     // Epoch, node count, node digest and last command are filled in. Clients take a server for lost that
     // publishes nothing for 3 s: call at least once per second, and right after the last of a group of nodes.
     bool publishStatus(topics::Status status);
@@ -157,6 +162,7 @@ class Publisher {
     dds::Writer<dds::SceneInfoSample> scene_info_writer_;
     dds::Writer<dds::StructureMeshSample> structure_writer_;
     dds::Writer<dds::ToolStateSample> tool_state_writer_;
+    dds::Writer<dds::TicksSample> ticks_writer_;
     dds::Writer<dds::StatusSample> status_writer_;
     dds::Writer<dds::LessonSample> lesson_writer_;
     dds::Writer<dds::ScenePictureSample> picture_writer_;

@@ -107,6 +107,9 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const SceneSetup& simulat
     describeToViewers(shown, info);
     describeZones(scene, info);
     describeShades(shadesOf(shown, simulation.mapping), info);
+    const Eigen::Quaterniond& q_WD = simulation.X_WD.rotation;
+    assign(info.mutable_p_wd_m(), simulation.X_WD.position);
+    assign(info.mutable_q_wd(), Eigen::Vector4d(q_WD.w(), q_WD.x(), q_WD.y(), q_WD.z()));
     info.set_leaf_count(simulation.bone->lattice.leafCount());
     if (simulation.surroundings)  // their nodes are numbered behind those of the bone
         info.set_leaf_count(info.leaf_count() + surroundingsLeafCount(*simulation.surroundings));
@@ -252,7 +255,9 @@ void ShowSession::leaveAnswers() {
                                    commands_.takeResult().value_or(Answer::failed("the scene has ended")));
 }
 
+// Most sessions have nobody who reads every tick.
 void ShowSession::publishToolState(int64_t now_ns) {
+    if (publisher_.areTicksRead()) publisher_.publishTicks(recorder_.takeAll());
     const auto since = recorder_.takeSince();
     if (!since) return;
     std::optional<topics::EffectState> effects;

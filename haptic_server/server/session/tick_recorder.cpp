@@ -39,6 +39,7 @@ void Recorder::drain() {
         addToWindow(record);
         addToAttempt(record);
         ticks_ = record.tick + 1;
+        keepForAll(record);
         events.add(record.effects);
         removed += record.removed;
     }
@@ -161,6 +162,21 @@ std::optional<Recorder::Since> Recorder::takeSince() {
     const std::lock_guard lock(mutex_);
     if (!latest_) return std::nullopt;
     return Since{*latest_, std::exchange(new_events_, {}), std::exchange(new_removed_, 0)};
+}
+
+void Recorder::keepForAll(const TickRecord& record) {
+    const std::lock_guard lock(mutex_);
+    if (!keeps_all_) return;
+    all_.push_back(record);
+    if (all_.size() <= kMostKept) return;
+    all_ = {};
+    keeps_all_ = false;
+}
+
+std::vector<TickRecord> Recorder::takeAll() {
+    const std::lock_guard lock(mutex_);
+    keeps_all_ = true;
+    return std::exchange(all_, {});
 }
 
 std::vector<DeviceChange> Recorder::takeDeviceChanges() {

@@ -69,6 +69,10 @@ class Recorder {
         double removed;  // m³
     };
     std::optional<Since> takeSince();
+    // All records since the call before, the oldest first, for whoever calls it often: with the first call it
+    // begins to keep them, and ends when it was not called for kMostKept ticks.
+    std::vector<TickRecord> takeAll();
+    static constexpr size_t kMostKept = 1000;
     // These changes of the device are new since the call before.
     std::vector<DeviceChange> takeDeviceChanges();
     LoopHealth health() const;
@@ -102,6 +106,7 @@ class Recorder {
     void beginAsked();
     std::optional<EndedAttempt> takeAttempt(uint64_t ticks, bool waits);
     bool isIncomplete() const;
+    void keepForAll(const TickRecord& record);
     void addToAttempt(const TickRecord& record);
 
     SpscRing<TickRecord>& ring_;
@@ -125,6 +130,8 @@ class Recorder {
     std::optional<TickRecord> latest_;
     EventSum new_events_;  // since takeSince()
     double new_removed_ = 0;
+    bool keeps_all_ = false;
+    std::vector<TickRecord> all_;                   // since takeAll()
     std::vector<DeviceChange> new_device_changes_;  // since takeDeviceChanges()
     LoopHealth health_;
     AttemptFigures shown_attempt_;  // as of latest_

@@ -120,6 +120,7 @@ class WindowViewer {
         if (wishes.save_attempts && session.lesson) notices_.show(saveAttempts(*session.lesson));
         if (!wishes.open_file.empty()) showFile(wishes.open_file);
         if (!wishes.replay_of.empty()) replay(wishes.replay_of);
+        if (!wishes.what_if.empty()) goOnOtherwise(wishes.what_if);
         if (wishes.make_clip)
             notices_.show(clips_.make(options_, session.status->session_s(), scene_.camera(),
                                       nextName("bonemill_clip_%04d.mp4")));
@@ -324,6 +325,25 @@ class WindowViewer {
             notices_.show(
                 {tr("This desktop opens no files by itself: look at {1}", {file}), HudTone::kWarning});
     }
+
+    // From the moment that is seen on.
+    void goOnOtherwise(const std::vector<std::string>& otherwise) {
+        char moment[32];
+        std::snprintf(moment, sizeof moment, "%.3f", replayedS());
+        std::vector<std::string> words{options_.launcher,
+                                       "what-if",
+                                       options_.recording,
+                                       "--at",
+                                       moment,
+                                       "--domain",
+                                       std::to_string(options_.subscriber.domain)};
+        words.insert(words.end(), otherwise.begin(), otherwise.end());
+        notices_.show(
+            startApart(words)
+                ? HudNotice{tr("It is worked out; a window of its own will show both"), HudTone::kPlain}
+                : HudNotice{tr("{1} cannot be started", {options_.launcher}), HudTone::kWarning});
+    }
+    double replayedS() { return feed_.subscriber().status() ? feed_.subscriber().status()->session_s() : 0; }
 
     void replay(const std::string& result) {
         if (std::error_code none; !std::filesystem::exists(result, none))

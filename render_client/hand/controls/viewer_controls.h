@@ -30,6 +30,7 @@ struct Wishes {
     bool save_picture = false;
     bool save_attempts = false;                 // of the lesson, as CSV
     bool make_clip = false;                     // of the moment of the replay
+    std::vector<std::string> what_if;           // as `bonemill what-if` takes it, from the replay's moment on
     std::string replay_of;                      // an attempt's results, to be seen again; empty: none
     std::string invite;                         // this person; empty: nobody
     std::string invite_as;                      // the person's role

@@ -134,6 +134,10 @@ std::optional<topics::ToolState> parseToolState(std::span<const uint8_t> payload
     return parse<topics::ToolState>(payload);
 }
 
+std::optional<topics::Ticks> parseTicks(std::span<const uint8_t> payload) {
+    return parse<topics::Ticks>(payload);
+}
+
 std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload) {
     return parse<topics::Status>(payload);
 }

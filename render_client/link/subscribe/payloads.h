@@ -34,6 +34,7 @@ std::optional<StructureSurface> parseStructure(std::span<const uint8_t> payload,
 // vertices; of effects and materials only what a viewer uses, within the ranges of scene files.
 std::optional<topics::SceneInfo> parseSceneInfo(std::span<const uint8_t> payload);
 std::optional<topics::ToolState> parseToolState(std::span<const uint8_t> payload);
+std::optional<topics::Ticks> parseTicks(std::span<const uint8_t> payload);
 std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload);
 // Names and texts are cut to what stands on a screen; there are 64 scenes at most, with pictures of at most
 // 64 KiB, and 256 attempts.

@@ -74,6 +74,7 @@ class Panel {
     RemarkDraft remark_;
     InviteDraft invite_;
     TuningDraft tuning_;
+    WhatIfDraft what_if_;
     PanelFolds folds_;
     ScenePictures pictures_;
     PlotHistory plots_;

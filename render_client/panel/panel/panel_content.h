@@ -28,8 +28,9 @@ class PanelContent {
     PanelContent(ViewerControls& controls, const SessionView& session, Wishes& wishes,
                  std::map<std::string, PixelPoint>& places, bool& is_ending, LessonDraft& draft,
                  RemarkDraft& remark_draft, InviteDraft& invite_draft, TuningDraft& tuning_draft,
-                 PanelFolds& folds, const std::map<std::string, ScenePicture>& pictures,
-                 const PlotHistory& plots, float scale, float view_width)
+                 WhatIfDraft& what_if_draft, PanelFolds& folds,
+                 const std::map<std::string, ScenePicture>& pictures, const PlotHistory& plots, float scale,
+                 float view_width)
         : controls_(controls),
           settings_(controls.settings()),
           session_(session),
@@ -40,6 +41,7 @@ class PanelContent {
           remark_draft_(remark_draft),
           invite_draft_(invite_draft),
           tuning_draft_(tuning_draft),
+          what_if_draft_(what_if_draft),
           folds_(folds),
           pictures_(pictures),
           plots_(plots),
@@ -87,6 +89,8 @@ class PanelContent {
     void buildComparison();
     void buildCompared(const topics::Comparison& comparison);
     void buildLegend(uint32_t first);
+    // Lets it go on otherwise (panel_what_if.cpp).
+    void buildWhatIf();
     // These say how the session goes (panel_session.cpp).
     void buildSession();
     void buildCheckpoints();
@@ -145,6 +149,7 @@ class PanelContent {
     RemarkDraft& remark_draft_;
     InviteDraft& invite_draft_;
     TuningDraft& tuning_draft_;
+    WhatIfDraft& what_if_draft_;
     PanelFolds& folds_;
     const std::map<std::string, ScenePicture>& pictures_;
     const PlotHistory& plots_;

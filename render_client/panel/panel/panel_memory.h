@@ -38,6 +38,13 @@ struct InviteDraft {
 inline constexpr std::array<const char*, 3> kInvitedRoles = {trMark("observer"), trMark("operator"),
                                                              trMark("instructor")};
 
+// Of what would be otherwise in the recording that is replayed.
+struct WhatIfDraft {
+    Eigen::Vector3f shift_mm{0, 0, 0};  // of the hand, W
+    int tool = 0;                       // number from 1; 0: as it was
+    float pace = 1;                     // of the hand
+};
+
 // Of a slider that is being dragged: of which field, and where it is.
 struct TuningDraft {
     std::string path;  // empty: of none

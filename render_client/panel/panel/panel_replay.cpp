@@ -69,6 +69,7 @@ void PanelContent::buildReplay() {
     if (!session_.recording.empty() &&
         button(tr("Clip"), tr("Writes the ten seconds around this moment as a video, seen from here")))
         wishes_.make_clip = true;
+    if (!session_.recording.empty()) buildWhatIf();
     gap();
     buildComparison();
 }

@@ -31,9 +31,9 @@ struct Part {
     std::string name;
     std::vector<std::string> writes, reads;
 };
-const std::vector<std::string> kShown{"node_mesh",     "scene_info", "structure_mesh",
-                                      "status",        "lesson",     "remark",
-                                      "scene_picture", "tool_state", "density_brick"};
+const std::vector<std::string> kShown{"node_mesh", "scene_info",   "structure_mesh", "status",
+                                      "lesson",    "remark",       "scene_picture",  "tool_state",
+                                      "ticks",     "density_brick"};
 const std::vector<Part> kParts{{"server", kShown, {"command", "density_wish", "viewer"}},
                                {"device", {}, {"hand_pointer"}},
                                {"operator", {"command", "density_wish", "viewer", "hand_pointer"}, {}},

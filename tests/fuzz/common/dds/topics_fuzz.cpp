@@ -187,6 +187,28 @@ TEST(TopicsFuzz, ToolState) {
     });
 }
 
+TEST(TopicsFuzz, Ticks) {
+    topics::Ticks ticks;
+    ticks.set_epoch(1);
+    for (int n = 0; n < 3; ++n) {
+        topics::Tick& tick = *ticks.add_ticks();
+        tick.set_stamp_ns(1'700'000'000'000'000'000);
+        for (auto* vector : {tick.mutable_p_wt_m(), tick.mutable_p_wt_device_m(), tick.mutable_force_n(),
+                             tick.mutable_torque_nm()})
+            vector->Resize(3, 0.5);
+        for (auto* quaternion : {tick.mutable_q_wt(), tick.mutable_q_wt_device()}) quaternion->Resize(4, 0.5);
+    }
+    fuzz(ticks.SerializeAsString(), [](Bytes bytes) {
+        const auto parsed = parseTicks(bytes);
+        if (!parsed) return false;
+        for (const topics::Tick& tick : parsed->ticks()) {
+            EXPECT_EQ(tick.p_wt_device_m_size() + tick.q_wt_device_size() + tick.force_n_size(), 10);
+            for (const double number : tick.p_wt_m()) EXPECT_TRUE(std::isfinite(number));
+        }
+        return parsed->ticks_size() <= 256;
+    });
+}
+
 TEST(TopicsFuzz, Status) {
     topics::Status status;
     status.set_epoch(1);

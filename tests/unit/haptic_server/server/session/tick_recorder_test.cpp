@@ -46,6 +46,25 @@ TEST_F(RecorderTest, ATraceWithAllTicksIsWhole) {
     EXPECT_EQ(recorder.statistics().lostRecords(), 0u);
 }
 
+TEST_F(RecorderTest, GivesEveryTickOnceToWhoAsksOften) {
+    Recorder recorder(ring_, kPeriodNs);
+    const auto drain = [&](int ticks) {
+        pushTicks(ticks);
+        recorder.drain();
+    };
+    drain(4);
+    EXPECT_TRUE(recorder.takeAll().empty()) << "nobody had asked";
+    drain(3), drain(2);
+    const std::vector<TickRecord> taken = recorder.takeAll();
+    ASSERT_EQ(taken.size(), 5u);
+    for (size_t i = 0; i < 5; ++i) EXPECT_EQ(taken[i].tick, 4 + i);
+    EXPECT_TRUE(recorder.takeAll().empty());
+    for (size_t n = 0; n <= Recorder::kMostKept; ++n) drain(1);
+    EXPECT_TRUE(recorder.takeAll().empty()) << "whoever asked has gone";
+    drain(1);
+    EXPECT_EQ(recorder.takeAll().size(), 1u);
+}
+
 TEST_F(RecorderTest, EachChangeOfTheDeviceIsGivenOnce) {
     Recorder recorder(ring_, kPeriodNs);
     const auto push = [&](SafetyState state) {

@@ -47,6 +47,19 @@ TEST_F(PanelPast, AClipIsMadeOfTheReplayThatIsShown) {
     EXPECT_TRUE(wishes_.make_clip);
 }
 
+TEST_F(PanelPast, ARecordingGoesOnOtherwiseWhereSomethingIs) {
+    status_.mutable_replay()->set_length_s(100);
+    session_.recording = "/r/a.mcap";
+    show();
+    click("Go on otherwise");
+    EXPECT_TRUE(wishes_.what_if.empty()) << "nothing is otherwise";
+    click("What if pace");  // at its left end
+    click("Go on otherwise");
+    ASSERT_EQ(wishes_.what_if.size(), 2u);
+    EXPECT_EQ(wishes_.what_if[0], "--pace");
+    EXPECT_LT(std::stod(wishes_.what_if[1]), 1);
+}
+
 TEST_F(PanelPast, IsThereWhereTheLauncherIs) {
     EXPECT_TRUE(panel_.find("Report##past 1"));
     session_.has_launcher = false;
