@@ -36,6 +36,15 @@ HudNotice savePicture(const GlApi& gl, int width, int height, const std::string&
     }
 }
 
+std::optional<HudNotice> changeLanguage(const std::string& code) {
+    try {
+        if (!code.empty()) chooseLanguage(code);
+        return std::nullopt;
+    } catch (const UserError& error) {
+        return HudNotice{error.what(), HudTone::kWarning};
+    }
+}
+
 HudNotice saveAttempts(const topics::Lesson& lesson) {
     try {
         WholeFile file(nextName("bonemill_attempts_%04d.csv"));

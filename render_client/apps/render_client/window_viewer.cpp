@@ -4,7 +4,6 @@
 
 #include <filesystem>
 
-#include "common/base/user_error.h"
 #include "common/process/start_apart.h"
 #include "render_client/apps/render_client/clip_maker.h"
 #include "render_client/apps/render_client/hand_feed.h"
@@ -237,19 +236,11 @@ class WindowViewer {
             if (const auto p_W = pick(*wishes.centre_at)) scene_.camera().target_W = *p_W;
         if (wishes.removal_at) askForRemoval(*wishes.removal_at);
         if (!wishes.copy.empty()) window_.setClipboard(wishes.copy);
-        if (!wishes.language.empty()) changeLanguage(wishes.language);
+        if (const auto problem = changeLanguage(wishes.language)) notices_.show(*problem);
         if (wishes.notice) notices_.show(*wishes.notice);
         if (!wishes.asked.empty()) spdlog::info("asked: {}", wishes.asked);
         has_quit_ = has_quit_ || wishes.quit;
         if (wishes.session) chosen_ = wishes.session;
-    }
-
-    void changeLanguage(const std::string& code) {
-        try {
-            chooseLanguage(code);
-        } catch (const UserError& error) {
-            notices_.show({error.what(), HudTone::kWarning});
-        }
     }
 
     void askForRemoval(const PixelPoint& at) {

@@ -18,8 +18,8 @@ class SpoiledCatalogue : public testing::Test {
     }
     test::Finished check() {
         test::writeFile(folder_ / "de.po", text_);
-        return test::run({test::sourceDir() + "/tests/support/check_languages", "--catalogues",
-                          folder_.path().string()});
+        return test::run(
+            {test::sourceDir() + "/tests/support/check_languages", "--catalogues", folder_.path().string()});
     }
 
     test::TemporaryFolder folder_;
