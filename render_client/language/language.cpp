@@ -134,8 +134,8 @@ const char* trIn(const char* context, const char* text) {
 }
 
 const std::vector<Language>& languages() {
-    static const std::vector<Language> found = findLanguages();
-    return found;
+    static const std::vector<Language> kFound = findLanguages();
+    return kFound;
 }
 
 std::string spokenLanguage() {
