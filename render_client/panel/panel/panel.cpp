@@ -217,8 +217,8 @@ void Panel::frame(double seconds, ViewerControls& controls, const SessionView& s
         ImGui::SetWindowFocus(nullptr);
     const bool is_bare = isHelpInFront(controls);
     if (controls.isPanelOpen() && !is_bare)
-        PanelContent(controls, session, wishes, places_, is_ending_, lesson_, remark_, invite_, tuning_, what_if_,
-                     folds_, pictures_.all(), plots_, stage_.scale(), view_width_)
+        PanelContent(controls, session, wishes, places_, is_ending_, lesson_, remark_, invite_, tuning_,
+                     what_if_, folds_, pictures_.all(), plots_, stage_.scale(), view_width_)
             .build();
     if (lesson_.isOnScreen(session) && !is_bare)
         LessonCards(controls, session, wishes, lesson_, places_, stage_.scale(), view_width_).build();
