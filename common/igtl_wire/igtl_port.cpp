@@ -43,8 +43,7 @@ Line::Line(Descriptor socket, const PeerAddress& from, const std::vector<WantedT
 }
 
 bool Line::isOfThisPc() const noexcept {
-    const std::string text = textOf(from_);
-    return text.starts_with("127.") || text == "::1";
+    return isLoopback(textOf(from_));
 }
 
 bool Line::say(Blob frame, size_t most_waiting) {
@@ -66,12 +65,13 @@ void Line::hear(Clock::time_point now, const std::function<void(const Frame&)>& 
     const ssize_t count = recv(socket_.get(), piece.data(), piece.size(), 0);
     if (count == 0) return refuse("it has left");
     if (count < 0) return isAgain(errno) ? void() : refuse("the line is lost");
+    const uint64_t skipped = reader_.skippedFrames();
     const std::string complaint = reader_.take({piece.data(), size_t(count)}, [&](const Frame& frame) {
         ++heard_frames_;
         whole_ = now;
         if (!hasEnded()) use(frame);
     });
-    if (!reader_.isWithin()) whole_ = now;
+    if (!reader_.isWithin() || reader_.skippedFrames() != skipped) whole_ = now;
     if (!complaint.empty()) refuse("it sent " + complaint);
 }
 

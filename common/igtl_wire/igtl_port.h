@@ -60,7 +60,7 @@ class Line {
     size_t first_sent_ = 0;  // bytes of the first
     size_t waiting_bytes_ = 0;
     uint64_t dropped_frames_ = 0, sent_bytes_ = 0, heard_frames_ = 0;
-    Clock::time_point whole_;     // when nothing was half heard
+    Clock::time_point whole_;     // when a message ended, or none had begun
     Clock::time_point progress_;  // when nothing waited, or some of it was taken
     std::string end_;
 };

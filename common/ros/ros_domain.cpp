@@ -77,7 +77,9 @@ std::string requireNamespace(const std::string& name_space) {
 }
 
 bool isLocalhostOnly() {
-    return variable("ROS_LOCALHOST_ONLY") == "1" || variable("ROS_AUTOMATIC_DISCOVERY_RANGE") == "LOCALHOST";
+    const std::string range = variable("ROS_AUTOMATIC_DISCOVERY_RANGE");
+    const bool is_asked = variable("ROS_LOCALHOST_ONLY") == "1" || range == "LOCALHOST" || range == "OFF";
+    return is_asked && variable("CYCLONEDDS_URI").empty();
 }
 
 dds::Participant joinRos(const RosOptions& options) {

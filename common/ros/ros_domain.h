@@ -23,7 +23,8 @@ void addRosDomainOption(CLI::App& app, RosOptions& options);
 // is dropped.
 std::string requireNamespace(const std::string& name_space);
 
-// Only nodes of this PC are heard: ROS_LOCALHOST_ONLY is 1, or ROS_AUTOMATIC_DISCOVERY_RANGE is LOCALHOST.
+// Only nodes of this PC are heard: ROS_LOCALHOST_ONLY is 1, or ROS_AUTOMATIC_DISCOVERY_RANGE is LOCALHOST, or
+// OFF, which is less yet. With CYCLONEDDS_URI nobody knows who hears.
 bool isLocalhostOnly();
 
 // Joins as a node would: by CYCLONEDDS_URI where it is set, else on this PC's network or, with

@@ -30,7 +30,7 @@ class Writer : public dds::AnyWriter {
            Delivery delivery = Delivery::kStream)
         : AnyWriter(participant, describeRosTopic(name, typeOf<Message>(), delivery)) {}
 
-    // False where a reader is behind: it may be tried again.
+    // Waits for no reader: one that is further behind than the depth loses the oldest. False: DDS refuses it.
     bool write(const Message& message) { return AnyWriter::write(&message); }
 };
 

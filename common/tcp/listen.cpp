@@ -59,6 +59,10 @@ std::string textOf(const PeerAddress& address) {
     return text;
 }
 
+bool isLoopback(std::string_view address) {
+    return address.starts_with("127.") || address == "::1";
+}
+
 Descriptor listenOn(const std::string& address, uint16_t port) {
     addrinfo wish{}, *found = nullptr;
     wish.ai_socktype = SOCK_STREAM;

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "common/tcp/descriptor.h"
 
@@ -19,6 +20,8 @@ using PeerAddress = std::array<char, 16>;
 PeerAddress peerAddressOf(const sockaddr_storage& address);
 // Returns "192.0.2.1" or "2001:db8::1".
 std::string textOf(const PeerAddress& address);
+// It is an address of the loopback: nobody but this PC's programs is there.
+bool isLoopback(std::string_view address);
 
 // Listens there; port 0: any. Throws UserError.
 Descriptor listenOn(const std::string& address, uint16_t port);

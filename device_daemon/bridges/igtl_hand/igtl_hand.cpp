@@ -6,6 +6,7 @@
 #include "common/igtl_wire/igtl_messages.h"
 #include "common/rt/clock.h"
 #include "common/rt/periodic_timer.h"
+#include "common/tcp/listen.h"
 #include "device_daemon/bridges/bridge/axes.h"
 
 namespace bonemill::bridge {
@@ -16,10 +17,6 @@ constexpr size_t kMostWaiting = 8 << 10;  // bytes: a wrench behind more would b
 constexpr const char* kButtonsDevice = "bonemill_buttons";
 constexpr double kFarthest = 10;      // m
 constexpr double kCautiousForce = 5;  // N, where nobody says what the peer can give
-
-bool isOfThisPc(const std::string& address) {
-    return address.starts_with("127.") || address == "::1";
-}
 
 }  // namespace
 
@@ -45,7 +42,7 @@ Eigen::Matrix3d axesOf(const std::string& text) {
 ArmDescription IgtlHand::open(const Tell& tell) {
     tell_ = tell;
     R_DP_ = axesOf(hand_.axes);
-    if (hand_.peer.empty() && !isOfThisPc(hand_.address))
+    if (hand_.peer.empty() && !isLoopback(hand_.address))
         throw UserError("--igtl-address " + hand_.address +
                         ": whoever reaches it could move the tool; say with --peer which address may");
     port_.emplace(hand_.address, hand_.port, std::vector{igtl::kWantedTransform, igtl::kWantedString},

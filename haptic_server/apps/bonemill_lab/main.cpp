@@ -77,6 +77,16 @@ void addExportOptions(CLI::App& app, ExportOptions& files) {
     app.add_option("--traj", files.traj, "write what went in, for simulate --trajectory");
     app.add_option("--tool-path", files.tool_path,
                    "write the tool's way in an attempt, for a scene's assessment.expert_path");
+    app.add_option("--foxglove", files.foxglove,
+                   "write what Foxglove shows (.mcap), and beside it a layout (docs/howto/foxglove.md)");
+    auto* const align = app.add_option(
+        "--align", files.align,
+        "bring a table of another program (.csv) onto the session's clock (docs/reference/beacon.md)");
+    app.add_option("--aligned", files.aligned, "of --align: file to write; default: FILE_aligned.csv")
+        ->needs(align);
+    app.add_option("--align-clock", files.align_clock,
+                   "of --align: column with that program's time; default: the first one")
+        ->needs(align);
     app.add_option("--attempt", files.attempt, "of --tool-path: its number, from 1; 0: the last one")
         ->check(within(0, 100000));
 }

@@ -96,6 +96,11 @@ void addServerOptions(CLI::App& app, ServerOptions& server) {
     app.add_option(
         "--class-table", server.class_table,
         "CSV file to which each attempt of a trainee adds a line; default: class.csv in --export-dir");
+    auto* const beacon = app.add_option(
+        "--beacon", server.beacon,
+        "tell the session's clock to ADDRESS:PORT five times per second (docs/reference/beacon.md)");
+    app.add_flag("--beacon-broadcast", server.allows_broadcast, "of --beacon: the address may be all PCs'")
+        ->needs(beacon);
     app.add_flag("--until-device-leaves", server.until_device_leaves,
                  "stop when device_daemon shuts down in order");
     app.add_flag("--instructor-only", server.instructor_only,

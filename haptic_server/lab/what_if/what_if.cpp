@@ -154,7 +154,8 @@ void whatIf(const WhatIfOptions& options, std::ostream& said) {
                               {"proof", words.proof},
                               {"happened", jsonOf(was)},
                               {"otherwise", jsonOf(would_be)}};
-    writeBytes(beside(options.out, ".json").string(), json.dump(1) + '\n');
+    writeBytes(beside(options.out, ".json").string(),
+               json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
     said << "What if, from " << roundedText(options.at_s) << " s on: " << run.change << '\n'
          << whatIfText(was, would_be) << words.proof << '\n'
          << "report: " << fs::absolute(page).string() << '\n'

@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <type_traits>
@@ -12,8 +13,10 @@
 #include "common/files/whole_file.h"
 #include "common/rt/clock.h"
 #include "common/text/foreign_text.h"
+#include "haptic_server/recording/align/align_file.h"
 #include "haptic_server/recording/export/h5_file.h"
 #include "haptic_server/recording/export/trajectory_writer.h"
+#include "haptic_server/recording/foxglove/foxglove_export.h"
 #include "haptic_server/recording/rerun/recording.h"
 #include "haptic_server/recording/rerun/replay_events.h"
 #include "haptic_server/recording/rerun/rerun.h"
@@ -136,10 +139,7 @@ class H5Export {
         h5_.describe("rate_hz", manifest.rate_hz());
         h5_.describe("start_unix_s", secondsOfNs(manifest.start_stamp_ns()));
     }
-    void add(const TickRecord& record, ReplayEvents& events) {
-        ticks_.add(record);
-        events.addEffects(record.tick, record.effects);
-    }
+    void add(const TickRecord& record) { ticks_.add(record); }
     void finish(const ReplayEvents& events) {
         ticks_.flush();
         writeEvents(events);
@@ -189,9 +189,48 @@ class CsvExport {
     TraceWriter trace_;
 };
 
+bool needsTicks(const ExportOptions& options) {
+    return !options.h5.empty() || !options.csv.empty() || !options.tool_path.empty() ||
+           !options.foxglove.empty();
+}
+
 void requireSomething(const ExportOptions& options) {
-    if (options.h5.empty() && options.csv.empty() && options.traj.empty() && options.tool_path.empty())
-        throw UserError("nothing to export: name a file with --h5, --csv, --traj or --tool-path");
+    if (options.traj.empty() && options.align.empty() && !needsTicks(options))
+        throw UserError(
+            "nothing to export: name a file with --h5, --csv, --traj, --tool-path, --foxglove or --align");
+    if (!options.foxglove.empty() && std::filesystem::path(options.foxglove).extension() != ".mcap")
+        throw UserError("--foxglove " + options.foxglove + ": the name must end with .mcap");
+}
+
+// Runs the ticks again for all files that tell what they came to.
+void exportTicks(const ExportOptions& options, const Recording& recording, const LoadedScene& scene) {
+    SceneSetup simulation = setUpScene(scene);
+    const Recording::Bones bones = recording.readBones(*simulation.bone);
+    const RecordedEffects recorded = recordedEffectsOf(scene.scene.effects());
+    std::optional<H5Export> h5;
+    std::optional<CsvExport> csv;
+    std::optional<ToolPathExport> tool_path;
+    std::optional<FoxgloveExport> foxglove;
+    if (!options.h5.empty()) h5.emplace(options.h5, recording, recorded);
+    if (!options.csv.empty()) csv.emplace(options.csv, recorded);
+    if (!options.tool_path.empty()) tool_path.emplace(options.tool_path, recording, options.attempt);
+    if (!options.foxglove.empty()) foxglove.emplace(options.foxglove, recording, scene.scene, simulation);
+    RecordedTicks ticks(recording);
+    ReplayEvents events(recording);
+    Rerun rerun(recording, simulation, bones.checkpoints, *simulation.bone, bones.keyframes.front());
+    while (!rerun.isAtEnd()) {
+        const JournalTick& tick = ticks.at(rerun.next());
+        const TickRecord& record = rerun.step();
+        events.addEffects(record.tick, record.effects);
+        if (tool_path) tool_path->add(record, tick.input.decisions.is_milling_paused);
+        if (h5) h5->add(record);
+        if (csv) csv->add(record);
+        if (foxglove) foxglove->add(record, tick.start_ns, events);
+    }
+    if (h5) h5->finish(events);
+    if (csv) csv->finish();
+    if (tool_path) tool_path->finish();
+    if (foxglove) foxglove->finish();
 }
 
 }  // namespace
@@ -202,39 +241,25 @@ void exportJournal(const ExportOptions& options) {
     const LoadedScene scene = recording.scene();
     std::vector<NamedFile> read = filesOf(scene);
     read.push_back({"the journal", options.journal});
+    read.push_back({"--align", options.align});
+    const std::string aligned = options.aligned.empty() ? alignedPathOf(options.align) : options.aligned;
     requireApart({{"--h5", options.h5},
                   {"--csv", options.csv},
                   {"--traj", options.traj},
-                  {"--tool-path", options.tool_path}},
+                  {"--tool-path", options.tool_path},
+                  {"--aligned", aligned},
+                  {"--foxglove", options.foxglove},
+                  {"the layout of --foxglove", layoutPathOf(options.foxglove)}},
                  read);
     if (!recording.content().incomplete.empty())
         spdlog::warn("the recording is incomplete from tick {} on: {}", recording.content().incomplete_from,
                      printableLine(recording.content().incomplete));
     if (!options.traj.empty()) writeTrajectory(options.traj, recording);
-    if (options.h5.empty() && options.csv.empty() && options.tool_path.empty()) return;
-
-    SceneSetup simulation = setUpScene(scene);
-    const Recording::Bones bones = recording.readBones(*simulation.bone);
-    const RecordedEffects recorded = recordedEffectsOf(scene.scene.effects());
-    std::optional<H5Export> h5;
-    std::optional<CsvExport> csv;
-    std::optional<ToolPathExport> tool_path;
-    if (!options.h5.empty()) h5.emplace(options.h5, recording, recorded);
-    if (!options.csv.empty()) csv.emplace(options.csv, recorded);
-    if (!options.tool_path.empty()) tool_path.emplace(options.tool_path, recording, options.attempt);
-    RecordedTicks ticks(recording);
-    ReplayEvents events(recording);
-    Rerun rerun(recording, simulation, bones.checkpoints, *simulation.bone, bones.keyframes.front());
-    while (!rerun.isAtEnd()) {
-        const bool is_paused = tool_path && ticks.at(rerun.next()).input.decisions.is_milling_paused;
-        const TickRecord& record = rerun.step();
-        if (tool_path) tool_path->add(record, is_paused);
-        if (h5) h5->add(record, events);
-        if (csv) csv->add(record);
-    }
-    if (h5) h5->finish(events);
-    if (csv) csv->finish();
-    if (tool_path) tool_path->finish();
+    if (!options.align.empty())
+        spdlog::info(
+            "{}: {}", aligned,
+            alignFile(options.align, aligned, options.align_clock, recording.manifest().journal_id()).text());
+    if (needsTicks(options)) exportTicks(options, recording, scene);
 }
 
 }  // namespace bonemill

@@ -14,6 +14,11 @@ struct ExportOptions {
     std::string traj;         // what went in, for `simulate`
     std::string tool_path{};  // the tool's way in an attempt, for a scene's expert_path
     int attempt = 0;          // of that one, from 1; 0: the last
+    std::string foxglove{};   // .mcap, and beside it its layout
+    // What another program recorded at the same time, to be brought onto the session's clock (align_file.h).
+    std::string align{};
+    std::string aligned{};      // where that goes; empty: beside it
+    std::string align_clock{};  // the column with its own time; empty: the first one
 };
 
 // Each file is whole or not there. Throws UserError: no journal, nothing to write, a file that cannot be

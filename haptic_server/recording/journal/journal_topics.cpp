@@ -20,22 +20,22 @@ void addFile(const google::protobuf::FileDescriptor& file, std::set<std::string>
     file.CopyTo(all.add_file());
 }
 
-std::string descriptorsOf(const std::string& type) {
-    journal::Manifest::descriptor();  // so that the types are there, and those that they use
-    const auto* const message =
-        google::protobuf::DescriptorPool::generated_pool()->FindMessageTypeByName(type);
-    BONEMILL_ASSERT(message);
+}  // namespace
+
+std::string descriptorsOf(const google::protobuf::Descriptor& type) {
     google::protobuf::FileDescriptorSet all;
     std::set<std::string> known;
-    addFile(*message->file(), known, all);
+    addFile(*type.file(), known, all);
     return all.SerializeAsString();
 }
 
-}  // namespace
-
 void addTopic(const JournalTopicName& topic, mcap::Writer& writer) {
+    journal::Manifest::descriptor();  // so that the types are there, and those that they use
+    const auto* const type =
+        google::protobuf::DescriptorPool::generated_pool()->FindMessageTypeByName(std::string(topic.type));
+    BONEMILL_ASSERT(type);
     const auto id = uint16_t(topic.topic);
-    writer.addSchema({id, std::string(topic.type), "protobuf", descriptorsOf(std::string(topic.type))});
+    writer.addSchema({id, std::string(topic.type), "protobuf", descriptorsOf(*type)});
     writer.addChannel({id, id, std::string(topic.name), "protobuf"});
 }
 

@@ -3,9 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "common/mcap/mcap_writer.h"
+
+namespace google::protobuf {
+class Descriptor;
+}
 
 namespace bonemill {
 
@@ -55,8 +60,11 @@ inline constexpr uint32_t kJournalFormat = 1;
 // The profile in the MCAP file's header: what tells a journal from other MCAP files.
 inline constexpr std::string_view kJournalProfile = "bonemill.journal";
 
-// Schema and channel of the topic, whose number both have, so that stock tools read the file: Protobuf types
-// with all that they use. For normal threads.
+// What a file says of messages of this type, so that stock tools read them: a FileDescriptorSet with all that
+// it uses. For normal threads, as what follows.
+std::string descriptorsOf(const google::protobuf::Descriptor& type);
+
+// Schema and channel of the topic, whose number both have.
 void addTopic(const JournalTopicName& topic, mcap::Writer& writer);
 
 }  // namespace bonemill

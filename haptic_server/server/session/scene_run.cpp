@@ -140,6 +140,7 @@ void SceneRun::startJournal() {
     if (!journal_config_) return;
     journal_config_->path = newJournalPath(options_.recording, options_.session, options_.scene);
     journal_config_->manifest.set_epoch(parts_.publisher.epoch());
+    beacon_message_.recording = recordingOf(journal_config_->manifest.journal_id());
     if (resumed_) *journal_config_->manifest.mutable_resumed_from() = resumed_->from;
     journal_ = std::make_unique<Journal>(*journal_config_,
                                          DensitiesAsScanned{history_.scanned(), simulation_.bone->lattice});
@@ -170,6 +171,9 @@ void SceneRun::start() {
     parts_.lesson.enterScene(options_.scene);
     show_.begin();
     startJournal();
+    beacon_message_.session = options_.session;
+    beacon_message_.epoch = parts_.publisher.epoch();
+    beacon_message_.scene_hash = sceneHashOf(loaded_.scene);
     startTick();
     recorder_.openTrace(options_.trace);  // only now: a refused start leaves the trace of before
     recorder_thread_ = std::jthread(
@@ -313,6 +317,16 @@ void SceneRun::lookAfter() {
     if (hasTicked()) countPageFaults();
     tellOfDevice();
     tellOfJournal();
+    tellClock();
+}
+
+// The session's clock began with the first tick, as any tick's record says.
+void SceneRun::tellClock() {
+    if (!parts_.beacon || !parts_.beacon->isDue()) return;
+    const std::optional<TickRecord> latest = recorder_.latest();
+    if (!latest) return;
+    const auto session_ns = int64_t(std::llround(latest->t_s * double(kNsPerSecond)));
+    parts_.beacon->tell(beacon_message_, latest->start_ns - session_ns);
 }
 
 void SceneRun::tellOfJournal() {

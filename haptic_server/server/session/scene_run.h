@@ -13,6 +13,7 @@
 
 #include "common/rt/realtime.h"
 #include "haptic_server/core/tick/haptic_tick.h"
+#include "haptic_server/server/beacon/beacon.h"
 #include "haptic_server/server/publish/publisher.h"
 #include "haptic_server/server/session/device_link_io.h"
 #include "haptic_server/server/session/journal_notes.h"
@@ -31,6 +32,7 @@ struct ServerParts {
     OrderLimits& limits;
     std::atomic<bool>& stop_requested;
     std::atomic<bool>& has_failed;
+    Beacon* beacon;  // null: none
 };
 
 // Loads the scene, which the files that the session writes must spare with all that it names. Throws
@@ -79,6 +81,7 @@ class SceneRun {
     void countPageFaults();
     void tellOfCapabilities();
     void tellOfDevice();
+    void tellClock();
     std::string traceProblem() const;
     void tellOfJournal();
     void logDistrust() const;
@@ -113,6 +116,7 @@ class SceneRun {
     std::string device_;        // as told last
     size_t devices_told_ = 0;
     bool has_told_of_implausible_ = false, has_told_of_early_ = false, has_told_of_journal_ = false;
+    BeaconMessage beacon_message_;
     int64_t first_tick_ns_ = 0;
     std::optional<PageFaults> warm_;  // of the tick thread, when it had run for some time
     RealtimeThread tick_thread_;

@@ -92,6 +92,7 @@ class Server {
 
     Server(const ServerOptions& options, std::vector<ListedScene> scenes, Loaded first)
         : options_(options),
+          beacon_(beaconOf(options)),
           link_(DeviceLink::create(options.session, LinkSide::kServer)),
           publisher_(soleServerOf(options.domain, options.session, options.network)),
           results_(options, inputsOf(scenes, first.scene)),
@@ -106,7 +107,13 @@ class Server {
             inputs.insert(inputs.end(), scene.files.begin(), scene.files.end());
         return inputs;
     }
-    ServerParts parts() { return {link_, publisher_, lesson_, limits_, stop_requested_, has_failed_}; }
+    ServerParts parts() {
+        return {link_, publisher_, lesson_, limits_, stop_requested_, has_failed_, beacon_.get()};
+    }
+    static std::unique_ptr<Beacon> beaconOf(const ServerOptions& options) {
+        if (options.beacon.empty()) return nullptr;
+        return std::make_unique<Beacon>(options.beacon, options.allows_broadcast);
+    }
 
     bool isOver() {
         if (const int signal = stop_signals_.await(kLookEveryNs)) {
@@ -210,6 +217,7 @@ class Server {
 
     ServerOptions options_;
     StopSignals stop_signals_;
+    std::unique_ptr<Beacon> beacon_;  // null: none
     DeviceLink link_;
     std::atomic<bool> stop_requested_{false};
     std::atomic<bool> has_failed_{false};

@@ -36,6 +36,8 @@ struct ServerOptions {
     SavePaths save;
     std::string class_table;  // CSV, one line per attempt; empty: class.csv in export_dir, if there is one
     std::string export_dir;   // where clients' export commands write; empty: they are refused
+    std::string beacon;       // ADDRESS:PORT to tell the session's clock to (beacon.h); empty: none
+    bool allows_broadcast = false;  // to all PCs of a network
     int rt_core = coreFromLast(0);  // of the tick thread; kAnyCore (-1) leaves the choice to the kernel
     bool is_strict_realtime = false;
     bool instructor_only = false;      // others may look, not command

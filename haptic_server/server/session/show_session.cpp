@@ -13,8 +13,8 @@
 #include "common/rt/clock.h"
 #include "haptic_server/core/telemetry/fault_names.h"
 #include "haptic_server/scene/setup/scene_materials.h"
+#include "haptic_server/scene/setup/scene_structures.h"
 #include "haptic_server/server/session/shown_shades.h"
-#include "haptic_server/surface/mesh/structure_mesher.h"
 #include "haptic_server/surface/mesh/surroundings_mesher.h"
 
 namespace bonemill {
@@ -118,20 +118,9 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const SceneSetup& simulat
 
 // It is for people, and must not keep the session waiting. Nothing is under way without structures.
 std::future<std::vector<NodeMesh>> meshingStructures(const SceneSetup& simulation) {
-    const EffectConfigs& effects = simulation.tick.effects;
-    const bool are_there =
-        std::ranges::any_of(effects.materials, [](const MaterialProperties& m) { return m.is_protected; });
-    if (!effects.properties || !are_there) return {};
-    if (simulation.labelled)
-        return std::async(
-            std::launch::async, [labelled = simulation.labelled, materials = effects.materials] {
-                return meshStructures(labelled->properties, materials, labelled->spacing, 0, labelled->X_VL);
-            });
-    return std::async(std::launch::async,
-                      [properties = effects.properties, materials = effects.materials,
-                       spacing = simulation.bone->volume.spacing(), grain = simulation.label_edge] {
-                          return meshStructures(*properties, materials, spacing, grain);
-                      });
+    auto mesh_structures = structureMesherOf(simulation);
+    if (!mesh_structures) return {};
+    return std::async(std::launch::async, std::move(mesh_structures));
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 // bonemill_igtl shows a session to 3D Slicer and to whatever else speaks OpenIGTLink (docs/howto/slicer.md).
-#include <arpa/inet.h>
 #include <malloc.h>
 #include <spdlog/spdlog.h>
 
@@ -15,6 +14,7 @@
 #include "common/process/standard_output.h"
 #include "common/rt/stop_signals.h"
 #include "common/secrets/secrets.h"
+#include "common/tcp/listen.h"
 #include "render_client/peers/igtl_session/igtl_session.h"
 
 namespace bonemill {
@@ -71,17 +71,13 @@ void addOptions(CLI::App& app, Options& options) {
     addLogLevelOption(app, options.log_level);
 }
 
-bool isOfThisPc(const std::string& address) {
-    return address.starts_with("127.") || address == "::1";
-}
-
 // With --secure the server asks the certificate who this is; what is said here is the same.
 void takeOver(const Identity& identity, Options& options) {
     SubscriberOptions& subscriber = options.igtl.subscriber;
     subscriber.name = identity.name;
     if (identity.session) subscriber.session = *identity.session;
     options.role = identity.role == "observer" ? "viewer" : identity.role;
-    if (!isOfThisPc(options.igtl.address))
+    if (!isLoopback(options.igtl.address))
         throw UserError(
             "--address " + options.igtl.address +
             ": a session with --secure would leave this PC readable for everybody; leave --address out, "
@@ -122,7 +118,7 @@ int serve(int argc, char** argv) {
     dds::setNetwork(options.network, dds::NetworkPart::kViewer, options.igtl.subscriber.session);
     igtl::IgtlSession session(options.igtl);
     std::cout << "listening on " << options.igtl.address << ":" << session.port() << std::endl;
-    if (!isOfThisPc(options.igtl.address))
+    if (!isLoopback(options.igtl.address))
         spdlog::warn("what is sent to {} is not encrypted: whoever reaches it sees the session",
                      options.igtl.address);
     while (stop.await(0) == 0) session.step();

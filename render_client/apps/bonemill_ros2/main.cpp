@@ -50,10 +50,11 @@ std::optional<Options> parseOptions(int argc, char** argv) {
 }
 
 // Anyone in a domain of ROS 2 hears what is said there.
-void warnOfSecrets(const Options& options) {
-    if (!options.network.secure.empty())
-        spdlog::warn("this session is secured, and ROS domain {} is not: whoever is in it hears all of it",
-                     options.session.ros.domain);
+void requireClosed(const Options& options) {
+    if (options.network.secure.empty() || ros2::isLocalhostOnly()) return;
+    throw UserError("--secure: ROS domain " + std::to_string(options.session.ros.domain) +
+                    " is not, and would leave the session readable for everybody on the network; set "
+                    "ROS_LOCALHOST_ONLY=1, and no CYCLONEDDS_URI, to say it on this PC alone");
 }
 
 int serve(const Options& options, const StopSignals& stop_signals) {
@@ -76,9 +77,9 @@ int run(int argc, char** argv) {
     const std::optional<Options> options = parseOptions(argc, argv);
     if (!options) return 0;
     setUpLog("bonemill_ros2", options->log_level);
+    requireClosed(*options);
     const StopSignals stop_signals;
     dds::setNetwork(options->network, dds::NetworkPart::kViewer, options->session.session);
-    warnOfSecrets(*options);
     return serve(*options, stop_signals);
 }
 

@@ -59,6 +59,8 @@ std::string ScanImage::ask(const SceneSubscriber& subscriber, Clock::time_point 
     if (!info->has_densities() || !isUsableGrid(info->densities())) return "the session shows no scan";
     if (voxelsOf(info->densities()) > kMostVoxels)
         return "the scan has more than " + std::to_string(kMostVoxels >> 20) + " Mi voxels";
+    if (onTheirWay() >= kMostOnTheirWay)
+        return std::to_string(kMostOnTheirWay) + " peers have not read theirs yet; ask again later";
     if (!is_asked_) asked_ = now;
     is_asked_ = true;
     return "";
@@ -83,8 +85,14 @@ Blob ScanImage::follow(SceneSubscriber& subscriber, Clock::time_point now) {
     const int64_t stamp_ns = subscriber.toolState() ? subscriber.toolState()->stamp_ns() : 0;
     Blob frame =
         std::make_shared<const std::string>(imageFrame("bonemill_volume", stamp_ns, place, voxelsOf(store_)));
+    std::erase_if(made_, [](const auto& earlier) { return earlier.expired(); });
+    made_.push_back(frame);
     end();
     return frame;
+}
+
+size_t ScanImage::onTheirWay() const {
+    return size_t(std::ranges::count_if(made_, [](const auto& frame) { return !frame.expired(); }));
 }
 
 void ScanImage::end() {

@@ -50,7 +50,15 @@ def read_answer(scene, path):
         raise ValueError(f"{path.name} has no column {lacks[0]}")
 
     def columns(*names):
-        return np.array([[float(row[name]) for name in names] for row in rows]) if names[0] in rows[0] else None
+        if names[0] not in rows[0]:
+            return None
+        lacking = [name for name in names if name not in rows[0]]
+        if lacking:
+            raise ValueError(f"{path.name} has {names[0]} without {lacking[0]}")
+        try:
+            return np.array([[float(row[name]) for name in names] for row in rows])
+        except (TypeError, ValueError):
+            raise ValueError(f"{path.name} has no number in some row of {', '.join(names)}") from None
 
     place = scene.placement
     torque, tick, removed = columns("tx_nm", "ty_nm", "tz_nm"), columns("tick_us"), columns("removed_voxels")
@@ -163,6 +171,8 @@ def removal(scene, before, after):
         return None, "the program writes no volume_after.nrrd"
     old, spacing, _ = nrrd.read(before)
     new, _, _ = nrrd.read(after)
+    if new.shape != old.shape:
+        raise ValueError(f"{after.name} has another shape than the scene's volume")
     changed = np.argwhere(old != new)
     if not len(changed):
         return -100.0, ""

@@ -7,10 +7,12 @@ stiffness is doubled until that fails or a hand in free air feels more than 3 N�
 at most to 150 N/mm, then bisected to 5 %; the bed is 1, 4 and 16 times as stiff as in the scene, in proportion to the coupling.
 The figure is the most that is rendered: the change of force over the hand's place, ±20 µm about where it came to rest."""
 import collections
+import contextlib
 import dataclasses
 import json
 import math
 import subprocess
+import threading
 
 import numpy as np
 
@@ -19,6 +21,7 @@ import bodies
 MASS, DAMPING, FRICTION, AMPLIFIER_HZ, ENCODER = 0.25, 2.0, 0.2, 500.0, 5e-6
 HAND_MASS, HAND_DAMPING, HAND_STIFFNESS, PUSH = 0.1, 8.0, 600.0, 2.0
 TICK, SUBSTEPS, TICKS = 1e-3, 20, 1000
+MOST_S, MOST_LETTERS = 120, 1000  # for a press with the way back; of a line
 QUIET_N, QUIET_M, RESOLUTION, MOST_DRAG, DRAG_SLACK = 0.05, 10e-6, 1.05, 3.0, 1.01
 LEAST_N_PER_MM, MOST_N_PER_MM = 0.1, 150.0
 BED_FACTORS, PROBE, AIR_SPEED = (1, 4, 16), 20e-6, 0.05
@@ -27,27 +30,36 @@ BED_FACTORS, PROBE, AIR_SPEED = (1, 4, 16), 20e-6, 0.05
 class Program:
     """A program's own loop: a line with a pose in, a line with a wrench out."""
 
-    def __init__(self, command, folder, scene):
+    def __init__(self, command, folder, scene, most_s=MOST_S):
         self.scene = scene
         self.turn = bodies.quaternion(scene.placement.R_WB @ scene.way.R[0])
         self.process = subprocess.Popen([*command, str(folder), "--loop"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                         text=True, bufsize=1)
-        if self.process.stdout.readline().strip() != "ready":
+        self.timer = threading.Timer(most_s, self.process.kill)
+        self.timer.start()
+        if self._line() != "ready":
+            self.close()
             raise ValueError("its loop did not begin")
+
+    def _line(self):
+        return self.process.stdout.readline(MOST_LETTERS).strip()
 
     def force(self, z):
         """Along the face's normal, with the ball's middle z over the face."""
         pose = [*self.scene.placement.to_world(np.array([0.0, 0.0, z])), *self.turn]
         self.process.stdin.write(" ".join(repr(float(value)) for value in pose) + " 0\n")
         self.process.stdin.flush()
-        words = self.process.stdout.readline().split()
+        words = self._line().split()
         if len(words) < 3:
             raise ValueError("its loop ended")
         return float(self.scene.placement.turned_to_body([float(w) for w in words[:3]])[2])
 
     def close(self):
-        self.process.stdin.close()
-        self.process.wait(timeout=20)
+        with contextlib.suppress(OSError):  # it has left
+            self.process.stdin.close()
+        self.process.wait()  # the timer sees to it
+        self.timer.cancel()
+        self.process.stdout.close()
 
 
 @dataclasses.dataclass

@@ -1,5 +1,6 @@
 """Volumes as NRRD files: 16 bit, little-endian, x fastest, spacing in mm along the axes of left-posterior-superior."""
 import gzip
+import zlib
 
 import numpy as np
 
@@ -19,7 +20,14 @@ def write(path, values, voxel, origin):
 
 
 def read(path):
-    """Values (x, y, z), spacing of each axis and origin in metres. Only what this file's head describes is read."""
+    """Values (x, y, z), spacing of each axis and origin in metres. Raises ValueError for what `write` would not have written."""
+    try:
+        return _read(path)
+    except (EOFError, IndexError, KeyError, ValueError, zlib.error) as error:
+        raise ValueError(f"{path.name} is no such NRRD: {error}") from error
+
+
+def _read(path):
     head, body = path.read_bytes().split(b"\n\n", 1)
     lines = [line.split(": ", 1) for line in head.decode().splitlines()[1:] if not line.startswith("#")]
     fields = {name: value for name, value in lines}
@@ -28,6 +36,6 @@ def read(path):
     vectors = np.array([[float(n) for n in v.strip("()").split(",")] for v in fields["space directions"].split()])
     origin = np.array([float(n) for n in fields["space origin"].strip("()").split(",")])
     if fields["type"] not in TYPES or fields.get("endian", "little") != "little" or np.abs(vectors - np.diag(np.diag(vectors))).max():
-        raise ValueError(f"{path}: not 16 bit, little-endian, along the axes")
+        raise ValueError("not 16 bit, little-endian, along the axes")
     array = np.frombuffer(data, TYPES[fields["type"]]).reshape(shape, order="F")
     return array, np.diag(vectors) / 1e3, origin / 1e3

@@ -157,7 +157,9 @@ class Run(unittest.TestCase):
             self.assertLess(right, 3)
             self.assertAlmostEqual(stiffer, 10, delta=3)
             self.assertGreater((pathlib.Path(folder) / "errors.png").stat().st_size, 5000)
-            self.assertIn("pure python", (pathlib.Path(folder) / "report.md").read_text(encoding="utf-8"))
+            self.assertIn("| pure python 2 |", (pathlib.Path(folder) / "report.md").read_text(encoding="utf-8"))
+            answers = pathlib.Path(folder).glob("programs/*/thin_wall/answer.csv")
+            self.assertEqual(len({answer.read_bytes() for answer in answers}), 2, "both say that they are pure python")
 
     def test_what_a_program_cannot_do_is_null_with_its_words(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -173,14 +175,41 @@ class Run(unittest.TestCase):
             for words in (["--program", "no_such_program"], ["--scene", "moon"], ["--program", "/bin/true"]):
                 self.assertEqual(self.run_it(folder, *words).returncode, 2, words)
 
-    def test_an_answer_of_another_length_is_refused(self):
+    def test_a_wrong_answer_is_refused(self):
         scene = scene_of("thin_wall")
+        rows = len(scene.way.p)
+        zeros = [["0"] * 6] * rows
+        for table, words in (([figures.NEEDED, ["0"] * 6], "1 rows"), ([figures.NEEDED, *zeros[1:], ["0"] * 5], "no number"),
+                             ([[*figures.NEEDED, "tx_nm"], *([row + ["0"] for row in zeros])], "ty_nm"),
+                             ([figures.NEEDED, *zeros[1:], ["nan"] * 6], "finite")):
+            with tempfile.TemporaryDirectory() as name:
+                path = pathlib.Path(name) / "answer.csv"
+                with open(path, "w", newline="", encoding="utf-8") as file:
+                    csv.writer(file).writerows(table)
+                with self.assertRaisesRegex(ValueError, words):
+                    figures.read_answer(scene, path)
+
+    def test_a_volume_of_another_shape_is_refused(self):
+        scene = scene_of("groove")
         with tempfile.TemporaryDirectory() as name:
-            path = pathlib.Path(name) / "answer.csv"
-            with open(path, "w", newline="", encoding="utf-8") as file:
-                csv.writer(file).writerows([figures.NEEDED, ["0"] * 6])
-            with self.assertRaisesRegex(ValueError, "1 rows"):
-                figures.read_answer(scene, path)
+            folder = pathlib.Path(name)
+            nrrd.write(folder / "before.nrrd", np.zeros((4, 4, 4), np.uint16), 1e-3, (0, 0, 0))
+            nrrd.write(folder / "after.nrrd", np.zeros((4, 4, 5), np.uint16), 1e-3, (0, 0, 0))
+            with self.assertRaisesRegex(ValueError, "shape"):
+                figures.removal(scene, folder / "before.nrrd", folder / "after.nrrd")
+            (folder / "after.nrrd").write_bytes(b"NRRD0004\ntype: uint16\n\n")
+            with self.assertRaisesRegex(ValueError, "after.nrrd"):
+                figures.removal(scene, folder / "before.nrrd", folder / "after.nrrd")
+
+    def test_a_program_that_never_answers_is_ended(self):
+        silent = ["/bin/sh", "-c", "echo ready; exec sleep 1000"]
+        with self.assertRaises(ValueError):
+            program = loop.Program(silent, pathlib.Path("."), scene_of("plane"), most_s=0.5)
+            try:
+                program.force(0.0)
+            finally:
+                program.close()
+        self.assertIsNotNone(program.process.returncode)
 
 
 class ResultFile(unittest.TestCase):

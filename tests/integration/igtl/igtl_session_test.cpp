@@ -257,6 +257,43 @@ TEST_F(IgtlSession, OrdersNeedTheSecretAndTheRole) {
     EXPECT_TRUE(server_->isRunning());
 }
 
+// A peer that asks for the scan behind more than the kernel holds for it, and reads nothing.
+Descriptor deafAsker(uint16_t port) {
+    Dialled dialled = dial("127.0.0.1", port, std::chrono::seconds(5));
+    std::string bytes;
+    for (int n = 0; n < 8000; ++n) bytes += igtl::frameOf("GET_STATUS", "", 0, "");
+    bytes += igtl::frameOf("GET_IMAGE", "", 0, "");
+    for (size_t sent = 0; sent < bytes.size();) {
+        const ssize_t count =
+            send(dialled.socket.get(), bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+        if (count > 0) sent += size_t(count);
+    }
+    return std::move(dialled.socket);
+}
+
+TEST_F(IgtlSession, ScansThatNobodyReadsAreFew) {
+    begin();
+    IgtlPeer good(port_);
+    const auto ask = [&] {
+        const int before = good.counts["bonemill_volume"];
+        good.send(igtl::frameOf("GET_IMAGE", "", 0, ""));
+        EXPECT_TRUE(good.readUntil([&] { return good.counts["bonemill_volume"] > before; }));
+        return good.frames["bonemill_volume"].type;
+    };
+    ASSERT_TRUE(good.readUntil([&] { return pointsOf(good).size() > 1000; }));
+    EXPECT_EQ(ask(), "IMAGE");
+    std::vector<Descriptor> deaf;
+    bool is_refused = false;
+    while (deaf.size() < 10 && !is_refused) {
+        deaf.push_back(deafAsker(port_));
+        for (int n = 0; n < 2; ++n) is_refused |= ask() == "STATUS";
+    }
+    EXPECT_TRUE(is_refused);
+    EXPECT_GE(deaf.size(), 3u);
+    deaf.clear();
+    EXPECT_TRUE(waitFor([&] { return ask() == "IMAGE"; })) << "once they are gone";
+}
+
 TEST_F(IgtlSession, HostilePeersCostABoundAndNobodyElseWaits) {
     begin();
     IgtlPeer good(port_);

@@ -284,11 +284,16 @@ const RobotFault kRobotFaults[] = {
 class RobotIsStopped : public RobotMills, public testing::WithParamInterface<RobotFault> {};
 
 TEST_P(RobotIsStopped, AndMillsNoMore) {
-    beginToMill();
     const std::string cause = nameOf(GetParam().cause);
-    const size_t before = timesSaid(cause);
-    GetParam().happen(robot_);
-    ASSERT_TRUE(test::waitFor([&] { return timesSaid(cause) > before; })) << daemon_->errSoFar();
+    // A busy machine may stop the robot first, for its silence: then it happens once more.
+    bool is_stopped = false;
+    for (int round = 0; round < 4 && !is_stopped; ++round) {
+        beginToMill();
+        const size_t before = timesSaid(cause);
+        GetParam().happen(robot_);
+        is_stopped = test::waitFor([&] { return timesSaid(cause) > before; }, std::chrono::seconds(20));
+    }
+    ASSERT_TRUE(is_stopped) << daemon_->errSoFar();
     EXPECT_TRUE(test::waitFor([&] { return forceOf(robot_.wrench()) == 0; }));
     // The robot is well again, where it was, with its pedal down: nothing begins anew before somebody resets
     // the device.

@@ -46,5 +46,17 @@ TEST(RefusedStart, SaysWhatIsWrongWithTheFolder) {
     }
 }
 
+// What these say to others is not encrypted.
+TEST(RefusedStart, AClosedSessionIsNotSaidOpenlyToOtherPcs) {
+    const test::TemporaryFolder folder;
+    ASSERT_EQ(test::makeSession(folder / "made", {"--server", "--person", "Olga:operator"}).exit_code, 0);
+    const std::string olga = folder / "made/Olga";
+    expectRefused({"bonemill_igtl", "--port", "0", "--address", "0.0.0.0", "--secure", olga},
+                  "readable for everybody");
+    for (const char* name : {"ROS_LOCALHOST_ONLY", "ROS_AUTOMATIC_DISCOVERY_RANGE"}) unsetenv(name);
+    expectRefused({"bonemill_ros2", "--secure", olga, "--session", "7", "--seconds", "1"},
+                  "readable for everybody");
+}
+
 }  // namespace
 }  // namespace bonemill

@@ -12,6 +12,7 @@
 #include "common/base/user_error.h"
 #include "common/dds/endpoint.h"
 #include "tests/support/dds_session.h"
+#include "tests/unit/common/ipc/child.h"
 
 namespace bonemill::dds {
 namespace {
@@ -166,6 +167,32 @@ TEST_F(DdsTest, LogsAWriterThatDoesNotMatch) {
     EXPECT_NE(lines[0].find("bonemill_node_mesh"), std::string::npos) << lines[0];
     EXPECT_EQ(writer.matchedReaders(), 0);
     EXPECT_LE(lines.size(), kMaxNamedMismatches) << "they must not fill the log";
+}
+
+// A program that reads every tick and stands still, stopped or on a bad network.
+TEST(Ticks, WaitForNoReaderThatStandsStill) {
+    int ready[2];
+    ASSERT_EQ(pipe(ready), 0);
+    const uint32_t domain = testDomain();
+    Child child([&] {
+        const Participant participant(domain);
+        const Reader<TicksSample> reader(participant);
+        while (reader.matchedWriters() == 0) std::this_thread::sleep_for(1ms);
+        if (write(ready[1], "r", 1) != 1) return 1;
+        for (;;) pause();
+    });
+    const Participant participant(domain);
+    Writer<TicksSample> writer(participant);
+    char letter = 0;
+    ASSERT_EQ(read(ready[0], &letter, 1), 1);
+    for (int n = 0; n < 2000 && writer.matchedReaders() == 0; ++n) std::this_thread::sleep_for(5ms);
+    ASSERT_EQ(writer.matchedReaders(), 1);
+    child.stop();
+    TicksSample sample{};
+    sample.session = testSession();
+    const std::string payload(size_t(16) << 10, 'x');  // of 64 ticks
+    setPayload(sample, payload);
+    for (int n = 0; n < 300; ++n) ASSERT_TRUE(writer.write(sample)) << "it has waited, and given up";
 }
 
 TEST(Participant, RefusesADomainThatHasNoPorts) {

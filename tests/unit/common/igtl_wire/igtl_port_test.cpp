@@ -82,6 +82,20 @@ TEST_F(PortTest, HalfAMessageEndsInTimeAlsoWhenItDrips) {
     EXPECT_TRUE(heard_.empty());
 }
 
+// Each piece ends within a message, as those of a peer may that sends images without a pause.
+TEST_F(PortTest, MessagesOfAnotherTypeEndOneAfterTheOther) {
+    const Descriptor socket = dialled();
+    const std::string other = frameOf("IMAGE", "", 0, std::string(100, 'x'));
+    const std::string piece = other.substr(30) + other.substr(0, 30);
+    put(socket, other.substr(0, 30));
+    ASSERT_TRUE(stepUntil([&] { return came_ == 1; }));
+    for (const auto end = Line::Clock::now() + 900ms; Line::Clock::now() < end && gone_ == 0;) {
+        put(socket, piece);
+        port_.step(20ms);
+    }
+    EXPECT_EQ(gone_, 0) << "three times as long as a message may take";
+}
+
 TEST_F(PortTest, WhoDoesNotReadCostsABoundAndNobodyElseWaits) {
     const Descriptor deaf = dialled(), reader = dialled();
     ASSERT_TRUE(stepUntil([&] { return came_ == 2; }));

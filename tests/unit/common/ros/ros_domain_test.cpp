@@ -35,8 +35,15 @@ TEST(RosOptions, StayOnThisPcWhereRosDoes) {
     EXPECT_TRUE(isLocalhostOnly());
     setenv("ROS_LOCALHOST_ONLY", "0", 1);
     EXPECT_FALSE(isLocalhostOnly());
-    setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", 1);
-    EXPECT_TRUE(isLocalhostOnly());
+    for (const char* const range : {"LOCALHOST", "OFF"}) {
+        setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", range, 1);
+        EXPECT_TRUE(isLocalhostOnly()) << range;
+    }
+    setenv("CYCLONEDDS_URI", "file:///etc/cyclonedds.xml", 1);
+    EXPECT_FALSE(isLocalhostOnly()) << "it says otherwise, perhaps";
+    unsetenv("CYCLONEDDS_URI");
+    setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET", 1);
+    EXPECT_FALSE(isLocalhostOnly());
     unsetenv("ROS_LOCALHOST_ONLY"), unsetenv("ROS_AUTOMATIC_DISCOVERY_RANGE");
 }
 

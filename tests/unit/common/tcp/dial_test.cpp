@@ -42,6 +42,12 @@ TEST(Dial, ReachesAHostAtWhicheverOfItsAddressesItListens) {
     }
 }
 
+TEST(Listen, KnowsTheLoopback) {
+    for (const char* address : {"127.0.0.1", "127.9.8.7", "::1"}) EXPECT_TRUE(isLoopback(address)) << address;
+    for (const char* address : {"0.0.0.0", "::", "10.0.0.127", "::1:1", "2001:db8::1", ""})
+        EXPECT_FALSE(isLoopback(address)) << address;
+}
+
 TEST(Dial, SaysWhyItReachesNobody) {
     uint16_t port = 0;
     {
