@@ -34,10 +34,14 @@ constexpr struct {
             "instructor."),
      HudTone::kAlarm},
     {"solve",
-     trMark("The force faded for a moment: the computer could not calculate it. It comes back by itself."),
+     trMark("The force faded: the computer could not calculate it. Lift the tool off the bone until you feel "
+            "it again."),
      HudTone::kAlarm},
-    {"motion_clamped", trMark("The tool moved no faster than its limit."), HudTone::kPlain},
-    {"force_clamped", trMark("The force was kept within the hand's limit."), HudTone::kPlain},
+    {"motion_clamped", trMark("Your hand was faster than the tool may be: it came behind. Move more slowly."),
+     HudTone::kPlain},
+    {"force_clamped",
+     trMark("You pressed harder than the handle can push back: less was felt than there is. Press less."),
+     HudTone::kPlain},
     {"shell_overflow",
      trMark(
          "A part of the milled surface cannot be felt: the memory for it is full. Trust the picture there."),
@@ -84,14 +88,13 @@ constexpr char kStaleDevice[] = "stale_device";
 
 void addConnection(Connection connection, std::vector<Condition>& conditions) {
     if (connection == Connection::kServerLost)
-        conditions.push_back(
-            {"server",
-             tr("No connection to the session's computer: the picture stands still. Wait, or "
-                "tell your instructor."),
-             HudTone::kAlarm, true});
+        conditions.push_back({"server",
+                              tr("The picture stands still, for there is no connection; the burr may still "
+                                 "cut. Release the pedal. If it lasts, tell your instructor."),
+                              HudTone::kAlarm, true});
     if (connection == Connection::kServerEnded)
         conditions.push_back(
-            {"end", tr("The session has ended. The next one is shown as soon as it begins.")});
+            {"end", tr("The session has ended. Wait: the next one is shown here when somebody starts it.")});
 }
 
 // The server latches its faults; only of the device's silence it says also whether it lasts.
@@ -118,7 +121,7 @@ void addDevice(const HudInput& input, std::vector<Condition>& conditions) {
     if (const auto wait = deviceWait(device, tool); wait && !makes_way)
         conditions.push_back({"wait", wait->text, wait->tone});
     if (device.script().has_ended() && !input.status->has_replay())
-        conditions.push_back({"script", tr("The demonstration by the scripted hand has ended.")});
+        conditions.push_back({"script", tr("The automatic demonstration has ended.")});
 }
 
 // Who presses the pedal wonders.
