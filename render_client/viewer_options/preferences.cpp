@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "common/base/user_error.h"
+#include "common/files/config_folder.h"
 #include "common/files/whole_file.h"
-#include "render_client/web/gateway/guest_list.h"
 
 namespace bonemill {
 namespace {
@@ -109,7 +109,7 @@ Value changed(const Value& kept, const Value& start, const Value& now) {
 }  // namespace
 
 std::filesystem::path preferenceFile() {
-    return gateway::configFolder() / "viewer.json";
+    return configFolder() / "viewer.json";
 }
 
 std::string textOf(const Preferences& preferences) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "common/cli/command_line.h"
+#include "render_client/language/language.h"
 
 namespace bonemill {
 namespace {
@@ -32,6 +33,12 @@ std::string opacityText() {
     char text[16];
     std::snprintf(text, sizeof text, "%g", ViewSettings::kDefaultOpacity);
     return text;
+}
+
+std::vector<std::string> languageCodes() {
+    std::vector<std::string> codes;
+    for (const Language& language : languages()) codes.push_back(language.code);
+    return codes;
 }
 
 }  // namespace
@@ -77,6 +84,11 @@ std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
         app.add_option("--text-scale", raw.text_scale, "Text so much larger than what suits the picture")
             ->check(within(ViewSettings::kMinText, ViewSettings::kMaxText))
             ->type_name("FACTOR");
+    auto* language = app.add_option("--language", raw.language,
+                                    "Of figures and panel (default in a window as chosen there, else the "
+                                    "desktop's; off screen en)")
+                         ->check(CLI::IsMember(languageCodes()))
+                         ->type_name("CODE");
     auto* slices = app.add_flag("--slices", raw.slices, "Three slices through the scan beside the picture");
     auto* scan = app.add_option("--scan-on", raw.scan_on,
                                 "Where bone shows the scan's grey values: off, cuts, milled (and cuts); "
@@ -88,7 +100,7 @@ std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
                        ->expected(2)
                        ->check(within(-1e6, 1e6))
                        ->type_name("WIDTH LEVEL");
-    view_options.insert(view_options.end(), {slices, scan, window, structures, thickness});
+    view_options.insert(view_options.end(), {language, slices, scan, window, structures, thickness});
     view_options.insert(view_options.end(),
                         {transparent, stereo, camera, blur, quality, no_handpiece, no_hud, text});
     return view_options;

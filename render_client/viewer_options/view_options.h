@@ -27,6 +27,7 @@ struct RawView {
     std::string structures = "exposed";
     bool thickness = false;
     std::optional<double> text_scale;
+    std::string language;  // empty: none was said
     bool no_handpiece = false;
     bool no_hud = false;
     bool slices = false;

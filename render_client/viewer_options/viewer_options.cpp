@@ -268,6 +268,7 @@ void takeOver(const Identity& identity, const RawOptions& raw, ClientOptions& op
 
 ClientOptions convert(const RawOptions& raw, ClientOptions options) {
     options.settings = viewSettings(raw.view);
+    options.language = raw.view.language;
     options.chooses_quality = raw.view.quality.value_or("auto") == "auto";
     options.said = {.size = !raw.size.empty(),
                     .quality = raw.view.quality.has_value(),

@@ -75,6 +75,7 @@ struct ClientOptions {
     std::string launcher;             // deploy/bonemill, for replays and invitations; empty: none
     std::string recording;            // that is replayed here, for clips; empty: not known
     bool chooses_quality = true;      // by speed in a window; kQuick where OpenGL in software is measured
+    std::string language;             // of what is written; empty: in a window the user's, else English
     Said said;
     int width = 1280;  // pixels
     int height = 800;

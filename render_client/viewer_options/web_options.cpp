@@ -11,17 +11,16 @@
 
 #include "common/base/user_error.h"
 #include "common/cli/command_line.h"
+#include "common/files/config_folder.h"
 #include "common/secrets/secrets.h"
-#include "render_client/web/gateway/guest_list.h"
 #include "render_client/web/relay/relay_greeting.h"
 
 namespace bonemill {
 namespace {
 
 std::string secretOf(const RawRelay& raw) {
-    return readSecret(
-        raw.secret_file.empty() ? (gateway::configFolder() / "relay-secret").string() : raw.secret_file,
-        "a relay");
+    return readSecret(raw.secret_file.empty() ? (configFolder() / "relay-secret").string() : raw.secret_file,
+                      "a relay");
 }
 
 std::filesystem::path builtPage() {

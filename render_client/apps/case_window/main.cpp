@@ -16,6 +16,7 @@
 #include "haptic_server/scans/import/import_volume.h"
 #include "render_client/case_window/case_screen/screen_painter.h"
 #include "render_client/hand/window/glfw_window.h"
+#include "render_client/language/language.h"
 #include "render_client/look/hud/hud_canvas.h"
 
 namespace bonemill {
@@ -119,6 +120,7 @@ int makeCases(int argc, char** argv) {
     addWindowOptions(app, options);
     if (!parseCommandLine(app, argc, argv, "case_window")) return 0;
     umask(S_IRWXG | S_IRWXO);  // a case is its user's alone
+    speak(wantedLanguage());
     CaseWindow(options).run();
     forgiveUnprinted();
     return 0;

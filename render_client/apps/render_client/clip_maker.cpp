@@ -10,6 +10,7 @@
 
 #include "common/base/units.h"
 #include "common/process/start_apart.h"
+#include "render_client/language/language.h"
 
 namespace bonemill {
 namespace {
@@ -27,15 +28,16 @@ std::string viewText(const OrbitCamera& camera) {
 
 HudNotice ClipMaker::make(const ClientOptions& options, double moment_s, const OrbitCamera& camera,
                           const std::filesystem::path& file) {
-    if (!file_.empty()) return {"A clip is being written already: " + file_.string(), HudTone::kWarning};
+    if (!file_.empty())
+        return {tr("A clip is being written already: {1}", {file_.string()}), HudTone::kWarning};
     const std::filesystem::path whole = std::filesystem::absolute(file);
     if (!startApart({options.launcher, "replay", options.recording, "--clip", whole.string(), "--at",
                      std::to_string(moment_s), "--view", viewText(camera), "--domain",
                      std::to_string(options.subscriber.domain)}))
-        return {options.launcher + " cannot be started", HudTone::kWarning};
+        return {tr("{1} cannot be started", {options.launcher}), HudTone::kWarning};
     file_ = whole;
     begun_ = looked_ = Clock::now();
-    return {"A clip of ten seconds is being written, slowly, beside the replay: " + whole.string(),
+    return {tr("A clip of ten seconds is being written, slowly, beside the replay: {1}", {whole.string()}),
             HudTone::kPlain};
 }
 
@@ -44,10 +46,11 @@ std::optional<HudNotice> ClipMaker::news() {
     if (file_.empty() || now - looked_ < kLookEvery) return std::nullopt;
     looked_ = now;
     if (std::error_code none; std::filesystem::exists(file_, none))
-        return HudNotice{"Clip saved: " + std::exchange(file_, {}).string(), HudTone::kGood};
+        return HudNotice{tr("Clip saved: {1}", {std::exchange(file_, {}).string()}), HudTone::kGood};
     if (now - begun_ < kLongest) return std::nullopt;
-    return HudNotice{"No clip has come: bonemill's logs say why (" + std::exchange(file_, {}).string() + ")",
-                     HudTone::kWarning};
+    return HudNotice{
+        tr("No clip has come: bonemill's logs say why ({1})", {std::exchange(file_, {}).string()}),
+        HudTone::kWarning};
 }
 
 }  // namespace bonemill

@@ -5,6 +5,7 @@
 
 #include "common/commands/role_rules.h"
 #include "render_client/hand/controls/key_table.h"
+#include "render_client/language/language.h"
 #include "render_client/look/hud/figure_text.h"
 
 namespace bonemill {
@@ -76,7 +77,7 @@ std::optional<HudNotice> HandFeed::update(const SessionView& session, bool begin
     const std::string why_not = is_offered || goes_on ? whyNotHold(session) : "";
     std::optional<HudNotice> notice;
     if (!why_not.empty()) notice = {why_not, HudTone::kWarning};
-    if (begin_now) notice = {"The mouse holds the tool", HudTone::kPlain};
+    if (begin_now) notice = {tr("The mouse holds the tool"), HudTone::kPlain};
     if (begin_now || ((is_offered || goes_on) && why_not.empty())) begin(begin_now || goes_on_at_, now);
     if (goes_on) goes_on_at_.reset();
     if (!notice) notice = watch(session, now);
@@ -116,14 +117,14 @@ std::optional<HudNotice> HandFeed::watch(const SessionView& session, Clock::time
             return std::nullopt;
         case HoldMonitor::Advice::kFree:
             begin(true, now);
-            return HudNotice{"The bone had caught the tool: it is in front of it again", HudTone::kPlain};
+            return HudNotice{tr("The bone had caught the tool: it is in front of it again"), HudTone::kPlain};
         case HoldMonitor::Advice::kHelp:
-            return HudNotice{
-                "The tool is caught: turn the view, then press " + keyLabelOf(Action::kHoldTool) + " twice",
-                HudTone::kWarning};
+            return HudNotice{tr("The tool is caught: turn the view, then press {1} twice",
+                                {keyLabelOf(Action::kHoldTool)}),
+                             HudTone::kWarning};
         case HoldMonitor::Advice::kTouch:
-            return HudNotice{"Not touching the bone: the wheel, or " + keyLabelOf(Action::kToolDeeper) +
-                                 ", brings the tool nearer",
+            return HudNotice{tr("Not touching the bone: the wheel, or {1}, brings the tool nearer",
+                                {keyLabelOf(Action::kToolDeeper)}),
                              HudTone::kWarning};
     }
     return std::nullopt;

@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "common/base/is_ready.h"
+#include "render_client/language/language.h"
 
 namespace bonemill {
 
@@ -28,7 +29,7 @@ void Inviter::take() {
         if (captured.exit_code == 0 && link != std::string::npos)
             invitation_.link = captured.out.substr(link, captured.out.find_first_of(" \n", link) - link);
         else
-            invitation_.problem = "No link: " + captured.err;
+            invitation_.problem = tr("No link: {1}", {captured.err});
     } catch (const std::exception& error) {
         invitation_.problem = error.what();
     }

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "common/base/user_error.h"
+#include "common/files/config_folder.h"
 #include "common/files/whole_file.h"
 #include "common/log/log.h"
 #include "common/process/run_program.h"
@@ -19,13 +20,13 @@
 #include "render_client/apps/render_client/scene_feed.h"
 #include "render_client/apps/render_client/unattended_viewer.h"
 #include "render_client/apps/render_client/window_viewer.h"
+#include "render_client/language/language.h"
 #include "render_client/link/subscribe/command_words.h"
 #include "render_client/link/subscribe/session_list.h"
 #include "render_client/viewer_options/viewer_options.h"
 #include "render_client/viewer_options/web_options.h"
 #include "render_client/web/connect/gateway_session.h"
 #include "render_client/web/gateway/gateway_server.h"
-#include "render_client/web/gateway/guest_list.h"
 #include "render_client/web/relay/relay.h"
 
 namespace bonemill {
@@ -38,7 +39,7 @@ constexpr std::chrono::milliseconds kSlice{20};  // how often what is waited for
 
 // The token itself is kept nowhere.
 std::filesystem::path ticketFile(const std::string& token) {
-    return gateway::configFolder() / "tickets" / sha256Hex(token);
+    return configFolder() / "tickets" / sha256Hex(token);
 }
 
 std::string keptTicket(const std::filesystem::path& file) {
@@ -203,6 +204,7 @@ int view(int argc, char** argv) {
     hideTokens(argc, argv);
     if (!options) return 0;
     setUpLog("render_client", options->log_level);
+    speak(options->language);
     catchStopSignals();
     if (options->relay) return runRelay(*options);
     const bool is_of_one = !options->lists_sessions && !options->chooses_session;

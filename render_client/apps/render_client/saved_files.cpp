@@ -9,6 +9,7 @@
 #include "common/base/user_error.h"
 #include "common/files/whole_file.h"
 #include "render_client/hand/controls/picture_name.h"
+#include "render_client/language/language.h"
 #include "render_client/look/offscreen/osmesa_context.h"
 
 namespace bonemill {
@@ -29,9 +30,18 @@ HudNotice savePicture(const GlApi& gl, int width, int height, const std::string&
         std::filesystem::create_directories(folder);
         const std::filesystem::path name = pictureName(folder, scene, std::time(nullptr));
         writePng(readPicture(gl, width, height), name);
-        return {"Picture saved: " + name.string(), HudTone::kGood};
+        return {tr("Picture saved: {1}", {name.string()}), HudTone::kGood};
     } catch (const std::exception& error) {
         return {error.what(), HudTone::kWarning};
+    }
+}
+
+std::optional<HudNotice> changeLanguage(const std::string& code) {
+    try {
+        if (!code.empty()) chooseLanguage(code);
+        return std::nullopt;
+    } catch (const UserError& error) {
+        return HudNotice{error.what(), HudTone::kWarning};
     }
 }
 
@@ -43,7 +53,7 @@ HudNotice saveAttempts(const topics::Lesson& lesson) {
         stream.close();
         if (!stream) throw UserError("cannot write " + file.path().string() + "; is the disk full?");
         file.finish();
-        return {"Attempts saved: " + std::filesystem::absolute(file.path()).string(), HudTone::kGood};
+        return {tr("Attempts saved: {1}", {std::filesystem::absolute(file.path()).string()}), HudTone::kGood};
     } catch (const std::exception& error) {
         return {error.what(), HudTone::kWarning};
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "proto/topics.pb.h"
@@ -21,5 +22,8 @@ std::filesystem::path nextName(const char* format);
 HudNotice savePicture(const GlApi& gl, int width, int height, const std::string& class_folder,
                       const std::string& scene);
 HudNotice saveAttempts(const topics::Lesson& lesson);
+// Speaks this language from now on, and remembers it; no code changes nothing. Returns why it is not
+// remembered.
+std::optional<HudNotice> changeLanguage(const std::string& code);
 
 }  // namespace bonemill

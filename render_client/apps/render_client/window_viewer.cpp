@@ -18,6 +18,7 @@
 #include "render_client/hand/controls/quality_picker.h"
 #include "render_client/hand/controls/viewer_controls.h"
 #include "render_client/hand/window/glfw_window.h"
+#include "render_client/language/language.h"
 #include "render_client/link/subscribe/session_list.h"
 #include "render_client/look/hud/figure_text.h"
 #include "render_client/look/hud/hud_canvas.h"
@@ -235,6 +236,7 @@ class WindowViewer {
             if (const auto p_W = pick(*wishes.centre_at)) scene_.camera().target_W = *p_W;
         if (wishes.removal_at) askForRemoval(*wishes.removal_at);
         if (!wishes.copy.empty()) window_.setClipboard(wishes.copy);
+        if (const auto problem = changeLanguage(wishes.language)) notices_.show(*problem);
         if (wishes.notice) notices_.show(*wishes.notice);
         if (!wishes.asked.empty()) spdlog::info("asked: {}", wishes.asked);
         has_quit_ = has_quit_ || wishes.quit;
@@ -243,7 +245,7 @@ class WindowViewer {
 
     void askForRemoval(const PixelPoint& at) {
         const auto p_W = pick(at);
-        if (!p_W) return notices_.show({"There is no bone under the mouse", HudTone::kWarning});
+        if (!p_W) return notices_.show({tr("There is no bone under the mouse"), HudTone::kWarning});
         topics::Command command;
         command.mutable_replay()->mutable_removal_at()->mutable_p_m()->Assign(p_W->begin(), p_W->end());
         feed_.subscriber().sendCommand(command);
@@ -309,9 +311,10 @@ class WindowViewer {
 
     void showFile(const std::string& file) {
         if (std::error_code none; !std::filesystem::exists(file, none))
-            notices_.show({file + " is not there yet", HudTone::kWarning});
+            notices_.show({tr("{1} is not there yet", {file}), HudTone::kWarning});
         else if (!startApart({"xdg-open", file}))
-            notices_.show({"This desktop opens no files by itself: look at " + file, HudTone::kWarning});
+            notices_.show(
+                {tr("This desktop opens no files by itself: look at {1}", {file}), HudTone::kWarning});
     }
 
     // From the moment that is seen on.
@@ -326,21 +329,22 @@ class WindowViewer {
                                        "--domain",
                                        std::to_string(options_.subscriber.domain)};
         words.insert(words.end(), otherwise.begin(), otherwise.end());
-        notices_.show(startApart(words)
-                          ? HudNotice{"It is worked out; a window of its own will show both", HudTone::kPlain}
-                          : HudNotice{options_.launcher + " cannot be started", HudTone::kWarning});
+        notices_.show(
+            startApart(words)
+                ? HudNotice{tr("It is worked out; a window of its own will show both"), HudTone::kPlain}
+                : HudNotice{tr("{1} cannot be started", {options_.launcher}), HudTone::kWarning});
     }
     double replayedS() { return feed_.subscriber().status() ? feed_.subscriber().status()->session_s() : 0; }
 
     void replay(const std::string& result) {
         if (std::error_code none; !std::filesystem::exists(result, none))
-            notices_.show({result + " is not there yet", HudTone::kWarning});
+            notices_.show({tr("{1} is not there yet", {result}), HudTone::kWarning});
         else if (!startApart({options_.launcher, "replay", result, "--domain",
                               std::to_string(options_.subscriber.domain)}))
-            notices_.show({options_.launcher + " cannot be started", HudTone::kWarning});
+            notices_.show({tr("{1} cannot be started", {options_.launcher}), HudTone::kWarning});
         else
-            notices_.show(
-                {"The replay opens in a window of its own, if the attempt was recorded", HudTone::kPlain});
+            notices_.show({tr("The replay opens in a window of its own, if the attempt was recorded"),
+                           HudTone::kPlain});
     }
 
     const ClientOptions& options_;
@@ -380,6 +384,7 @@ class WindowViewer {
 }  // namespace
 
 void runWindow(const ClientOptions& options) {
+    if (options.language.empty()) speak(wantedLanguage());
     ClientOptions chosen = options;
     if (options.chooses_session) chosen.subscriber.session = kNoSession;
     PreferenceKeeper keeper(preferenceFile());

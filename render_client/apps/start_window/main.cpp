@@ -6,6 +6,7 @@
 #include "common/cli/command_line.h"
 #include "common/process/run_program.h"
 #include "render_client/hand/window/glfw_window.h"
+#include "render_client/language/language.h"
 #include "render_client/look/hud/hud_canvas.h"
 #include "render_client/start_window/start_desk/start_desk.h"
 #include "render_client/start_window/start_screen/start_painter.h"
@@ -63,6 +64,7 @@ class StartWindow {
     // While what was started has a window of its own, there is no other.
     void comeOrGo() {
         if (std::exchange(is_visible_, !desk_.hasWindowOfItsOwn()) == !desk_.hasWindowOfItsOwn()) return;
+        if (is_visible_) speak(wantedLanguage());  // the other window may have changed it
         window_.setVisible(is_visible_);
     }
     void showPicture() {
@@ -93,6 +95,7 @@ int showWindow(int argc, char** argv) {
     WindowOptions options;
     addWindowOptions(app, options);
     if (!parseCommandLine(app, argc, argv, "start_window")) return 0;
+    speak(wantedLanguage());
     StartWindow(options).run();
     return 0;
 }

@@ -10,6 +10,7 @@
 #include "common/base/user_error.h"
 #include "haptic_server/scans/import/import_volume.h"
 #include "render_client/case_window/case_desk/coarse_bone.h"
+#include "render_client/language/language.h"
 
 namespace bonemill {
 namespace {
@@ -46,9 +47,10 @@ std::optional<IsoProposal> proposalOf(const RawVolume& scan) {
 void requireShowable(const RawVolume& scan) {
     constexpr double kMaxValue = 1e30;
     const ValueRange& range = scan.values.range();
-    if (range.low > range.high) throw UserError("the scan holds no finite value (" + scan.description + ")");
+    if (range.low > range.high)
+        throw UserError(tr("the scan holds no finite value ({1})", {scan.description}));
     if (std::max(-range.low, range.high) > kMaxValue)
-        throw UserError("the scan's values reach beyond 1e30: it is damaged (" + scan.description + ")");
+        throw UserError(tr("the scan's values reach beyond 1e30: it is damaged ({1})", {scan.description}));
 }
 
 // Of CT what radiologists see bone in; else all of the range that has voxels.
@@ -76,7 +78,7 @@ void CaseDesk::poll() {
     try {
         worker_.poll();
     } catch (const std::bad_alloc&) {
-        say(DeskLine::Kind::kError, "there is not enough memory; close other programs");
+        say(DeskLine::Kind::kError, tr("there is not enough memory; close other programs"));
     } catch (const std::exception& error) {
         say(DeskLine::Kind::kError, error.what());
     }
@@ -98,11 +100,11 @@ CaseRequest CaseDesk::request() const {
 }
 
 std::string CaseDesk::whyNotYet() const {
-    if (!scan_) return "open a scan first";
-    if (worker_.isBusy()) return "wait: " + busy_with_;
-    if (!bone_ || !isBoneOfNow()) return "no bone was found; move the iso-value";
+    if (!scan_) return tr("open a scan first");
+    if (worker_.isBusy()) return tr("wait: {1}", {busy_with_});
+    if (!bone_ || !isBoneOfNow()) return tr("no bone was found; move the iso-value");
     if (!plan_) return plan_problem_;
-    return request_.out.empty() ? "name a folder for the case" : "";
+    return request_.out.empty() ? tr("name a folder for the case") : "";
 }
 
 // The scan
@@ -119,7 +121,7 @@ void CaseDesk::open(const std::string& path) {
     labels_.reset();
     series_.clear();
     lines_.clear();
-    dropWishToMake("another scan was opened");
+    dropWishToMake(tr("another scan was opened"));
     wants_labels_ = false;
     wants_series_ = true;
 }
@@ -140,7 +142,7 @@ void CaseDesk::takeSeries(const SeriesRow& row) {
 
 // What was chosen of another scan means nothing in this one.
 void CaseDesk::chooseSeries(size_t row) {
-    dropWishToMake("another series was chosen");
+    dropWishToMake(tr("another series was chosen"));
     request_.iso.reset();
     request_.at_mm.clear();
     request_.from_mm.clear();
@@ -150,7 +152,7 @@ void CaseDesk::chooseSeries(size_t row) {
 
 // A file that has no series is read all the same.
 void CaseDesk::listSeriesOf() {
-    begin("looking for series", [this, path = request_.scan]() -> Worker::Done {
+    begin(tr("looking for series"), [this, path = request_.scan]() -> Worker::Done {
         std::vector<SeriesRow> rows;
         try {
             rows = rowsOfTable(listSeries(path));
@@ -176,7 +178,7 @@ void CaseDesk::readScan() {
     ++surface_version_;
     cross_W_.reset();
     proposed_.reset();
-    begin("reading the scan",
+    begin(tr("reading the scan"),
           [this, path = request_.scan, options = importOptionsOf(request_)]() -> Worker::Done {
               auto scan = std::make_shared<RawVolume>(importVolume(path, options));
               requireShowable(*scan);
@@ -218,8 +220,9 @@ bool CaseDesk::isBoneOfNow() const {
 void CaseDesk::keepPiece(size_t piece, bool is_kept) {
     const auto number = uint32_t(piece + 1);
     if (!found_key_ || found_key_->iso != request_.iso)
-        return say(DeskLine::Kind::kWarning, "piece " + std::to_string(number) +
-                                                 " was of another iso-value; choose among those of this one");
+        return say(DeskLine::Kind::kWarning,
+                   tr("piece {1} was of another iso-value; choose among those of this one",
+                      {std::to_string(number)}));
     std::erase(request_.drop_pieces, number);
     if (!is_kept) request_.drop_pieces.push_back(number);
     std::ranges::sort(request_.drop_pieces);
@@ -227,17 +230,19 @@ void CaseDesk::keepPiece(size_t piece, bool is_kept) {
 
 void CaseDesk::lookForBone() {
     sought_key_ = keyOfNow();
-    begin("looking for bone", [this, scan = scan_, request = request_, key = keyOfNow()]() -> Worker::Done {
-        try {
-            const auto bone = std::make_shared<const CaseBone>(findBone(*scan, request));
-            return [this, bone, surface = coarseBone(bone->volume), key] { takeBone(bone, surface, key); };
-        } catch (const UserError& error) {
-            return [this, text = std::string(error.what()), key] {
-                takeBone(nullptr, {}, key);
-                say(DeskLine::Kind::kError, text);
-            };
-        }
-    });
+    begin(tr("looking for bone"),
+          [this, scan = scan_, request = request_, key = keyOfNow()]() -> Worker::Done {
+              try {
+                  const auto bone = std::make_shared<const CaseBone>(findBone(*scan, request));
+                  return
+                      [this, bone, surface = coarseBone(bone->volume), key] { takeBone(bone, surface, key); };
+              } catch (const UserError& error) {
+                  return [this, text = std::string(error.what()), key] {
+                      takeBone(nullptr, {}, key);
+                      say(DeskLine::Kind::kError, text);
+                  };
+              }
+          });
 }
 
 void CaseDesk::takeBone(const std::shared_ptr<const CaseBone>& bone, const std::vector<NodeMesh>& surface,
@@ -337,7 +342,7 @@ void CaseDesk::openLabels(const std::string& path) {
 }
 
 void CaseDesk::readLabels() {
-    begin("reading the labels",
+    begin(tr("reading the labels"),
           [this, path = request_.labels, words = request_.label_words]() -> Worker::Done {
               const auto map = std::make_shared<const RawVolume>(importVolume(path));
               std::vector<StructureRow> rows = structuresOf(*map);

@@ -4,6 +4,7 @@
 
 #include "haptic_server/cases/casework/case_request.h"
 #include "render_client/case_window/case_desk/case_desk.h"
+#include "render_client/language/language.h"
 
 namespace bonemill {
 
@@ -14,21 +15,21 @@ std::string CaseDesk::commandLine() const {
 }
 
 void CaseDesk::make() {
-    if (is_making_) return say(DeskLine::Kind::kWarning, "the case is being made already");
+    if (is_making_) return say(DeskLine::Kind::kWarning, tr("the case is being made already"));
     if (takesMake()) wants_case_ = true;
 }
 
 void CaseDesk::dropWishToMake(const char* why) {
     if (std::exchange(wants_case_, false))
-        say(DeskLine::Kind::kWarning, std::string("the case was not made: ") + why);
+        say(DeskLine::Kind::kWarning, tr("the case was not made: {1}", {why}));
 }
 
 void CaseDesk::makeIt() {
     if (const std::string why_not = whyNotYet(); !why_not.empty())
-        return say(DeskLine::Kind::kWarning, "the case was not made: " + why_not);
+        return say(DeskLine::Kind::kWarning, tr("the case was not made: {1}", {why_not}));
     lines_.clear();
     is_making_ = true;
-    begin("making the case",
+    begin(tr("making the case"),
           [this, request = request(), version = version_, command = commandLine()]() -> Worker::Done {
               std::ostringstream report;
               std::string problem;
@@ -40,7 +41,7 @@ void CaseDesk::makeIt() {
               return [this, text = report.str(), problem, request, command] {
                   takeReport(text);
                   if (!problem.empty()) return say(DeskLine::Kind::kError, problem);
-                  say(DeskLine::Kind::kPlain, "the same by hand: " + command);
+                  say(DeskLine::Kind::kPlain, tr("the same by hand: {1}", {command}));
                   request_.out = freeFolder(request.out);
               };
           });

@@ -7,6 +7,7 @@
 #include "common/base/user_error.h"
 #include "haptic_server/cases/casework/case_request.h"
 #include "haptic_server/scans/labels/labels.h"
+#include "render_client/language/language.h"
 
 namespace bonemill {
 namespace {
@@ -19,11 +20,11 @@ std::set<uint32_t> numbersIn(const RawVolume& map) {
             const double value = double(sample);
             if (value == double(last) || value == 0) continue;
             if (!(value > 0 && value <= double(kMaxLabel)) || value != std::floor(value))
-                throw UserError("this is no label map: it holds the value " + std::to_string(value));
+                throw UserError(tr("this is no label map: it holds the value {1}", {std::to_string(value)}));
             last = uint32_t(value);
             if (numbers.insert(last).second && numbers.size() > kMaxStructureRows)
-                throw UserError("this is no label map: it holds more than " +
-                                std::to_string(kMaxStructureRows) + " different values");
+                throw UserError(tr("this is no label map: it holds more than {1} different values",
+                                   {std::to_string(kMaxStructureRows)}));
         }
     });
     return numbers;

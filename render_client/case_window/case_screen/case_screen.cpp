@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "render_client/language/language.h"
+
 namespace bonemill {
 namespace {
 
@@ -56,20 +58,22 @@ std::optional<std::string> BrowseBox::build(ControlPlaces& places, float scale) 
     if (!ImGui::BeginPopupModal(id.c_str(), nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove))
         return chosen;
     ImGui::TextWrapped("%s", view_.path.c_str());
-    if (!view_.problem.empty()) ImGui::TextWrapped("It cannot be looked into: %s", view_.problem.c_str());
+    if (!view_.problem.empty())
+        ImGui::TextWrapped("%s", tr("It cannot be looked into: {1}", {view_.problem}).c_str());
     const float footer = 2.4f * ImGui::GetFrameHeightWithSpacing();
     if (ImGui::BeginChild("entries", ImVec2(0, -footer), true)) chosen = buildEntries(places);
     ImGui::EndChild();
-    ImGui::TextDisabled(
-        "%zu other files here%s", view_.other_files,
-        view_.other_files > 0 && takes_folders_ ? ": slices of a series have often no ending" : "");
+    const char* const others = view_.other_files > 0 && takes_folders_
+                                   ? trMark("{1} other files here: slices of a series have often no ending")
+                                   : trMark("{1} other files here");
+    ImGui::TextDisabled("%s", tr(others, {std::to_string(view_.other_files)}).c_str());
     if (takes_folders_) {
-        if (ImGui::Button("Open this folder")) chosen = view_.path.string();
-        notePlace(places, "Open this folder");
+        if (ImGui::Button(tr("Open this folder"))) chosen = view_.path.string();
+        notePlace(places, tr("Open this folder"));
         ImGui::SameLine();
     }
-    if (ImGui::Button("Cancel")) ImGui::CloseCurrentPopup();
-    notePlace(places, "Cancel");
+    if (ImGui::Button(tr("Cancel"))) ImGui::CloseCurrentPopup();
+    notePlace(places, tr("Cancel"));
     if (chosen) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
     return chosen;
@@ -83,7 +87,7 @@ std::optional<std::string> BrowseBox::buildEntries(ControlPlaces& places) {
         notePlace(places, text);
         return is_clicked;
     };
-    if (view_.path.has_relative_path() && row("..  (one folder up)")) next = view_.path.parent_path();
+    if (view_.path.has_relative_path() && row(tr("..  (one folder up)"))) next = view_.path.parent_path();
     for (const std::string& name : view_.folders)
         if (row(name + "/")) next = view_.path / name;
     for (const std::string& name : view_.scans)
@@ -159,9 +163,8 @@ void CaseScreen::frame(double seconds) {
 void CaseScreen::buildMessages(float height) {
     if (ImGui::BeginChild("messages", ImVec2(0, height - ImGui::GetFrameHeightWithSpacing()), true)) {
         ImGui::TextDisabled(
-            "Slices: a click moves the cross, the wheel goes through them, with Ctrl it zooms. Bone: drag, "
-            "wheel, double "
-            "click.");
+            "%s", tr("Slices: a click moves the cross, the wheel goes through them, with Ctrl it zooms. "
+                     "Bone: drag, wheel, double click."));
         if (!desk_.busyWith().empty()) {
             const int dots = int(ImGui::GetTime() * 3) % 4;
             ImGui::TextColored(ImVec4(0.45f, 0.8f, 1, 1), "%s %.*s", desk_.busyWith().c_str(), dots, "...");
@@ -172,12 +175,12 @@ void CaseScreen::buildMessages(float height) {
     }
     ImGui::EndChild();
     const std::string command = desk_.commandLine();
-    if (button("Copy")) ImGui::SetClipboardText(command.c_str());
+    if (button(tr("Copy"))) ImGui::SetClipboardText(command.c_str());
     ImGui::SameLine();
     std::string shown = command;
     ImGui::SetNextItemWidth(-1);
     ImGui::InputText("##command", shown.data(), shown.size() + 1, ImGuiInputTextFlags_ReadOnly);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("The command line that makes the same case");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tr("The command line that makes the same case"));
 }
 
 }  // namespace bonemill

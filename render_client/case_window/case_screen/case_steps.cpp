@@ -10,6 +10,7 @@
 #include "common/text/printed_text.h"
 #include "render_client/case_window/case_desk/case_desk.h"
 #include "render_client/case_window/case_screen/case_screen.h"
+#include "render_client/language/language.h"
 #include "render_client/look/slices/slice_image.h"
 
 namespace bonemill {
@@ -56,6 +57,13 @@ std::optional<double> plotHistogram(const Histogram& histogram, const std::optio
 constexpr size_t kLongestText = 4096;
 constexpr float kPlotHeight = 84;  // pixels at scale 1
 
+// Returns how much of a line these two buttons at its end take, `usual` (pixels) in English.
+float roomForButtons(const char* first, const char* second, float usual) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float texts = ImGui::CalcTextSize(first).x + ImGui::CalcTextSize(second).x;
+    return std::max(usual, texts + 4 * style.FramePadding.x + 2 * style.ItemSpacing.x);
+}
+
 bool isStepOpen(const char* title) {
     ImGui::Dummy(ImVec2(0, ImGui::GetStyle().ItemSpacing.y / 2));
     return ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen);
@@ -64,13 +72,13 @@ bool isStepOpen(const char* title) {
 const char* doubtText(IsoDoubt doubt) {
     switch (doubt) {
         case IsoDoubt::kLittle:
-            return "quite sure";
+            return tr("quite sure");
         case IsoDoubt::kSome:
-            return "some doubt: look at the line";
+            return tr("some doubt: look at the line");
         case IsoDoubt::kLarge:
             break;
     }
-    return "large doubt: look at the line and move it";
+    return tr("large doubt: look at the line and move it");
 }
 
 // Whole values stay whole.
@@ -126,31 +134,32 @@ void CaseScreen::say(const std::string& text, const ImVec4& colour) {
 }
 
 void CaseScreen::buildSteps() {
-    if (isStepOpen("1  Scan")) buildScan();
+    if (isStepOpen(tr("1  Scan"))) buildScan();
     if (desk_.scan()) {
-        if (isStepOpen("2  Bone")) buildBone();
-        if (isStepOpen("3  Place")) buildPlace();
-        if (isStepOpen("4  Structures")) buildStructures();
+        if (isStepOpen(tr("2  Bone"))) buildBone();
+        if (isStepOpen(tr("3  Place"))) buildPlace();
+        if (isStepOpen(tr("4  Structures"))) buildStructures();
     }
-    if (isStepOpen(desk_.scan() ? "5  Case" : "Case")) buildCase();
+    if (isStepOpen(desk_.scan() ? tr("5  Case") : tr("Case"))) buildCase();
 }
 
 void CaseScreen::buildScan() {
-    const float buttons = 124 * stage_.scale();
-    const bool is_entered = isTyped("##scan", "folder or file of a scan", typed_path_, buttons);
+    const float buttons = roomForButtons(tr("Open"), tr("Browse"), 124 * stage_.scale());
+    const bool is_entered = isTyped("##scan", tr("folder or file of a scan"), typed_path_, buttons);
     ImGui::SameLine();
-    if ((button("Open", !typed_path_.empty()) || is_entered) && !typed_path_.empty()) desk_.open(typed_path_);
+    if ((button(tr("Open"), !typed_path_.empty()) || is_entered) && !typed_path_.empty())
+        desk_.open(typed_path_);
     ImGui::SameLine();
-    if (button("Browse")) {
+    if (button(tr("Browse"))) {
         browses_for_labels_ = false;
-        browse_.open("Where is the scan?", typed_path_, true);
+        browse_.open(tr("Where is the scan?"), typed_path_, true);
     }
     if (desk_.series().size() > 1) buildSeries();
     if (const RawVolume* const scan = desk_.scan()) {
         const VolumeGeometry& grid = scan->geometry;
         const Eigen::Vector3d mm = grid.spacing * kPerMillimetre;
-        say(printed("%d x %d x %d voxels of %.3g x %.3g x %.3g mm", grid.dims.x(), grid.dims.y(),
-                    grid.dims.z(), mm.x(), mm.y(), mm.z()));
+        say(tr("{1} voxels of {2} mm", {printed("%d x %d x %d", grid.dims.x(), grid.dims.y(), grid.dims.z()),
+                                        printed("%.3g x %.3g x %.3g", mm.x(), mm.y(), mm.z())}));
     }
 }
 
@@ -160,9 +169,10 @@ void CaseScreen::buildSeries() {
         std::min(float(desk_.series().size()) + 1.6f, 7.f) * ImGui::GetTextLineHeightWithSpacing();
     constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_ScrollX |
                                        ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit;
-    if (!ImGui::BeginTable("series", kColumns, kFlags, ImVec2(0, height))) return;
+    if (!ImGui::BeginTable("##series", kColumns, kFlags, ImVec2(0, height))) return;
     ImGui::TableSetupScrollFreeze(0, 1);
-    for (const char* const head : {"series", "kernel", "slices", "voxel mm"}) ImGui::TableSetupColumn(head);
+    for (const char* const head : {trMark("series"), trMark("kernel"), trMark("slices"), trMark("voxel mm")})
+        ImGui::TableSetupColumn(tr(head));
     ImGui::TableHeadersRow();
     for (size_t n = 0; n < desk_.series().size(); ++n) {
         const SeriesRow& row = desk_.series()[n];
@@ -170,7 +180,7 @@ void CaseScreen::buildSeries() {
         ImGui::TableNextColumn();
         const std::string name = row.modality + " " + (row.description == "-" ? row.uid : row.description) +
                                  (row.acquisition == "-" ? "" : " " + row.acquisition) +
-                                 (row.is_recommended ? "  (best for bone)" : "");
+                                 (row.is_recommended ? tr("  (best for bone)") : "");
         const std::string label = "series " + std::to_string(n + 1);
         ImGui::PushID(int(n));
         if (ImGui::Selectable(name.c_str(), desk_.chosenSeries() == n, ImGuiSelectableFlags_SpanAllColumns))
@@ -178,8 +188,8 @@ void CaseScreen::buildSeries() {
         ImGui::PopID();
         notePlace(places_, label);
         if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("%s\n%s, contrast %s\n%s", row.uid.c_str(), row.size.c_str(),
-                              row.contrast.c_str(), row.remark.c_str());
+            ImGui::SetTooltip("%s\n%s\n%s", row.uid.c_str(),
+                              tr("{1}, contrast {2}", {row.size, row.contrast}).c_str(), row.remark.c_str());
         for (const std::string& cell : {row.kernel, row.slices, row.voxel_mm}) {
             ImGui::TableNextColumn();
             ImGui::TextUnformatted(cell.c_str());
@@ -211,18 +221,18 @@ void CaseScreen::buildIso() {
     };
     if (moved) take(*moved);
     auto value = float(iso.value_or((range.low + high) / 2));
-    if (slider("iso-value", value, float(std::max(range.low, histogram.low)), float(high),
+    if (slider(tr("iso-value"), value, float(std::max(range.low, histogram.low)), float(high),
                range.are_integers ? "%.0f" : "%.4g"))
         take(double(value));
     desk_.hold(is_line_held || ImGui::IsItemActive());
     if (!proposed) return;
-    say(printed("Proposed: %.4g, %s (%s).", proposed->value, doubtText(proposed->doubt),
-                proposed->why.c_str()) +
-        (runner_up ? printed(" It could be %.4g, too.", *runner_up) : ""));
-    if (desk_.request().iso && button("Take the proposal")) desk_.setIso(std::nullopt);
+    say(tr("Proposed: {1}, {2} ({3}).",
+           {printed("%.4g", proposed->value), doubtText(proposed->doubt), proposed->why}) +
+        (runner_up ? tr(" It could be {1}, too.", {printed("%.4g", *runner_up)}) : ""));
+    if (desk_.request().iso && button(tr("Take the proposal"))) desk_.setIso(std::nullopt);
     if (runner_up && desk_.request().iso != runner_up) {
         if (desk_.request().iso) ImGui::SameLine();
-        if (button("Take the other")) desk_.setIso(*runner_up);
+        if (button(tr("Take the other"))) desk_.setIso(*runner_up);
     }
 }
 
@@ -231,8 +241,8 @@ void CaseScreen::buildWindow() {
     const double low = histogram.low,
                  high = low + std::max(histogram.width * double(histogram.count.size()), 1e-6);
     auto level = float(desk_.window.level), width = float(desk_.window.width);
-    if (slider("grey level", level, float(low), float(high), "%.4g")) desk_.window.level = double(level);
-    if (slider("grey width", width, float((high - low) / 256), float(2 * (high - low)), "%.4g",
+    if (slider(tr("grey level"), level, float(low), float(high), "%.4g")) desk_.window.level = double(level);
+    if (slider(tr("grey width"), width, float((high - low) / 256), float(2 * (high - low)), "%.4g",
                ImGuiSliderFlags_Logarithmic))
         desk_.window.width = double(width);
 }
@@ -241,7 +251,7 @@ void CaseScreen::buildPieces() {
     const CaseBone* const bone = desk_.bone();
     if (!bone) return;
     const float rows = std::min(float(bone->pieces.size()), 5.5f);
-    ImGui::TextUnformatted("Pieces of bone (ticked: kept)");
+    ImGui::TextUnformatted(tr("Pieces of bone (ticked: kept)"));
     if (ImGui::BeginChild("pieces", ImVec2(0, rows * ImGui::GetFrameHeightWithSpacing()))) {
         const std::vector<uint32_t> dropped = desk_.request().drop_pieces;
         for (size_t n = 0; n < bone->pieces.size(); ++n) {
@@ -255,39 +265,41 @@ void CaseScreen::buildPieces() {
             notePlace(places_, label);
             ImGui::SameLine();
             ImGui::PushID(int(n));
-            if (ImGui::SmallButton("show")) desk_.moveCross(piece.middle);
+            if (ImGui::SmallButton(tr("show"))) desk_.moveCross(piece.middle);
             ImGui::PopID();
         }
     }
     ImGui::EndChild();
-    if (bone->noise_pieces > 0) say(printed("%zu smaller ones are taken for noise.", bone->noise_pieces));
+    if (bone->noise_pieces > 0)
+        say(tr("{1} smaller ones are taken for noise.", {std::to_string(bone->noise_pieces)}));
 }
 
 void CaseScreen::buildPlace() {
-    if (choice("All of the bone is milled", !desk_.isOfPart())) desk_.millPart(false);
-    if (choice("A part of it, with fine voxels", desk_.isOfPart())) desk_.millPart(true);
+    if (choice(tr("All of the bone is milled"), !desk_.isOfPart())) desk_.millPart(false);
+    if (choice(tr("A part of it, with fine voxels"), desk_.isOfPart())) desk_.millPart(true);
     if (desk_.isOfPart()) {
         auto size = float(desk_.sizeMm());
-        if (slider("edge mm", size, 2, 200, "%.0f", ImGuiSliderFlags_Logarithmic))
+        if (slider(tr("edge mm"), size, 2, 200, "%.0f", ImGuiSliderFlags_Logarithmic))
             desk_.setSizeMm(std::clamp(std::round(double(size)), 2.0, 500.0));
-        if (button("Place it at the cross")) desk_.placeAt(desk_.marks().cross_W);
-        say("The green box is what is milled: drag its middle in the slices.");
+        if (button(tr("Place it at the cross"))) desk_.placeAt(desk_.marks().cross_W);
+        say(tr("The green box is what is milled: drag its middle in the slices."));
     }
-    say("The hand comes along the red arrow: drag its round end in the slices.");
-    if (desk_.isHandChosen() && button("Let it come from outside")) desk_.bringHandFromOutside();
+    say(tr("The hand comes along the red arrow: drag its round end in the slices."));
+    if (desk_.isHandChosen() && button(tr("Let it come from outside"))) desk_.bringHandFromOutside();
     if (!desk_.planProblem().empty()) say(desk_.planProblem(), ImVec4(1.00f, 0.80f, 0.35f, 1));
 }
 
 void CaseScreen::buildStructures() {
-    const float buttons = 148 * stage_.scale();
-    const bool is_entered = isTyped("##labels", "label map, if there is one", typed_labels_, buttons);
+    const float buttons = roomForButtons(tr("Open map"), tr("Browse"), 148 * stage_.scale());
+    const bool is_entered = isTyped("##labels", tr("label map, if there is one"), typed_labels_, buttons);
     ImGui::SameLine();
-    if ((button("Open map", !typed_labels_.empty()) || is_entered) && !typed_labels_.empty())
+    if ((button(tr("Open map"), !typed_labels_.empty()) || is_entered) && !typed_labels_.empty())
         desk_.openLabels(typed_labels_);
     ImGui::SameLine();
-    if (button("Browse##labels")) {
+    if (button((tr("Browse") + std::string("##labels")).c_str())) {
         browses_for_labels_ = true;
-        browse_.open("Where is the label map?", typed_labels_.empty() ? typed_path_ : typed_labels_, false);
+        browse_.open(tr("Where is the label map?"), typed_labels_.empty() ? typed_path_ : typed_labels_,
+                     false);
     }
     if (desk_.structures().empty()) return;
     const float rows = std::min(float(desk_.structures().size()), 6.5f);
@@ -297,7 +309,8 @@ void CaseScreen::buildStructures() {
 }
 
 void CaseScreen::buildStructure(size_t row) {
-    constexpr const char* kUses[] = {"ignored", "shown", "protected", "target"};
+    const char* const kUses[] = {trIn("use", "ignored"), trIn("use", "shown"), trIn("use", "protected"),
+                                 trIn("use", "target")};
     StructureRow& structure = desk_.structures()[row];
     ImGui::PushID(int(row));
     const auto tint = structureTint(row);
@@ -312,7 +325,7 @@ void CaseScreen::buildStructure(size_t row) {
     if (structure.number) {
         ImGui::Text("%u", *structure.number);
         ImGui::SameLine();
-        isTyped("##name", "name", structure.name, 0);
+        isTyped("##name", tr("name"), structure.name, 0);
     } else {
         ImGui::TextUnformatted(structure.name.c_str());
     }
@@ -321,12 +334,12 @@ void CaseScreen::buildStructure(size_t row) {
 
 void CaseScreen::buildTools() {
     const std::filesystem::path chosen = desk_.tools();
-    const std::string shown = chosen.empty() ? "the default burr" : chosen.stem().string();
+    const std::string shown = chosen.empty() ? tr("the default burr") : chosen.stem().string();
     ImGui::SetNextItemWidth(-110 * stage_.scale());
-    const bool is_open = ImGui::BeginCombo("burrs", shown.c_str());
-    notePlace(places_, "burrs");
+    const bool is_open = ImGui::BeginCombo(tr("burrs"), shown.c_str());
+    notePlace(places_, tr("burrs"));
     if (!is_open) return;
-    if (ImGui::Selectable("the default burr", chosen.empty())) desk_.tools().clear();
+    if (ImGui::Selectable(tr("the default burr"), chosen.empty())) desk_.tools().clear();
     for (const std::filesystem::path& set : tool_sets_) {
         if (ImGui::Selectable(set.stem().c_str(), chosen == set)) desk_.tools() = set.string();
         notePlace(places_, set.stem().string());
@@ -337,22 +350,22 @@ void CaseScreen::buildTools() {
 void CaseScreen::buildCase() {
     const float labels = 110 * stage_.scale();
     buildTools();
-    isTyped("title", "what people read in lists", desk_.title(), labels);
-    isTyped("new folder", "for the case", desk_.out(), labels);
+    isTyped(tr("title"), tr("what people read in lists"), desk_.title(), labels);
+    isTyped(tr("new folder"), tr("for the case"), desk_.out(), labels);
     const std::string why_not = desk_.whyNotYet();
     ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0.13f, 0.48f, 0.26f, 1));
     ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImVec4(0.18f, 0.60f, 0.33f, 1));
-    if (button("Make the case", desk_.takesMake())) desk_.make();
+    if (button(tr("Make the case"), desk_.takesMake())) desk_.make();
     ImGui::PopStyleColor(2);
     if (desk_.waitsToMake())
-        say("Now: " + desk_.busyWith() + "; then the case is made.");
+        say(tr("Now: {1}; then the case is made.", {desk_.busyWith()}));
     else if (!why_not.empty())
         say(why_not);
     if (!desk_.madeScene().empty()) {
-        say("Made: " + desk_.madeScene(), ImVec4(0.45f, 0.9f, 0.55f, 1));
+        say(tr("Made: {1}", {desk_.madeScene()}), ImVec4(0.45f, 0.9f, 0.55f, 1));
         if (!offers_milling_)
-            say("Mill it: bonemill start " + desk_.madeScene());
-        else if (button("Mill it"))
+            say(tr("Mill it: bonemill start {1}", {desk_.madeScene()}));
+        else if (button(tr("Mill it")))
             milling_ = desk_.madeScene();
     }
 }

@@ -8,6 +8,7 @@
 #include "common/base/units.h"
 #include "common/text/printed_text.h"
 #include "render_client/case_window/case_screen/case_screen.h"
+#include "render_client/language/language.h"
 #include "render_client/look/model/node_store.h"
 
 namespace bonemill {
@@ -84,8 +85,8 @@ void CaseScreen::buildPanes(const ImVec2& size) {
     if (!desk_.scan()) {
         ImGui::BeginChild("empty", size, true);
         const char* const hint = desk_.busyWith().empty()
-                                     ? "Drop the folder of a scan here, or open one at the left."
-                                     : "One moment ...";
+                                     ? tr("Drop the folder of a scan here, or open one at the left.")
+                                     : tr("One moment ...");
         const ImVec2 text = ImGui::CalcTextSize(hint);
         ImGui::SetCursorPos(ImVec2((size.x - text.x) / 2, (size.y - text.y) / 2));
         ImGui::TextDisabled("%s", hint);
@@ -186,7 +187,7 @@ void CaseScreen::drawSides(const ScanPane& pane, const ImVec2& corner) const {
     const auto text = [&](float x, float y, const char* words) {
         draw.AddText(ImVec2(corner.x + x, corner.y + y), kSideColour, words);
     };
-    const std::string title = printed("%s  %c = %.1f mm", labels.title, "xyz"[pane.axis],
+    const std::string title = printed("%s  %c = %.1f mm", tr(labels.title), "xyz"[pane.axis],
                                       pane.middle_W[Eigen::Index(pane.axis)] * kPerMillimetre);
     text(gap, gap, title.c_str());
     text(gap, (height - line) / 2, labels.left);
@@ -214,7 +215,7 @@ void CaseScreen::buildBoneView(const ImVec2& size) {
     draw.AddImage(reinterpret_cast<ImTextureID>(intptr_t(kBonePicture)), corner, end, ImVec2(0, 1),
                   ImVec2(1, 0));
     const float gap = 0.4f * ImGui::GetTextLineHeight();
-    const char* const text = desk_.isBoneOfNow() ? "Bone" : desk_.bone() ? "Bone, as it was" : "";
+    const char* const text = desk_.isBoneOfNow() ? tr("Bone") : desk_.bone() ? tr("Bone, as it was") : "";
     draw.AddText(ImVec2(corner.x + gap, corner.y + gap), kSideColour, text);
 }
 

@@ -6,28 +6,58 @@
 #include <string>
 #include <utility>
 
+#include "render_client/language/language.h"
+
 namespace bonemill {
 namespace {
 
+struct MouseRow {
+    const char *label, *meaning;
+};
 // This is what ToolHold and ViewerControls make of the mouse.
-const HudRow kMouseWithTool[] = {
-    {"Mouse", "moves the tool"},         {"Left drag", "mill"},
-    {"Shift+left drag", "add material"}, {"Right drag", "turn the tool"},
-    {"Wheel", "tool deeper, nearer"},    {"Middle drag", "orbit, with Shift pan"}};
+constexpr MouseRow kMouseWithTool[] = {{trMark("Mouse"), trMark("moves the tool")},
+                                       {trMark("Left drag"), trMark("mill")},
+                                       {trMark("Shift+left drag"), trMark("add material")},
+                                       {trMark("Right drag"), trMark("turn the tool")},
+                                       {trMark("Wheel"), trMark("tool deeper, nearer")},
+                                       {trMark("Middle drag"), trMark("orbit, with Shift pan")}};
 
 // This is what ViewerControls makes of the mouse.
-const HudRow kMouse[] = {{"Left drag", "orbit"},
-                         {"Right drag", "pan, as Shift+left drag"},
-                         {"Wheel", "zoom"},
-                         {"Double click", "orbit around that point"},
-                         {"Ctrl+left drag", "point (instructor)"},
-                         {"Ctrl+Shift+left drag", "draw on the bone"}};
+constexpr MouseRow kMouse[] = {{trMark("Left drag"), trMark("orbit")},
+                               {trMark("Right drag"), trMark("pan, as Shift+left drag")},
+                               {trMark("Wheel"), trMark("zoom")},
+                               {trMark("Double click"), trMark("orbit around that point")},
+                               {trMark("Ctrl+left drag"), trMark("point (instructor)")},
+                               {trMark("Ctrl+Shift+left drag"), trMark("draw on the bone")}};
 
 // This is what PaneMouse makes of it.
-const HudRow kMouseOverSlices[] = {{"Wheel", "scroll"},
-                                   {"Left drag", "window, level"},
-                                   {"Right drag", "zoom"},
-                                   {"Double click", "as at the start"}};
+constexpr MouseRow kMouseOverSlices[] = {{trMark("Wheel"), trMark("scroll")},
+                                         {trMark("Left drag"), trMark("window, level")},
+                                         {trMark("Right drag"), trMark("zoom")},
+                                         {trMark("Double click"), trMark("as at the start")}};
+
+std::string shown(std::string_view text) {
+    return tr(std::string(text).c_str());
+}
+
+// Keys that are more than a letter have names.
+constexpr const char* kNamedKeys[] = {trMark("Shift"), trMark("Left"), trMark("Right"),
+                                      trMark("Up"),    trMark("Down"), trMark("Space")};
+
+// Returns "Skift+X" for "Shift+X".
+std::string shownKey(std::string_view label) {
+    const size_t plus = label.find('+', 1);
+    if (plus != std::string_view::npos)
+        return shownKey(label.substr(0, plus)) + "+" + shownKey(label.substr(plus + 1));
+    const bool is_named = std::ranges::find(kNamedKeys, label) != std::end(kNamedKeys);
+    return is_named ? shown(label) : std::string(label);
+}
+
+std::vector<HudRow> translated(std::span<const MouseRow> rows) {
+    std::vector<HudRow> shown;
+    for (const MouseRow& row : rows) shown.push_back({tr(row.label), tr(row.meaning)});
+    return shown;
+}
 
 template <class Bindings, class Wanted>
 void addKeys(const Bindings& bindings, std::vector<HudRow>& rows, Wanted&& is_wanted) {
@@ -36,9 +66,9 @@ void addKeys(const Bindings& bindings, std::vector<HudRow>& rows, Wanted&& is_wa
         if (!is_wanted(binding)) continue;
         const std::string meaning = meaningOf(binding);
         if (meaning == last) {
-            rows.back().label += " " + std::string(binding.label);
+            rows.back().label += " " + shownKey(binding.label);
         } else {
-            rows.push_back({std::string(binding.label), meaning});
+            rows.push_back({shownKey(binding.label), meaning});
         }
         last = meaning;
     }
@@ -54,99 +84,102 @@ bool isOfUse(const KeyBinding& binding, HelpFor whom, bool has_lesson) {
 constexpr struct {
     KeyGroup group;
     const char* title;
-} kGroups[] = {{KeyGroup::kTool, "Tool in the mouse"},
-               {KeyGroup::kView, "View"},
-               {KeyGroup::kCuts, "Cut-planes, scan"},
-               {KeyGroup::kSession, "Session"},
-               {KeyGroup::kScreen, "Screen"}};
+} kGroups[] = {{KeyGroup::kTool, trMark("Tool in the mouse")},
+               {KeyGroup::kView, trMark("View")},
+               {KeyGroup::kCuts, trMark("Cut-planes, scan")},
+               {KeyGroup::kSession, trMark("Session")},
+               {KeyGroup::kScreen, trMark("Screen")}};
 
 constexpr KeyBinding kKeys[] = {
-    {"R", keyOf('R'), false, Action::kFirstView, "first view again"},
-    {"C", keyOf('C'), false, Action::kResetBone, "put the bone back"},
-    {"F", keyOf('F'), false, Action::kForceArrow, "force arrow"},
-    {"X", keyOf('X'), false, Action::kCutX, "cut-planes on, off"},
-    {"Y", keyOf('Y'), false, Action::kCutY, "cut-planes on, off"},
-    {"Z", keyOf('Z'), false, Action::kCutZ, "cut-planes on, off"},
-    {"Shift+X", keyOf('X'), true, Action::kFlipX, "cut away the other side"},
-    {"Shift+Y", keyOf('Y'), true, Action::kFlipY, "cut away the other side"},
-    {"Shift+Z", keyOf('Z'), true, Action::kFlipZ, "cut away the other side"},
-    {"Shift+G", keyOf('G'), true, Action::kScanOnBone, "scan on cuts, milled, materials"},
-    {"Shift+S", keyOf('S'), true, Action::kSlices, "slices through the scan"},
-    {"T", keyOf('T'), false, Action::kTransparency, "transparent bone"},
-    {"Shift+T", keyOf('T'), true, Action::kStructures, "structures: behind too, off"},
-    {"Shift+D", keyOf('D'), true, Action::kThickness, "thickness over structures"},
-    {"S", keyOf('S'), false, Action::kStereo, "stereo: side by side, red/cyan, off"},
-    {"Q", keyOf('Q'), false, Action::kQuickDrawing, "quick drawing"},
-    {"E", keyOf('E'), false, Action::kEndoscope, "endoscope"},
-    {"Shift+E", keyOf('E'), true, Action::kMicroscope, "microscope"},
-    {"P", keyOf('P'), false, Action::kPauseMilling, "pause milling, go on"},
-    {"Shift+Left", Key::kLeft, true, Action::kReplayBack, "replay: 5 s back, ahead", true, false, false,
+    {"R", keyOf('R'), false, Action::kFirstView, trMark("first view again")},
+    {"C", keyOf('C'), false, Action::kResetBone, trMark("put the bone back")},
+    {"F", keyOf('F'), false, Action::kForceArrow, trMark("force arrow")},
+    {"X", keyOf('X'), false, Action::kCutX, trMark("cut-planes on, off")},
+    {"Y", keyOf('Y'), false, Action::kCutY, trMark("cut-planes on, off")},
+    {"Z", keyOf('Z'), false, Action::kCutZ, trMark("cut-planes on, off")},
+    {"Shift+X", keyOf('X'), true, Action::kFlipX, trMark("cut away the other side")},
+    {"Shift+Y", keyOf('Y'), true, Action::kFlipY, trMark("cut away the other side")},
+    {"Shift+Z", keyOf('Z'), true, Action::kFlipZ, trMark("cut away the other side")},
+    {"Shift+G", keyOf('G'), true, Action::kScanOnBone, trMark("scan on cuts, milled, materials")},
+    {"Shift+S", keyOf('S'), true, Action::kSlices, trMark("slices through the scan")},
+    {"T", keyOf('T'), false, Action::kTransparency, trMark("transparent bone")},
+    {"Shift+T", keyOf('T'), true, Action::kStructures, trMark("structures: behind too, off")},
+    {"Shift+D", keyOf('D'), true, Action::kThickness, trMark("thickness over structures")},
+    {"S", keyOf('S'), false, Action::kStereo, trMark("stereo: side by side, red/cyan, off")},
+    {"Q", keyOf('Q'), false, Action::kQuickDrawing, trMark("quick drawing")},
+    {"E", keyOf('E'), false, Action::kEndoscope, trMark("endoscope")},
+    {"Shift+E", keyOf('E'), true, Action::kMicroscope, trMark("microscope")},
+    {"P", keyOf('P'), false, Action::kPauseMilling, trMark("pause milling, go on")},
+    {"Shift+Left", Key::kLeft, true, Action::kReplayBack, trMark("replay: 5 s back, ahead"), true, false,
+     false, true},
+    {"Shift+Right", Key::kRight, true, Action::kReplayAhead, trMark("replay: 5 s back, ahead"), true, false,
+     false, true},
+    {"Shift+Down", Key::kDown, true, Action::kReplaySlower, trMark("replay: slower, faster"), true, false,
+     false, true},
+    {"Shift+Up", Key::kUp, true, Action::kReplayFaster, trMark("replay: slower, faster"), true, false, false,
      true},
-    {"Shift+Right", Key::kRight, true, Action::kReplayAhead, "replay: 5 s back, ahead", true, false, false,
+    {"Shift+K", keyOf('K'), true, Action::kNextEvent, trMark("replay: next event"), true, false, false, true},
+    {"Shift+U", keyOf('U'), true, Action::kPreviousEvent, trMark("replay: event before"), true, false, false,
      true},
-    {"Shift+Down", Key::kDown, true, Action::kReplaySlower, "replay: slower, faster", true, false, false,
-     true},
-    {"Shift+Up", Key::kUp, true, Action::kReplayFaster, "replay: slower, faster", true, false, false, true},
-    {"Shift+K", keyOf('K'), true, Action::kNextEvent, "replay: next event", true, false, false, true},
-    {"Shift+U", keyOf('U'), true, Action::kPreviousEvent, "replay: event before", true, false, false, true},
-    {"Shift+V", keyOf('V'), true, Action::kRemovalHere, "replay: when was this removed?", false, false, false,
-     true},
-    {"K", keyOf('K'), false, Action::kSaveCheckpoint, "save a checkpoint"},
-    {"U", keyOf('U'), false, Action::kLastCheckpoint, "back to the last checkpoint"},
-    {"N", keyOf('N'), false, Action::kNextTool, "next tool"},
-    {"D", keyOf('D'), false, Action::kResetDevice, "reset the device after a stop"},
-    {"Shift+C", keyOf('C'), true, Action::kAgain, "again: whole bone, the scripted hand anew"},
-    {"Shift+N", keyOf('N'), true, Action::kNextScene, "next scene of the lesson", false, false, true},
-    {"Shift+P", keyOf('P'), true, Action::kTrainee, "type the trainee's name; Enter starts", false, false,
-     true},
-    {"Shift+F", keyOf('F'), true, Action::kStopAttempt, "end the attempt", false, false, true},
-    {"0", keyOf('0'), false, Action::kAccuracyScene, "accuracy of the scene file"},
-    {"1", keyOf('1'), false, Action::kAccuracy1, "accuracy"},
-    {"2", keyOf('2'), false, Action::kAccuracy2, "accuracy"},
-    {"3", keyOf('3'), false, Action::kAccuracy3, "accuracy"},
-    {"4", keyOf('4'), false, Action::kAccuracy4, "accuracy"},
-    {"W", keyOf('W'), false, Action::kWatchers, "who is watching"},
-    {"M", keyOf('M'), false, Action::kPanel, "control panel"},
-    {"Tab", Key::kTab, false, Action::kHud, "figures"},
-    {"Shift+Tab", Key::kTab, true, Action::kDetails, "all figures"},
-    {"Shift+R", keyOf('R'), true, Action::kRemarks, "notes and strokes"},
-    {"L", keyOf('L'), false, Action::kPoint, "point while held (instructor)"},
-    {"Shift+L", keyOf('L'), true, Action::kDraw, "draw on the bone with left drag"},
-    {"Shift+M", keyOf('M'), true, Action::kNote, "write a note at the mouse"},
-    {"Left", Key::kLeft, false, Action::kOrbitLeft, "orbit", true},
-    {"Right", Key::kRight, false, Action::kOrbitRight, "orbit", true},
-    {"Up", Key::kUp, false, Action::kOrbitUp, "orbit", true},
-    {"Down", Key::kDown, false, Action::kOrbitDown, "orbit", true},
-    {"G", keyOf('G'), false, Action::kHoldTool, "hold the tool, let it go", false, true},
-    {"B", keyOf('B'), false, Action::kMill, "mill while held", false, true},
-    {"A", keyOf('A'), false, Action::kAddMaterial, "add material while held", false, true},
-    {"V", keyOf('V'), false, Action::kTurnTool, "turn the tool while held", false, true},
-    {"Space", Key::kSpace, false, Action::kClutch, "mouse for the camera while held", false, true},
-    {"I", keyOf('I'), false, Action::kToolDeeper, "tool deeper", true, true},
-    {"O", keyOf('O'), false, Action::kToolNearer, "tool nearer", true, true},
-    {"J", keyOf('J'), false, Action::kLargerText, "larger text", true},
-    {"Shift+J", keyOf('J'), true, Action::kSmallerText, "smaller text", true},
-    {"H", keyOf('H'), false, Action::kHelp, "this help"},
-    {"F11", Key::kF11, false, Action::kFullScreen, "full screen, window"},
-    {"F12", Key::kF12, false, Action::kSavePicture, "save the picture"},
-    {"Esc", Key::kEscape, false, Action::kQuit, "leave the help; quit"},
+    {"Shift+V", keyOf('V'), true, Action::kRemovalHere, trMark("replay: when was this removed?"), false,
+     false, false, true},
+    {"K", keyOf('K'), false, Action::kSaveCheckpoint, trMark("save a checkpoint")},
+    {"U", keyOf('U'), false, Action::kLastCheckpoint, trMark("back to the last checkpoint")},
+    {"N", keyOf('N'), false, Action::kNextTool, trMark("next tool")},
+    {"D", keyOf('D'), false, Action::kResetDevice, trMark("reset the device after a stop")},
+    {"Shift+C", keyOf('C'), true, Action::kAgain, trMark("again: whole bone, the scripted hand anew")},
+    {"Shift+N", keyOf('N'), true, Action::kNextScene, trMark("next scene of the lesson"), false, false, true},
+    {"Shift+P", keyOf('P'), true, Action::kTrainee, trMark("type the trainee's name; Enter starts"), false,
+     false, true},
+    {"Shift+F", keyOf('F'), true, Action::kStopAttempt, trMark("end the attempt"), false, false, true},
+    {"0", keyOf('0'), false, Action::kAccuracyScene, trMark("accuracy of the scene file")},
+    {"1", keyOf('1'), false, Action::kAccuracy1, trMark("accuracy")},
+    {"2", keyOf('2'), false, Action::kAccuracy2, trMark("accuracy")},
+    {"3", keyOf('3'), false, Action::kAccuracy3, trMark("accuracy")},
+    {"4", keyOf('4'), false, Action::kAccuracy4, trMark("accuracy")},
+    {"W", keyOf('W'), false, Action::kWatchers, trMark("who is watching")},
+    {"M", keyOf('M'), false, Action::kPanel, trMark("control panel")},
+    {"Tab", Key::kTab, false, Action::kHud, trMark("figures")},
+    {"Shift+Tab", Key::kTab, true, Action::kDetails, trMark("all figures")},
+    {"Shift+R", keyOf('R'), true, Action::kRemarks, trMark("notes and strokes")},
+    {"L", keyOf('L'), false, Action::kPoint, trMark("point while held (instructor)")},
+    {"Shift+L", keyOf('L'), true, Action::kDraw, trMark("draw on the bone with left drag")},
+    {"Shift+M", keyOf('M'), true, Action::kNote, trMark("write a note at the mouse")},
+    {"Left", Key::kLeft, false, Action::kOrbitLeft, trMark("orbit"), true},
+    {"Right", Key::kRight, false, Action::kOrbitRight, trMark("orbit"), true},
+    {"Up", Key::kUp, false, Action::kOrbitUp, trMark("orbit"), true},
+    {"Down", Key::kDown, false, Action::kOrbitDown, trMark("orbit"), true},
+    {"G", keyOf('G'), false, Action::kHoldTool, trMark("hold the tool, let it go"), false, true},
+    {"B", keyOf('B'), false, Action::kMill, trMark("mill while held"), false, true},
+    {"A", keyOf('A'), false, Action::kAddMaterial, trMark("add material while held"), false, true},
+    {"V", keyOf('V'), false, Action::kTurnTool, trMark("turn the tool while held"), false, true},
+    {"Space", Key::kSpace, false, Action::kClutch, trMark("mouse for the camera while held"), false, true},
+    {"I", keyOf('I'), false, Action::kToolDeeper, trMark("tool deeper"), true, true},
+    {"O", keyOf('O'), false, Action::kToolNearer, trMark("tool nearer"), true, true},
+    {"J", keyOf('J'), false, Action::kLargerText, trMark("larger text"), true},
+    {"Shift+J", keyOf('J'), true, Action::kSmallerText, trMark("smaller text"), true},
+    {"H", keyOf('H'), false, Action::kHelp, trMark("this help")},
+    {"F11", Key::kF11, false, Action::kFullScreen, trMark("full screen, window")},
+    {"F12", Key::kF12, false, Action::kSavePicture, trMark("save the picture")},
+    {"Esc", Key::kEscape, false, Action::kQuit, trMark("leave the help; quit")},
 };
 
 constexpr SignBinding kSigns[] = {
-    {"[", U'[', Action::kCutLower, "move the last cut-plane"},
-    {"]", U']', Action::kCutHigher, "move the last cut-plane"},
-    {"+", U'+', Action::kZoomIn, "zoom"},
-    {"=", U'=', Action::kZoomIn, "zoom"},  // + without shift on many keyboards
-    {"-", U'-', Action::kZoomOut, "zoom"},
+    {"[", U'[', Action::kCutLower, trMark("move the last cut-plane")},
+    {"]", U']', Action::kCutHigher, trMark("move the last cut-plane")},
+    {"+", U'+', Action::kZoomIn, trMark("zoom")},
+    {"=", U'=', Action::kZoomIn, trMark("zoom")},  // + without shift on many keyboards
+    {"-", U'-', Action::kZoomOut, trMark("zoom")},
 };
 
 }  // namespace
 
 std::vector<HelpGroup> helpGroups(HelpFor whom, bool has_lesson) {
-    const std::span<const HudRow> mouse =
-        whom == HelpFor::kHolding ? std::span<const HudRow>(kMouseWithTool) : std::span<const HudRow>(kMouse);
-    std::vector<HelpGroup> groups{{"Mouse", {mouse.begin(), mouse.end()}}};
-    if (whom == HelpFor::kReplay) groups[0].rows.push_back({"Right click", "when was this removed?"});
+    const std::span<const MouseRow> mouse = whom == HelpFor::kHolding
+                                                ? std::span<const MouseRow>(kMouseWithTool)
+                                                : std::span<const MouseRow>(kMouse);
+    std::vector<HelpGroup> groups{{tr("Mouse"), translated(mouse)}};
+    if (whom == HelpFor::kReplay) groups[0].rows.push_back({tr("Right click"), tr("when was this removed?")});
     for (const auto& [group, title] : kGroups) {
         std::vector<HudRow> rows;
         addKeys(keyTable(), rows, [&, g = group](const KeyBinding& binding) {
@@ -154,18 +187,17 @@ std::vector<HelpGroup> helpGroups(HelpFor whom, bool has_lesson) {
         });
         addKeys(signTable(), rows,
                 [g = group](const SignBinding& binding) { return groupOf(binding.action) == g; });
-        if (!rows.empty()) groups.push_back({title, std::move(rows)});
+        if (!rows.empty()) groups.push_back({tr(title), std::move(rows)});
         if (group == KeyGroup::kCuts)
-            groups.push_back(
-                {"Mouse over a slice", {std::begin(kMouseOverSlices), std::end(kMouseOverSlices)}});
+            groups.push_back({tr("Mouse over a slice"), translated(kMouseOverSlices)});
     }
     return groups;
 }
 
 std::vector<HudRow> startRows() {
-    return {{keyLabelOf(Action::kHelp), "all keys"},
-            {keyLabelOf(Action::kPanel), "control panel"},
-            {keyLabelOf(Action::kDetails), "all figures"}};
+    return {{keyLabelOf(Action::kHelp), tr("all keys")},
+            {keyLabelOf(Action::kPanel), tr("control panel")},
+            {keyLabelOf(Action::kDetails), tr("all figures")}};
 }
 
 std::vector<std::string> modeTexts(const ViewSettings& settings, bool is_drawing) {
@@ -173,12 +205,15 @@ std::vector<std::string> modeTexts(const ViewSettings& settings, bool is_drawing
     const auto add = [&](const std::string& text, Action action, const char* leave) {
         modes.push_back(text + " (" + keyLabelOf(action) + ": " + leave + ")");
     };
-    if (is_drawing) add("Drawing", Action::kDraw, "off");
-    if (settings.camera == CameraMode::kEndoscope) add("Endoscope", Action::kEndoscope, "back");
-    if (settings.camera == CameraMode::kMicroscope) add("Microscope", Action::kMicroscope, "back");
+    if (is_drawing) add(tr("Drawing"), Action::kDraw, trIn("mode", "off"));
+    if (settings.camera == CameraMode::kEndoscope)
+        add(tr("Endoscope"), Action::kEndoscope, trIn("mode", "back"));
+    if (settings.camera == CameraMode::kMicroscope)
+        add(tr("Microscope"), Action::kMicroscope, trIn("mode", "back"));
     for (const auto& [axis, action] :
          {std::pair(0, Action::kCutX), std::pair(1, Action::kCutY), std::pair(2, Action::kCutZ)})
-        if (settings.cuts[size_t(axis)].is_on) add("Cut " + keyLabelOf(action) + " on", action, "off");
+        if (settings.cuts[size_t(axis)].is_on)
+            add(tr("Cut {1} on", {keyLabelOf(action)}), action, trIn("mode", "off"));
     return modes;
 }
 
@@ -188,16 +223,16 @@ std::vector<HudRow> hintRows() {
         for (const Action action : actions) text += (text.empty() ? "" : " ") + keyLabelOf(action);
         return text;
     };
-    return {{"Mouse", "tool"},
-            {"Left, " + keys({Action::kMill}), "mill"},
-            {"Shift+left, " + keys({Action::kAddMaterial}), "add material"},
-            {"Right, " + keys({Action::kTurnTool}), "turn the tool"},
-            {"Wheel, " + keys({Action::kToolDeeper, Action::kToolNearer}), "deeper, nearer"},
-            {"Middle", "orbit"},
-            {keys({Action::kClutch}) + " held", "mouse for the camera"},
-            {keys({Action::kHoldTool}), "let go"},
-            {keys({Action::kPanel}), "control panel"},
-            {keys({Action::kHelp}), "all keys"}};
+    return {{tr("Mouse"), tr("tool")},
+            {tr("Left, {1}", {keys({Action::kMill})}), tr("mill")},
+            {tr("Shift+left, {1}", {keys({Action::kAddMaterial})}), tr("add material")},
+            {tr("Right, {1}", {keys({Action::kTurnTool})}), tr("turn the tool")},
+            {tr("Wheel, {1}", {keys({Action::kToolDeeper, Action::kToolNearer})}), tr("deeper, nearer")},
+            {tr("Middle"), tr("orbit")},
+            {tr("{1} held", {keys({Action::kClutch})}), tr("mouse for the camera")},
+            {keys({Action::kHoldTool}), tr("let go")},
+            {keys({Action::kPanel}), tr("control panel")},
+            {keys({Action::kHelp}), tr("all keys")}};
 }
 
 KeyGroup groupOf(Action action) {
@@ -228,16 +263,16 @@ std::string_view accuracyOf(Action action) {
 std::string meaningOf(const KeyBinding& binding) {
     const std::string_view accuracy = accuracyOf(binding.action);
     const bool is_preset = !accuracy.empty() && binding.action != Action::kAccuracyScene;
-    return std::string(binding.meaning) + (is_preset ? " " + std::string(accuracy) : "");
+    return shown(binding.meaning) + (is_preset ? " " + std::string(accuracy) : "");
 }
 
 std::string meaningOf(const SignBinding& binding) {
-    return std::string(binding.meaning);
+    return shown(binding.meaning);
 }
 
 std::string keyLabelOf(Action action) {
     const auto binding = std::ranges::find(kKeys, action, &KeyBinding::action);
-    return binding == std::end(kKeys) ? "" : std::string(binding->label);
+    return binding == std::end(kKeys) ? "" : shownKey(binding->label);
 }
 
 std::string withKey(std::string_view text, Action action) {

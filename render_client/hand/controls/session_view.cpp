@@ -4,15 +4,16 @@
 
 #include "common/commands/role_rules.h"
 #include "common/device_messages/device_messages.h"
+#include "render_client/language/language.h"
 #include "render_client/look/hud/figure_text.h"
 
 namespace bonemill {
 namespace {
 
-constexpr char kNoEndedHand[] = "no scripted hand has done all of its script";
+constexpr const char* kNoEndedHand = trMark("no scripted hand has done all of its script");
 
-std::string milledText(const SessionView& session) {
-    return readableText(session.status->removed_mm3(), " mm\u00b3") + " are milled";
+std::string milledVolume(const SessionView& session) {
+    return readableText(session.status->removed_mm3(), " mm\u00b3");
 }
 
 // A checkpoint has the bone as it is when just as much was removed until then.
@@ -27,27 +28,23 @@ bool isAttemptRunning(const SessionView& session) {
     return session.lesson && session.lesson->is_running();
 }
 
-std::string attemptText(const SessionView& session) {
-    return session.lesson->trainee() + "'s attempt";
-}
-
 std::optional<Question> beforeScene(const SessionView& session) {
     std::string lost;
-    if (isAttemptRunning(session)) lost += " " + attemptText(session) + " ends.";
+    if (isAttemptRunning(session)) lost += tr(" {1}'s attempt ends.", {session.lesson->trainee()});
     if (session.status && session.status->removed_mm3() > 0)
-        lost += " " + milledText(session) + " and go with it.";
+        lost += tr(" {1} are milled and go with it.", {milledVolume(session)});
     if (lost.empty()) return std::nullopt;
-    return Question{"Change the exercise?" + lost, "Change"};
+    return Question{tr("Change the exercise?") + lost, tr("Change")};
 }
 
 std::optional<Question> beforeOtherBone(const topics::Command& command, const SessionView& session) {
     if (!hasUnsavedWork(session)) return std::nullopt;
     const bool is_checkpoint = command.has_restore_checkpoint();
-    const std::string what = is_checkpoint
-                                 ? "Back to checkpoint " + std::to_string(command.restore_checkpoint()) + "?"
-                                 : "Put the bone back?";
-    return Question{.text = what + " " + milledText(session) + " and in no checkpoint.",
-                    .yes = is_checkpoint ? "Go back" : "Put back",
+    const std::string what =
+        is_checkpoint ? tr("Back to checkpoint {1}?", {std::to_string(command.restore_checkpoint())})
+                      : tr("Put the bone back?");
+    return Question{.text = tr("{1} {2} are milled and in no checkpoint.", {what, milledVolume(session)}),
+                    .yes = is_checkpoint ? tr("Go back") : tr("Put back"),
                     .offers_checkpoint = true};
 }
 
@@ -55,12 +52,12 @@ std::optional<Question> beforeCommand(const topics::Command& command, const Sess
     if (command.has_choose_scene()) return beforeScene(session);
     if (command.has_start_attempt()) {
         if (!isAttemptRunning(session)) return std::nullopt;
-        return Question{
-            "End " + attemptText(session) + "? " + command.start_attempt() + " begins on whole bone.",
-            "Begin anew"};
+        return Question{tr("End {1}'s attempt? {2} begins on whole bone.",
+                           {session.lesson->trainee(), command.start_attempt()}),
+                        tr("Begin anew")};
     }
     if (command.has_erase_remark() && command.erase_remark() == 0)
-        return Question{"Erase all notes and strokes, for everybody?", "Erase"};
+        return Question{tr("Erase all notes and strokes, for everybody?"), tr("Erase")};
     const bool is_work_lost = command.begin_again() && isTakenOver(session);  // a script does its own again
     if (command.reset_volume() || command.has_restore_checkpoint() || is_work_lost)
         return beforeOtherBone(command, session);
@@ -85,7 +82,7 @@ CommandOrReason pauseOrGoOn(const SessionView& session) {
 // Each step of speed is a doubling, from where it stands.
 CommandOrReason orderReplay(Action action, const SessionView& session) {
     constexpr double kStepS = 5, kSlowest = 0.125, kFastest = 16;
-    if (!isReplay(session)) return refuse("This is no replay of a recorded session");
+    if (!isReplay(session)) return refuse(tr("This is no replay of a recorded session"));
     topics::Command command;
     topics::ReplayOrder& order = *command.mutable_replay();
     const double now_s = session.status->session_s(), speed = session.status->replay().speed();
@@ -110,13 +107,13 @@ CommandOrReason orderReplay(Action action, const SessionView& session) {
 
 CommandOrReason backToLastCheckpoint(const SessionView& session) {
     if (!session.status || session.status->checkpoints().empty())
-        return refuse("there is no checkpoint yet: " + keyLabelOf(Action::kSaveCheckpoint) + " saves one");
+        return refuse(tr("there is no checkpoint yet: {1} saves one", {keyLabelOf(Action::kSaveCheckpoint)}));
     return order(&topics::Command::set_restore_checkpoint, session.status->checkpoints().rbegin()->id());
 }
 
 CommandOrReason nextTool(const SessionView& session) {
     const uint32_t count = session.info ? uint32_t(session.info->tool_names_size()) : 0;
-    if (count < 2) return refuse("the scene has one tool only");
+    if (count < 2) return refuse(tr("the scene has one tool only"));
     return order(&topics::Command::set_select_tool, (session.info->tool_index() + 1) % count);
 }
 
@@ -133,16 +130,16 @@ CommandOrReason nextScene(const SessionView& session) {
         command.set_choose_scene(scene.id());
         return {command, ""};
     }
-    return refuse("there is no other scene to choose");
+    return refuse(tr("there is no other scene to choose"));
 }
 
 CommandOrReason stopAttempt(const SessionView& session) {
-    if (!session.lesson || !session.lesson->is_running()) return refuse("no attempt is under way");
+    if (!session.lesson || !session.lesson->is_running()) return refuse(tr("no attempt is under way"));
     return order(&topics::Command::set_stop_attempt, true);
 }
 
 CommandOrReason beginAgain(const SessionView& session) {
-    if (!hasHandEnded(session) && !isTakenOver(session)) return refuse(kNoEndedHand);
+    if (!hasHandEnded(session) && !isTakenOver(session)) return refuse(tr(kNoEndedHand));
     return order(&topics::Command::set_begin_again, true);
 }
 
@@ -198,9 +195,10 @@ std::optional<Question> questionBefore(const Deed& deed, const SessionView& sess
             return beforeCommand(deed.command, session);
         case Deed::Kind::kNextTrainee:
             if (!isAttemptRunning(session)) return std::nullopt;
-            return Question{"Next trainee? " + attemptText(session) + " ends.", "End it"};
+            return Question{tr("Next trainee? {1}'s attempt ends.", {session.lesson->trainee()}),
+                            tr("End it")};
         case Deed::Kind::kQuit:
-            return Question{"Close this viewer?", "Close"};
+            return Question{tr("Close this viewer?"), tr("Close")};
     }
     return std::nullopt;
 }
@@ -210,8 +208,8 @@ bool wantsCheckpointBefore(const Deed& deed, const SessionView& session) {
 }
 
 std::string whyNotCommand(const SessionView& session) {
-    if (!mayOrderAnything(session.role)) return "A viewer only looks: start with --role operator";
-    if (!session.has_server) return "There is no server";
+    if (!mayOrderAnything(session.role)) return tr("A viewer only looks: start with --role operator");
+    if (!session.has_server) return tr("There is no server");
     return "";
 }
 
@@ -234,32 +232,33 @@ bool isTakenOver(const SessionView& session) {
 
 std::string whyNotTakeOver(const SessionView& session) {
     if (const std::string why_not = whyNotCommand(session); !why_not.empty()) return why_not;
-    if (!mayHoldTool(session.role)) return "An examiner leaves the tool to others";
-    return hasHandEnded(session) ? "" : kNoEndedHand;
+    if (!mayHoldTool(session.role)) return tr("An examiner leaves the tool to others");
+    return hasHandEnded(session) ? "" : tr(kNoEndedHand);
 }
 
 std::string whyNotHold(const SessionView& session) {
     const std::string why_not = whyNotCommand(session);
     if (!why_not.empty()) return why_not;
-    if (isReplay(session)) return "This is a replay: nobody holds its tool";
-    if (!mayHoldTool(session.role)) return "An examiner leaves the tool to others";
+    if (isReplay(session)) return tr("This is a replay: nobody holds its tool");
+    if (!mayHoldTool(session.role)) return tr("An examiner leaves the tool to others");
     for (const topics::Viewer& other : session.others)
         if (other.is_holding())
-            return (other.name().empty() ? "Another viewer" : other.name()) + " holds the tool";
+            return other.name().empty() ? tr("Another viewer holds the tool")
+                                        : tr("{1} holds the tool", {other.name()});
     if (session.status && session.status->has_device() && !isHeldByMouse(session))
-        return session.status->device().name() +
-               " holds the tool: device_daemon --device pointer gives it to the mouse";
+        return tr("{1} holds the tool: device_daemon --device pointer gives it to the mouse",
+                  {session.status->device().name()});
     return "";
 }
 
 std::string whyNotPoint(const SessionView& session) {
     if (mayPoint(session.role)) return "";
-    return "Only an instructor points: start with --role instructor";
+    return tr("Only an instructor points: start with --role instructor");
 }
 
 std::string whyNotEndSession(const SessionView& session) {
     if (!mayOrder(session.role, topics::Command::kShutDown))
-        return "Only an instructor ends the session: start with --role instructor";
+        return tr("Only an instructor ends the session: start with --role instructor");
     return whyNotCommand(session);
 }
 
@@ -268,7 +267,7 @@ CommandOrReason commandOf(Action action, const SessionView& session) {
     if (!asked.command && asked.why_not.empty()) return asked;
     if (const std::string why_not = whyNotCommand(session); !why_not.empty()) return refuse(why_not);
     if (asked.command && !mayOrder(session.role, asked.command->action_case()))
-        return refuse("An examiner leaves bone, tool and device to others");
+        return refuse(tr("An examiner leaves bone, tool and device to others"));
     return asked;
 }
 

@@ -13,6 +13,7 @@
 
 #include "proto/topics.pb.h"
 #include "render_client/hand/controls/key_table.h"
+#include "render_client/language/language.h"
 #include "render_client/look/hud/conditions.h"
 
 namespace bonemill {
@@ -110,7 +111,7 @@ bool isSame(const Deed& a, const Deed& b);
 struct Question {
     std::string text;  // UTF-8, with what would be lost
     std::string yes;   // labels of the answers
-    std::string no = "Stay";
+    std::string no = tr("Stay");
     bool offers_checkpoint = false;  // a checkpoint keeps what would be lost
 };
 

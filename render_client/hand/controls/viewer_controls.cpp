@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "render_client/language/language.h"
+
 namespace bonemill {
 namespace {
 
@@ -106,7 +108,7 @@ void ViewerControls::passOver(const MouseMoveEvent& event) {
 
 void ViewerControls::askForRemoval(const PixelPoint& at, const SessionView& session, Wishes& wishes) const {
     std::string why_not = whyNotCommand(session);
-    if (why_not.empty() && !isReplay(session)) why_not = "This is no replay of a recorded session";
+    if (why_not.empty() && !isReplay(session)) why_not = tr("This is no replay of a recorded session");
     if (why_not.empty()) why_not = whyNoPlace();
     if (why_not.empty())
         wishes.removal_at = at;
@@ -117,8 +119,8 @@ void ViewerControls::askForRemoval(const PixelPoint& at, const SessionView& sess
 void ViewerControls::switchHold(const SessionView& session, Wishes& wishes) {
     if (hold_.isHolding()) {
         hold_.letGo();
-        wishes.notice = HudNotice{"The tool is let go: " + keyLabelOf(Action::kHoldTool) + " takes it again",
-                                  HudTone::kPlain};
+        wishes.notice = HudNotice{
+            tr("The tool is let go: {1} takes it again", {keyLabelOf(Action::kHoldTool)}), HudTone::kPlain};
         return;
     }
     if (whyNotTakeOver(session).empty())
@@ -171,7 +173,7 @@ void ViewerControls::writeNote(const SessionView& session, Wishes& wishes) {
 // A pixel of a stereo picture stands for no one place (RenderScene::pick).
 std::string ViewerControls::whyNoPlace() const {
     if (settings_.stereo == StereoMode::kOff) return "";
-    return "No place can be shown in stereo: " + keyLabelOf(Action::kStereo) + " switches it off";
+    return tr("No place can be shown in stereo: {1} switches it off", {keyLabelOf(Action::kStereo)});
 }
 
 void ViewerControls::act(Action action, const SessionView& session, Wishes& wishes) {
@@ -192,7 +194,8 @@ void ViewerControls::act(Action action, const SessionView& session, Wishes& wish
             return switchHold(session, wishes);
         case Action::kTrainee:
             is_panel_open_ = wishes.type_trainee = session.lesson != nullptr;
-            if (!session.lesson) wishes.notice = HudNotice{"This server gives no lesson", HudTone::kWarning};
+            if (!session.lesson)
+                wishes.notice = HudNotice{tr("This server gives no lesson"), HudTone::kWarning};
             return;
         case Action::kFullScreen:
             wishes.full_screen = true;

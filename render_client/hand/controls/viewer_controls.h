@@ -36,6 +36,7 @@ struct Wishes {
     std::string invite_as;                      // the person's role
     std::string copy;                           // into the clipboard; empty: nothing
     std::string open_file;                      // by the desktop's program for it; empty: none
+    std::string language;                       // to be spoken from now on; empty: as before
     bool type_trainee = false;                  // in the panel
     bool next_trainee = false;                  // in the panel: another name
     bool write_note = false;                    // in the panel

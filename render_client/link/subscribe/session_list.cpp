@@ -3,6 +3,7 @@
 #include <ctime>
 
 #include "common/base/units.h"
+#include "render_client/language/language.h"
 #include "render_client/link/subscribe/payloads.h"
 
 namespace bonemill {
@@ -35,8 +36,9 @@ std::string sessionText(const ListedSession& session) {
     std::tm local{};
     char since[32] = "?";
     if (localtime_r(&start, &local)) std::strftime(since, sizeof since, "%H:%M:%S", &local);
-    return "session " + std::to_string(session.session) + ": " + session.scene + " since " + since +
-           (session.host.empty() ? "" : " on " + session.host);
+    const std::string number = std::to_string(session.session);
+    if (session.host.empty()) return tr("session {1}: {2} since {3}", {number, session.scene, since});
+    return tr("session {1}: {2} since {3} on {4}", {number, session.scene, since, session.host});
 }
 
 }  // namespace bonemill

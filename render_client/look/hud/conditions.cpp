@@ -5,12 +5,14 @@
 #include <sstream>
 
 #include "common/device_messages/device_messages.h"
+#include "render_client/language/language.h"
 #include "render_client/look/hud/device_lines.h"
 
 namespace bonemill {
 namespace {
 
-constexpr char kLessDetail[] = "A little less detail is felt: the computer is busy. You can go on.";
+constexpr const char* kLessDetail =
+    trMark("A little less detail is felt: the computer is busy. You can go on.");
 
 constexpr struct {
     const char* name;
@@ -18,46 +20,59 @@ constexpr struct {
     HudTone tone;
 } kWords[] = {
     {"overrun",
-     "The session's computer, which has the handle, was too slow for a moment: the force may have been "
-     "rough. Close other programs on it.",
+     trMark(
+         "The session's computer, which has the handle, was too slow for a moment: the force may have been "
+         "rough. Close other programs on it."),
      HudTone::kWarning},
     {"stale_device",
-     "The handle was not heard of for a moment, and its force went off. If it happens again, check its "
-     "cable.",
+     trMark(
+         "The handle was not heard of for a moment, and its force went off. If it happens again, check its "
+         "cable."),
      HudTone::kAlarm},
     {"bad_device_pose",
-     "The handle reported an impossible place, which was ignored. If it happens again, tell your instructor.",
+     trMark("The handle reported an impossible place, which was ignored. If it happens again, tell your "
+            "instructor."),
      HudTone::kAlarm},
-    {"solve", "The force faded for a moment: the computer could not calculate it. It comes back by itself.",
+    {"solve",
+     trMark("The force faded: the computer could not calculate it. Lift the tool off the bone until you feel "
+            "it again."),
      HudTone::kAlarm},
-    {"motion_clamped", "The tool moved no faster than its limit.", HudTone::kPlain},
-    {"force_clamped", "The force was kept within the hand's limit.", HudTone::kPlain},
+    {"motion_clamped", trMark("Your hand was faster than the tool may be: it came behind. Move more slowly."),
+     HudTone::kPlain},
+    {"force_clamped",
+     trMark("You pressed harder than the handle can push back: less was felt than there is. Press less."),
+     HudTone::kPlain},
     {"shell_overflow",
-     "A part of the milled surface cannot be felt: the memory for it is full. Trust the picture there.",
+     trMark(
+         "A part of the milled surface cannot be felt: the memory for it is full. Trust the picture there."),
      HudTone::kWarning},
-    {"milling_cut_short", "Bone was removed a moment late: it was much at once. You can go on.",
+    {"milling_cut_short", trMark("Bone was removed a moment late: it was much at once. You can go on."),
      HudTone::kPlain},
     {"coarser_shell", kLessDetail, HudTone::kPlain},
     {"volume_full",
-     "The computer's memory is full: some bone was not removed. End the attempt and tell your instructor.",
+     trMark("The computer's memory is full: some bone was not removed. End the attempt and tell your "
+            "instructor."),
      HudTone::kAlarm},
-    {"stalled", "The force was a little off, and corrects itself. You can go on.", HudTone::kPlain},
+    {"stalled", trMark("The force was a little off, and corrects itself. You can go on."), HudTone::kPlain},
     {"implausible_device",
-     "The handle sent impossible data, which were ignored. If it happens again, tell your instructor.",
+     trMark(
+         "The handle sent impossible data, which were ignored. If it happens again, tell your instructor."),
      HudTone::kAlarm},
-    {"early_samples", "The computer cannot keep up with the handle's signals. You can go on.",
+    {"early_samples", trMark("The computer cannot keep up with the handle's signals. You can go on."),
      HudTone::kPlain},
     {"fewer_samples", kLessDetail, HudTone::kPlain},
     {"as_balanced",
-     "The computer is too slow for the chosen accuracy, and takes 'balanced': a little less detail is "
-     "felt. You can go on.",
+     trMark("The computer is too slow for the chosen accuracy, and takes 'balanced': a little less detail is "
+            "felt. You can go on."),
      HudTone::kPlain},
     {"as_fast",
-     "The computer is too slow for the chosen accuracy, and takes 'fast': a little less detail is felt. "
-     "You can go on.",
+     trMark(
+         "The computer is too slow for the chosen accuracy, and takes 'fast': a little less detail is felt. "
+         "You can go on."),
      HudTone::kPlain},
     {"not_recorded",
-     "Not all of the session is recorded: the disk is full or slow. Tell your instructor before you go on.",
+     trMark("Not all of the session is recorded: the disk is full or slow. Tell your instructor before you "
+            "go on."),
      HudTone::kAlarm},
 };
 
@@ -65,8 +80,8 @@ constexpr struct {
 Condition wordsOf(const std::string& fault) {
     const std::string name = fault == "contact_overflow" ? "overrun" : fault;
     const auto known = std::ranges::find_if(kWords, [&](const auto& words) { return words.name == name; });
-    if (known != std::end(kWords)) return {name, known->text, known->tone, true, false};
-    return {name, "The server reports: " + name + ".", HudTone::kWarning, true, false};
+    if (known != std::end(kWords)) return {name, tr(known->text), known->tone, true, false};
+    return {name, tr("The server reports: {1}.", {name}), HudTone::kWarning, true, false};
 }
 
 constexpr char kStaleDevice[] = "stale_device";
@@ -74,11 +89,12 @@ constexpr char kStaleDevice[] = "stale_device";
 void addConnection(Connection connection, std::vector<Condition>& conditions) {
     if (connection == Connection::kServerLost)
         conditions.push_back({"server",
-                              "No connection to the session's computer: the picture stands still. Wait, or "
-                              "tell your instructor.",
+                              tr("The picture stands still, for there is no connection; the burr may still "
+                                 "cut. Release the pedal. If it lasts, tell your instructor."),
                               HudTone::kAlarm, true});
     if (connection == Connection::kServerEnded)
-        conditions.push_back({"end", "The session has ended. The next one is shown as soon as it begins."});
+        conditions.push_back(
+            {"end", tr("The session has ended. Wait: the next one is shown here when somebody starts it.")});
 }
 
 // The server latches its faults; only of the device's silence it says also whether it lasts.
@@ -86,7 +102,7 @@ void addTickFaults(const topics::Status& status, std::vector<Condition>& conditi
     const bool is_stale = status.device_stale() && status.ticks() > 0;
     if (is_stale)
         conditions.push_back({kStaleDevice,
-                              "The handle sends nothing: there is no force. Check its cable and switch.",
+                              tr("The handle sends nothing: there is no force. Check its cable and switch."),
                               HudTone::kAlarm, true});
     if (status.faults() == 0) return;
     for (const Condition& fault : faultWords(status.fault_text()))
@@ -105,7 +121,7 @@ void addDevice(const HudInput& input, std::vector<Condition>& conditions) {
     if (const auto wait = deviceWait(device, tool); wait && !makes_way)
         conditions.push_back({"wait", wait->text, wait->tone});
     if (device.script().has_ended() && !input.status->has_replay())
-        conditions.push_back({"script", "The demonstration by the scripted hand has ended."});
+        conditions.push_back({"script", tr("The automatic demonstration has ended.")});
 }
 
 // Who presses the pedal wonders.
@@ -113,10 +129,11 @@ void addPause(const HudInput& input, std::vector<Condition>& conditions) {
     const bool is_asked = input.tool && input.tool->buttons() != 0;
     if (is_asked && input.status->is_milling_paused())
         conditions.push_back({"paused",
-                              "Milling is paused. Press P to go on, or Start to begin the next attempt.",
+                              tr("Milling is paused. Press P to go on, or Start to begin the next attempt."),
                               HudTone::kWarning});
     else if (is_asked && input.tool->waits_for_release())
-        conditions.push_back({"release", "The bone is whole again. Release the pedal: pressed anew, it cuts.",
+        conditions.push_back({"release",
+                              tr("The bone is whole again. Release the pedal: pressed anew, it cuts."),
                               HudTone::kWarning});
 }
 
@@ -181,7 +198,7 @@ std::vector<HudNotice> FaultList::said(Clock::time_point now) const {
     if (are_all) return said;
     float most = 0;
     for (size_t i = in_full; i < visible.size(); ++i) most = std::max(most, opacity(*visible[i], now));
-    said.push_back({"and " + std::to_string(visible.size() - in_full) + " more, listed in the panel",
+    said.push_back({tr("and {1} more, listed in the panel", {std::to_string(visible.size() - in_full)}),
                     HudTone::kWarning, most});
     return said;
 }
@@ -210,11 +227,12 @@ std::vector<Condition> conditionsOf(const HudInput& input) {
     std::vector<Condition> conditions;
     addConnection(input.connection, conditions);
     if (input.other_server)
-        conditions.push_back({"other_server",
-                              "Two computers run this session, the other with the scene '" +
-                                  *input.other_server +
-                                  "'. You see the first; ask your instructor to end one.",
-                              HudTone::kWarning});
+        conditions.push_back(
+            {"other_server",
+             tr("Two computers run this session, the other with the scene '{1}'. You see the "
+                "first; ask your instructor to end one.",
+                {*input.other_server}),
+             HudTone::kWarning});
     const bool is_there = input.connection == Connection::kReceiving || input.connection == Connection::kLive;
     if (!input.status || !is_there) return conditions;  // what a server said last is no news of it
     addDevice(input, conditions);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/device_messages/device_messages.h"
+#include "render_client/language/language.h"
 #include "render_client/look/hud/figure_text.h"
 
 namespace bonemill {
@@ -31,7 +32,7 @@ HudTone toneOf(SafetyState state) {
 }
 
 std::string causeOf(StopCause cause, uint32_t fault_code) {
-    const std::string text = nameOf(cause);
+    const std::string text = tr(nameOf(cause));
     return cause == StopCause::kDeviceFault ? text + " " + std::to_string(fault_code) : text;
 }
 
@@ -41,39 +42,40 @@ SafetyState stateOf(const topics::Device& device, const topics::ToolState* tool)
 
 std::string shownName(const topics::Device& device) {
     const std::string name = shortenedText(device.name(), kLongestDeviceName);
-    return name.empty() ? "Device" : name;
+    return name.empty() ? tr("Device") : name;
 }
 
 // After a pause a switch that is still held counts as pressed no more.
 std::string theDevice(const topics::Device& device) {
-    return "The " + (device.name().empty() ? std::string("device") : device.name());
+    return device.name().empty() ? tr("The device") : tr("The {1}", {device.name()});
 }
 
-const char* stopVerb(SafetyState state) {
+// {1} is theDevice().
+const char* stopText(SafetyState state) {
     switch (state) {
         case SafetyState::kDisconnected:
-            return " is not connected";
+            return trMark("{1} is not connected");
         case SafetyState::kEmergencyStop:
-            return " is in emergency stop";
+            return trMark("{1} is in emergency stop");
         case SafetyState::kFault:
-            return " is out of order";
+            return trMark("{1} is out of order");
         default:
-            return " has stopped";
+            return trMark("{1} has stopped");
     }
 }
 
 // A mouse has neither cable nor motors.
 std::string adviceFor(const topics::Device& device, StopCause cause) {
     if (cause == StopCause::kNone) return "";
-    if (device.kind() == uint32_t(DeviceKind::kPointer)) return " Reset it, let it go and take it again.";
-    return std::string(" ") + whatToDo(cause);
+    if (device.kind() == uint32_t(DeviceKind::kPointer)) return tr(" Reset it, let it go and take it again.");
+    return std::string(" ") + tr(whatToDo(cause));
 }
 
 const char* whatItWaitsFor(SafetyState state, const topics::Device& device) {
     const bool has_switch = device.abilities() & kAbilityEnablingSwitch;
-    if (has_switch && !device.is_enabled()) return "hold the enabling switch";
-    if (device.force_waits()) return "move the tool away from the bone";
-    return has_switch && state == SafetyState::kPaused ? "let the switch go and press it again" : nullptr;
+    if (has_switch && !device.is_enabled()) return tr("hold the enabling switch");
+    if (device.force_waits()) return tr("move the tool away from the bone");
+    return has_switch && state == SafetyState::kPaused ? tr("let the switch go and press it again") : nullptr;
 }
 
 // A device that could not hold the scene's coupling quietly gets a softer one
@@ -85,7 +87,7 @@ std::string stiffnessText(const topics::Device& device) {
                                    : figureText(share * 100, share < 0.1 ? 1 : 0, " %");
     };
     if (!(device.coupling_share() > 0) && !(device.rotation_share() > 0)) return kNoNumber;
-    return percent(device.coupling_share()) + ", turning " + percent(device.rotation_share());
+    return tr("{1}, turning {2}", {percent(device.coupling_share()), percent(device.rotation_share())});
 }
 
 }  // namespace
@@ -107,9 +109,10 @@ double burrLoadOf(const topics::ToolState& tool) {
 
 std::vector<HudRow> deviceRows(const topics::Device& device, const topics::ToolState* tool) {
     const SafetyState state = stateOf(device, tool);
-    return {{shownName(device), std::string(nameOf(state)) + (device.is_simulated() ? ", simulated" : ""),
+    return {{shownName(device),
+             device.is_simulated() ? tr("{1}, simulated", {tr(nameOf(state))}) : tr(nameOf(state)),
              toneOf(state)},
-            {"Stiffness", stiffnessText(device)}};
+            {tr("Stiffness"), stiffnessText(device)}};
 }
 
 std::optional<HudNotice> deviceStop(const topics::Device& device, const topics::ToolState* tool) {
@@ -118,8 +121,8 @@ std::optional<HudNotice> deviceStop(const topics::Device& device, const topics::
     const auto cause = StopCause(tool ? tool->stop_cause() : device.stop_cause());
     const std::string why = causeOf(cause, device.fault_code());
     const bool is_mouse = device.kind() == uint32_t(DeviceKind::kPointer);
-    std::string text = theDevice(device) + stopVerb(state);
-    if (cause != StopCause::kNone && why != nameOf(state) && !is_mouse) text += ": " + why;
+    std::string text = tr(stopText(state), {theDevice(device)});
+    if (cause != StopCause::kNone && why != tr(nameOf(state)) && !is_mouse) text += ": " + why;
     return HudNotice{text + "." + adviceFor(device, cause), HudTone::kAlarm};
 }
 
@@ -128,7 +131,7 @@ std::optional<HudNotice> deviceWait(const topics::Device& device, const topics::
     if (state != SafetyState::kReady && state != SafetyState::kPaused) return std::nullopt;
     const char* const what = whatItWaitsFor(state, device);
     if (!what) return std::nullopt;
-    return HudNotice{theDevice(device) + " is " + nameOf(state) + ": " + what + ".", HudTone::kWarning};
+    return HudNotice{tr("{1} is {2}: {3}.", {theDevice(device), tr(nameOf(state)), what}), HudTone::kWarning};
 }
 
 }  // namespace bonemill

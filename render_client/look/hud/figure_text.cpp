@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "render_client/language/language.h"
+
 namespace bonemill {
 namespace {
 
@@ -25,26 +27,28 @@ std::vector<std::string> splitSigns(const std::string& utf8) {
 std::string roleName(topics::Viewer::Role role) {
     switch (role) {
         case topics::Viewer::VIEWER:
-            return "viewer";
+            return trMark("viewer");
         case topics::Viewer::OPERATOR:
-            return "operator";
+            return trMark("operator");
         case topics::Viewer::INSTRUCTOR:
-            return "instructor";
+            return trMark("instructor");
         case topics::Viewer::EXAMINER:
-            return "examiner";
+            return trMark("examiner");
         default:
             return "?";
     }
 }
 
 std::string watcherName(const std::string& name) {
-    return name.empty() ? "(no name)" : name;
+    return name.empty() ? tr("(no name)") : name;
 }
 
 std::string watcherText(const topics::Viewer& watcher) {
-    return roleName(watcher.role()) + (watcher.link().empty() ? "" : " by " + watcher.link()) + ", " +
-           figureText(watcher.frame_rate_hz(), 0, " Hz") + (watcher.is_holding() ? ", holds the tool" : "") +
-           (watcher.is_complete() ? "" : ", incomplete");
+    const std::string role = tr(roleName(watcher.role()).c_str());
+    return (watcher.link().empty() ? role : tr("{1} by {2}", {role, watcher.link()})) + ", " +
+           figureText(watcher.frame_rate_hz(), 0, " Hz") +
+           (watcher.is_holding() ? tr(", holds the tool") : "") +
+           (watcher.is_complete() ? "" : tr(", incomplete"));
 }
 
 std::string clockText(double seconds) {

@@ -7,12 +7,12 @@
 #include <string_view>
 
 #include "common/base/units.h"
+#include "render_client/language/language.h"
 #include "render_client/look/hud/figure_text.h"
 
 namespace bonemill {
 namespace {
 
-constexpr std::string_view kWatchersTitle = "Watching";
 constexpr float kFiguresWidth = 12.5f, kWatchersWidth = 20,
                 kWidestBanner = 48;  // of the text within, in units of its height
 
@@ -167,7 +167,7 @@ void layOutWatchers(HudCanvas& canvas, const std::vector<HudRow>& watchers, cons
     canvas.box(left - space.padding, top, inner + 2 * space.padding,
                space.line * float(watchers.size() + 1) + space.padding, space.rounding, kHudPanelColour);
     float base = top + space.padding * 0.7f + em;
-    canvas.text(left, base, kWatchersTitle, FontStyle::kBold, kHudTitleColour);
+    canvas.text(left, base, tr("Watching"), FontStyle::kBold, kHudTitleColour);
     for (const HudRow& row : watchers) {
         base += space.line;
         const std::string value = canvas.fitted(row.value, FontStyle::kPlain, inner * 0.75f);

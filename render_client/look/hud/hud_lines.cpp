@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/base/units.h"
+#include "render_client/language/language.h"
 #include "render_client/look/hud/conditions.h"
 #include "render_client/look/hud/device_lines.h"
 #include "render_client/look/hud/effect_lines.h"
@@ -23,10 +24,10 @@ void append(std::vector<HudRow> more, std::vector<HudRow>& rows) {
 
 void addLoopRows(const topics::Status& status, std::vector<HudRow>& rows) {
     const bool has_ticked = status.ticks() > 0;
-    rows.push_back({"Loop", has_ticked ? figureText(status.rate_hz(), 1, " Hz") : kNoNumber});
-    rows.push_back({"Tick p50 / p99", has_ticked ? readableText(status.tick_p50_us(), "") + " / " +
-                                                       readableText(status.tick_p99_us(), " \u00b5s")
-                                                 : kNoNumber});
+    rows.push_back({tr("Loop"), has_ticked ? figureText(status.rate_hz(), 1, " Hz") : kNoNumber});
+    rows.push_back({tr("Tick p50 / p99"), has_ticked ? readableText(status.tick_p50_us(), "") + " / " +
+                                                           readableText(status.tick_p99_us(), " \u00b5s")
+                                                     : kNoNumber});
 }
 
 void addAccuracyRows(const topics::Status& status, std::vector<HudRow>& rows) {
@@ -36,23 +37,24 @@ void addAccuracyRows(const topics::Status& status, std::vector<HudRow>& rows) {
         lines.resize(kMaxAccuracyLines);
         lines.back() += "\u2026";
     }
-    std::string label = "Accuracy";
+    std::string label = tr("Accuracy");
     for (const std::string& line : lines) rows.push_back({std::exchange(label, ""), line});
-    rows.push_back({"Force error", status.has_accuracy_error()
-                                       ? readableText(status.force_error_percent(), " %") + ", " +
-                                             readableText(status.force_direction_error_deg(), "\u00b0")
-                                       : "not measured"});
+    rows.push_back({tr("Force error"), status.has_accuracy_error()
+                                           ? readableText(status.force_error_percent(), " %") + ", " +
+                                                 readableText(status.force_direction_error_deg(), "\u00b0")
+                                           : tr("not measured")});
 }
 
 void addContactRows(const topics::ToolState& tool, std::vector<HudRow>& rows) {
     const auto& torque = tool.torque_nm();
-    rows.push_back({"Torque", lengthText({torque.data(), size_t(torque.size())}, kPerMilli, " N\u00b7mm")});
-    rows.push_back({"Contacts", std::to_string(tool.contacts())});
+    rows.push_back(
+        {tr("Torque"), lengthText({torque.data(), size_t(torque.size())}, kPerMilli, " N\u00b7mm")});
+    rows.push_back({tr("Contacts"), std::to_string(tool.contacts())});
 }
 
 HudRow faultRow(size_t count) {
-    if (count == 0) return {"Faults", "none", HudTone::kGood};
-    return {"Faults", std::to_string(count) + ", see the panel", HudTone::kWarning};
+    if (count == 0) return {tr("Faults"), trIn("faults", "none"), HudTone::kGood};
+    return {tr("Faults"), tr("{1}, see the panel", {std::to_string(count)}), HudTone::kWarning};
 }
 
 // The lines that are folded as a rule: how well the session runs, and what of the force and the effects does
@@ -70,8 +72,8 @@ std::vector<HudRow> detailRows(const HudInput& input) {
     if (input.status && input.status->has_device())
         append(deviceRows(input.status->device(), input.tool ? &*input.tool : nullptr), rows);
     rows.push_back(faultRow(input.fault_count));
-    rows.push_back({"Watching", std::to_string(input.watchers.size())});
-    if (input.frame_rate_hz > 0) rows.push_back({"Pictures", figureText(input.frame_rate_hz, 0, " Hz")});
+    rows.push_back({tr("Watching"), std::to_string(input.watchers.size())});
+    if (input.frame_rate_hz > 0) rows.push_back({tr("Pictures"), figureText(input.frame_rate_hz, 0, " Hz")});
     return rows;
 }
 
@@ -80,7 +82,7 @@ constexpr int kMaxWatchers = 6;  // rows of the list
 
 void addToolNameRow(const topics::SceneInfo& info, std::vector<HudRow>& rows) {
     if (info.tool_names_size() < 2 || info.tool_index() >= uint32_t(info.tool_names_size())) return;
-    rows.push_back({"Tool", shortenedText(info.tool_names(int(info.tool_index())), kLongestName)});
+    rows.push_back({tr("Tool"), shortenedText(info.tool_names(int(info.tool_index())), kLongestName)});
 }
 
 HudRow watcherRow(const topics::Viewer& watcher) {
@@ -93,36 +95,36 @@ std::vector<HudRow> watcherRows(const std::vector<topics::Viewer>& watchers) {
     const int shown = count <= kMaxWatchers ? count : kMaxWatchers - 1;
     std::vector<HudRow> rows;
     for (int i = 0; i < shown; ++i) rows.push_back(watcherRow(watchers[size_t(i)]));
-    if (shown < count) rows.push_back({"and " + std::to_string(count - shown) + " more", ""});
+    if (shown < count) rows.push_back({tr("and {1} more", {std::to_string(count - shown)}), ""});
     return rows;
 }
 
 // The worst that keeps the burr from milling comes first.
 HudRow burrRow(const topics::ToolState& tool, bool is_paused, uint32_t events) {
-    if (events & topics::EffectState::SPINDLE_STALLED) return {"Burr", "stalled", HudTone::kAlarm};
-    if (is_paused) return {"Burr", "paused", HudTone::kWarning};
+    if (events & topics::EffectState::SPINDLE_STALLED) return {tr("Burr"), tr("stalled"), HudTone::kAlarm};
+    if (is_paused) return {tr("Burr"), tr("paused"), HudTone::kWarning};
     if (tool.waits_for_release() && tool.buttons() != 0)
-        return {"Burr", "release the pedal", HudTone::kWarning};
+        return {tr("Burr"), tr("release the pedal"), HudTone::kWarning};
     switch (burrWorkOf(tool)) {
         case BurrWork::kRemoving:
-            return {"Burr", "removing", HudTone::kWarning};
+            return {tr("Burr"), tr("removing"), HudTone::kWarning};
         case BurrWork::kTurning:
-            return {"Burr", "turning"};
+            return {tr("Burr"), tr("turning")};
         case BurrWork::kAdding:
-            return {"Burr", "adding", HudTone::kWarning};
+            return {tr("Burr"), tr("adding"), HudTone::kWarning};
         case BurrWork::kIdle:
             break;
     }
-    return {"Burr", "idle"};
+    return {tr("Burr"), tr("idle")};
 }
 
 HudRow volumeRow(double removed_mm3) {
-    return {removed_mm3 < 0 ? "Added" : "Removed", readableText(std::abs(removed_mm3), " mm\u00b3")};
+    return {removed_mm3 < 0 ? tr("Added") : tr("Removed"), readableText(std::abs(removed_mm3), " mm\u00b3")};
 }
 
 HudRow comparisonRow(const topics::Comparison& comparison) {
-    if (!comparison.problem().empty()) return {"Other", "none, see panel", HudTone::kWarning};
-    return {"Other", comparison.is_on_its_way() ? "on its way" : clockText(comparison.attempt_s()),
+    if (!comparison.problem().empty()) return {tr("Other"), tr("none, see panel"), HudTone::kWarning};
+    return {tr("Other"), comparison.is_on_its_way() ? tr("on its way") : clockText(comparison.attempt_s()),
             HudTone::kPlain};
 }
 
@@ -132,7 +134,7 @@ std::vector<HudRow> taskRows(const HudInput& input) {
     if (info) addToolNameRow(*info, rows);
     if (input.tool) {
         const auto& force = input.tool->force_n();
-        rows.push_back({"Force", lengthText({force.data(), size_t(force.size())}, 1, " N")});
+        rows.push_back({tr("Force"), lengthText({force.data(), size_t(force.size())}, 1, " N")});
         rows.push_back(burrRow(*input.tool, input.status && input.status->is_milling_paused(), input.events));
     }
     const topics::TaskState* const task =
@@ -144,7 +146,7 @@ std::vector<HudRow> taskRows(const HudInput& input) {
     else if (input.status)
         rows.push_back(volumeRow(input.status->removed_mm3()));
     if (input.status && !input.status->replay().event().empty())
-        rows.push_back({"Moment", input.status->replay().event(), HudTone::kGood});
+        rows.push_back({tr("Moment"), input.status->replay().event(), HudTone::kGood});
     if (input.status && input.status->replay().has_comparison())
         rows.push_back(comparisonRow(input.status->replay().comparison()));
     if (input.tool && input.tool->has_effects())
@@ -155,33 +157,34 @@ std::vector<HudRow> taskRows(const HudInput& input) {
 
 std::string replayText(const topics::Status& status) {
     const topics::Replay& replay = status.replay();
-    const std::string text = "replay, " + clockText(status.session_s());
-    if (replay.is_seeking()) return text + ", seeks";
-    if (!replay.is_playing()) return text + ", paused";
+    const std::string text = tr("replay, {1}", {clockText(status.session_s())});
+    if (replay.is_seeking()) return tr("{1}, seeks", {text});
+    if (!replay.is_playing()) return tr("{1}, paused", {text});
     return replay.speed() == 1 ? text : text + ", " + readableText(replay.speed(), " \u00d7");
 }
 
 std::string liveText(const HudInput& input) {
-    if (!input.status) return "live";
+    if (!input.status) return tr("live");
     if (input.status->has_replay()) return replayText(*input.status);
-    return input.status->ticks() > 0 ? "live, " + clockText(input.status->session_s()) : "waits for a device";
+    return input.status->ticks() > 0 ? tr("live, {1}", {clockText(input.status->session_s())})
+                                     : tr("waits for a device");
 }
 
 std::string stateText(const HudInput& input) {
     switch (input.connection) {
         case Connection::kNoServer:
-            return "waiting for a server";
+            return tr("waiting for a server");
         case Connection::kReceiving: {
-            if (!input.status || input.status->node_count() == 0) return "loading";
+            if (!input.status || input.status->node_count() == 0) return tr("loading");
             const uint64_t percent = 100 * uint64_t(input.node_count) / input.status->node_count();
-            return "loading " + std::to_string(std::min<uint64_t>(percent, 100)) + " %";
+            return tr("loading {1} %", {std::to_string(std::min<uint64_t>(percent, 100))});
         }
         case Connection::kLive:
             return liveText(input);
         case Connection::kServerLost:
-            return "server lost";
+            return tr("server lost");
         case Connection::kServerEnded:
-            return "ended";
+            return tr("ended");
     }
     return "";
 }
@@ -227,22 +230,23 @@ void removeFigures(Hud& hud) {
 
 HudPage waitingPage(const ServerSought& sought) {
     if (!sought.gateway.empty())
-        return {"Waiting for a haptic_server",
-                {{"Gateway", sought.gateway}},
-                {"The gateway hears no server. Whoever started it knows of which session it is."}};
-    HudPage page{
-        "Waiting for a haptic_server",
-        {{"Session", sought.is_any_session ? "the only one there is" : std::to_string(sought.session)},
-         {"Domain", std::to_string(sought.domain)},
-         {"Profile", sought.profile}},
-        {"Is one running? deploy/bonemill start begins a session.",
-         "It must have been started with the same --session, --domain and --profile."}};
+        return {tr("Waiting for a haptic_server"),
+                {{tr("Gateway"), sought.gateway}},
+                {tr("The gateway hears no server. Whoever started it knows of which session it is.")}};
+    HudPage page{tr("Waiting for a haptic_server"),
+                 {{tr("Session"),
+                   sought.is_any_session ? tr("the only one there is") : std::to_string(sought.session)},
+                  {tr("Domain"), std::to_string(sought.domain)},
+                  {tr("Profile"), sought.profile}},
+                 {tr("Is one running? deploy/bonemill start begins a session."),
+                  tr("It must have been started with the same --session, --domain and --profile.")}};
     if (!sought.is_on_lan) {
-        page.lines.push_back("One on another PC is found with --profile lab or classroom only.");
+        page.lines.push_back(tr("One on another PC is found with --profile lab or classroom only."));
         return page;
     }
-    page.rows.push_back({"Interface", sought.interface.empty() ? "chosen by itself" : sought.interface});
-    page.lines.push_back("deploy/check-network says what is wrong between two PCs.");
+    page.rows.push_back(
+        {tr("Interface"), sought.interface.empty() ? tr("chosen by itself") : sought.interface});
+    page.lines.push_back(tr("deploy/check-network says what is wrong between two PCs."));
     return page;
 }
 

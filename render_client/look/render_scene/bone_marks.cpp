@@ -7,6 +7,7 @@
 
 #include "common/base/units.h"
 #include "common/dds/remark_bounds.h"
+#include "render_client/language/language.h"
 #include "render_client/look/hud/effect_lines.h"
 #include "render_client/look/hud/figure_text.h"
 #include "render_client/look/structures/structure_set.h"
@@ -161,7 +162,7 @@ std::string StructureView::nameAlong(const Eigen::Vector3d& from_W, const Eigen:
 }
 
 HudLegend StructureView::legend() const {
-    HudLegend legend{"To the next structure",
+    HudLegend legend{tr("To the next structure"),
                      {},
                      "0 mm",
                      readableText(structures_.largestWarningDistance() * kPerMillimetre, " mm")};

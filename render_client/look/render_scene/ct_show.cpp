@@ -5,6 +5,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "render_client/language/language.h"
 #include "render_client/look/slices/slice_image.h"
 #include "render_client/look/slices/slice_plane.h"
 
@@ -233,16 +234,16 @@ std::vector<HudPane> CtShow::texts(bool are_patients_axes) const {
         HudPane text;
         text.x = float(pane.rect.x), text.y = float(pane.rect.y);
         text.width = float(pane.rect.width), text.height = float(pane.rect.height);
-        text.title = labels.title;
+        text.title = tr(labels.title);
         text.left = labels.left, text.right = labels.right, text.top = labels.top,
         text.bottom = labels.bottom;
         if (window_) {
             text.window = textOf(*window_);
             text.place = millimetres(kAxes[pane.axis], pane.position_W);
             text.is_scrolled = are_scrolled_[pane.axis];
-            if (isLoading(pane_slices_[pane.axis])) text.problem = "loading";
+            if (isLoading(pane_slices_[pane.axis])) text.problem = tr("loading");
         } else {
-            text.problem = "no scan from this server yet";
+            text.problem = tr("no scan from this server yet");
         }
         texts.push_back(std::move(text));
     }

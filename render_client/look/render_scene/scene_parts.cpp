@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/base/units.h"
+#include "render_client/language/language.h"
 #include "render_client/look/hud/figure_text.h"
 #include "render_client/look/render_scene/render_scene.h"
 #include "render_client/look/visual_effects/effect_input.h"
@@ -55,7 +56,7 @@ void RenderScene::paintNames(const FrameView& view, const PictureArea& area, flo
             readableText(std::max(view.clearance->distance, 0.0) * kPerMillimetre, " mm"), false);
     if (view.gap && settings_.show_hud)
         add(view.gap->surface_W + gapRingRadius(view) * view.camera.R_WC.col(0),
-            readableText(view.gap->distance * kPerMillimetre, " mm to the bone"), false);
+            tr("{1} to the bone", {readableText(view.gap->distance * kPerMillimetre, " mm")}), false);
     if (settings_.show_remarks)
         for (const RemarkView::Label& label : remarks_.labels()) add(label.p_W, label.text, false);
     nameMouse(area, labels);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "render_client/language/language.h"
+
 namespace bonemill {
 namespace {
 
@@ -32,11 +34,12 @@ const SliceView kViews[] = {
     {Vector3d::UnitX(), -Vector3d::UnitZ()},
     {Vector3d::UnitX(), Vector3d::UnitY()},
 };
-constexpr SliceLabels kOfPatient[] = {
-    {"Sagittal", "A", "P", "S", "I"}, {"Coronal", "R", "L", "S", "I"}, {"Axial", "R", "L", "A", "P"}};
-constexpr SliceLabels kOfScan[] = {{"Across x", "-y", "+y", "+z", "-z"},
-                                   {"Across y", "-x", "+x", "+z", "-z"},
-                                   {"Across z", "-x", "+x", "-y", "+y"}};
+constexpr SliceLabels kOfPatient[] = {{trMark("Sagittal"), "A", "P", "S", "I"},
+                                      {trMark("Coronal"), "R", "L", "S", "I"},
+                                      {trMark("Axial"), "R", "L", "A", "P"}};
+constexpr SliceLabels kOfScan[] = {{trMark("Across x"), "-y", "+y", "+z", "-z"},
+                                   {trMark("Across y"), "-x", "+x", "+z", "-z"},
+                                   {trMark("Across z"), "-x", "+x", "-y", "+y"}};
 
 // Returns the axis of V that lies most along this one of W.
 Eigen::Index axisInVolume(const Pose& X_WV, size_t axis) {

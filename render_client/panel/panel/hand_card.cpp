@@ -2,6 +2,8 @@
 
 #include <imgui.h>
 
+#include "render_client/language/language.h"
+
 namespace bonemill {
 namespace {
 
@@ -14,8 +16,9 @@ struct CardButton {
     const char* what;
 };
 constexpr CardButton kButtons[] = {
-    {"Again", Action::kAgain, "The bone is put back, and the hand does its script from the beginning"},
-    {"Take over", Action::kHoldTool, "The tool comes to your mouse"}};
+    {trMark("Again"), Action::kAgain,
+     trMark("The bone is put back, and the hand does its script from the beginning")},
+    {trMark("Take over"), Action::kHoldTool, trMark("The tool comes to your mouse")}};
 
 }  // namespace
 
@@ -35,11 +38,11 @@ void buildHandCard(ViewerControls& controls, const SessionView& session, Wishes&
     for (const CardButton& button : kButtons) {
         if (!is_first) ImGui::SameLine(0, 10 * scale);
         is_first = false;
-        const std::string label = withKey(button.text, button.action);
+        const std::string label = withKey(tr(button.text), button.action);
         if (ImGui::Button(label.c_str())) controls.act(button.action, session, wishes);
         const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
         places[label] = {low.x + (high.y - low.y) / 2, (low.y + high.y) / 2};
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", button.what);
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tr(button.what));
     }
     ImGui::End();
 }

@@ -7,6 +7,7 @@
 
 #include "common/attempts_csv/attempts_csv.h"
 #include "render_client/hand/controls/past_attempts.h"
+#include "render_client/language/language.h"
 #include "render_client/look/hud/effect_lines.h"
 #include "render_client/look/hud/figure_text.h"
 #include "render_client/look/hud/hud_canvas.h"
@@ -32,25 +33,25 @@ HudRow touchedRow(const topics::Attempt& attempt) {
     std::string touched;
     for (const std::string& name : attempt.structures_touched())
         touched += (touched.empty() ? "" : ", ") + name;
-    if (!touched.empty()) return {"Touched", touched, HudTone::kAlarm};
-    return has_structures ? HudRow{"Touched", "none", HudTone::kGood}
-                          : HudRow{"Touched", "no structures in this exercise"};
+    if (!touched.empty()) return {tr("Touched"), touched, HudTone::kAlarm};
+    return has_structures ? HudRow{tr("Touched"), trIn("structures", "none"), HudTone::kGood}
+                          : HudRow{tr("Touched"), tr("no structures in this exercise")};
 }
 
 void addVerdict(const topics::Verdict& verdict, std::vector<HudRow>& rows) {
     if (verdict.has_passed())
-        rows.push_back(verdict.passed() ? HudRow{"Task", "passed", HudTone::kGood}
-                                        : HudRow{"Task", "not passed", HudTone::kAlarm});
+        rows.push_back(verdict.passed() ? HudRow{tr("Task"), tr("passed"), HudTone::kGood}
+                                        : HudRow{tr("Task"), tr("not passed"), HudTone::kAlarm});
     if (verdict.has_score_percent())
-        rows.push_back({"Score", readableText(verdict.score_percent(), " of 100")});
+        rows.push_back({tr("Score"), tr("{1} of 100", {readableText(verdict.score_percent(), "")})});
 }
 
 std::vector<HudRow> rowsOf(const topics::Attempt& attempt) {
     if (attempt.is_exam())
-        return {{"Time", clockText(attempt.time_s())}, {"Result", "an examination tells none"}};
-    std::vector<HudRow> rows{{"Time", clockText(attempt.time_s())},
-                             {"Removed", readableText(attempt.removed_mm3(), " mm\u00b3")},
-                             {"Highest force", readableText(attempt.max_force_n(), " N")},
+        return {{tr("Time"), clockText(attempt.time_s())}, {tr("Result"), tr("an examination tells none")}};
+    std::vector<HudRow> rows{{tr("Time"), clockText(attempt.time_s())},
+                             {tr("Removed"), readableText(attempt.removed_mm3(), " mm\u00b3")},
+                             {tr("Highest force"), readableText(attempt.max_force_n(), " N")},
                              touchedRow(attempt)};
     topics::Training figures = attempt.training();
     figures.clear_warnings();
@@ -95,8 +96,11 @@ void LessonCards::buildTop() {
     if (attempt_s) sayClock(*attempt_s);
     if (is_changing) {
         const topics::SceneChoice* const next = sceneOf(lesson, lesson.changing_to());
-        ImGui::Text("Changing to %s%s \u2026", sceneTitle(lesson, lesson.changing_to()).c_str(),
-                    next && next->is_made_first() ? ", whose bone is made first: some seconds" : "");
+        const char* const text =
+            next && next->is_made_first()
+                ? trMark("Changing to {1}, whose bone is made first: some seconds \u2026")
+                : trMark("Changing to {1} \u2026");
+        ImGui::TextUnformatted(tr(text, {sceneTitle(lesson, lesson.changing_to())}).c_str());
     } else if (!is_clock_alone) {
         ImGui::TextColored(colourOfCard(kHudLabelColour), "%s", sceneTitle(lesson, scene->id()).c_str());
         ImGui::TextUnformatted(scene->task().c_str());
@@ -108,15 +112,17 @@ void LessonCards::buildTop() {
 
 void LessonCards::sayClock(double attempt_s) {
     const bool is_paused = session_.status && session_.status->is_milling_paused();
-    ImGui::Text("%s   %s%s", session_.lesson->trainee().c_str(), clockText(attempt_s).c_str(),
-                is_paused ? ", paused" : "");
+    const std::string clock = clockText(attempt_s);
+    ImGui::Text("%s   %s", session_.lesson->trainee().c_str(),
+                is_paused ? tr("{1}, paused", {clock}).c_str() : clock.c_str());
 }
 
 void LessonCards::buildSummary(const topics::Attempt& attempt) {
     place(0, 1, std::min(kCardWidth * scale_, view_width_ * kWidestCard), view_width_);
     ImGui::Begin("##summary", nullptr, kCard);
     ImGui::PushTextWrapPos();
-    ImGui::Text("Attempt %u: %s", attempt.number(), attempt.trainee().c_str());
+    ImGui::TextUnformatted(
+        tr("Attempt {1}: {2}", {std::to_string(attempt.number()), attempt.trainee()}).c_str());
     ImGui::TextColored(colourOfCard(kHudLabelColour), "%s",
                        sceneTitle(*session_.lesson, attempt.scene_id()).c_str());
     for (const HudRow& row : rowsOf(attempt)) {
@@ -127,12 +133,12 @@ void LessonCards::buildSummary(const topics::Attempt& attempt) {
         ImGui::TextColored(colourOfCard(colourOf(row.tone)), "%s", row.value.c_str());
     }
     ImGui::PopTextWrapPos();
-    if (button("Close")) draft_.closeSummary();
+    if (button(tr("Close"))) draft_.closeSummary();
     if (const std::string stem = resultStemOf(attempt, session_); !stem.empty()) {
-        if (nextButton("Report")) wishes_.open_file = stem + ".html";
-        if (session_.has_launcher && nextButton("Replay")) wishes_.replay_of = stem + ".json";
+        if (nextButton(tr("Report"))) wishes_.open_file = stem + ".html";
+        if (session_.has_launcher && nextButton(tr("Replay"))) wishes_.replay_of = stem + ".json";
     }
-    if (nextButton("All attempts as CSV")) wishes_.save_attempts = true;
+    if (nextButton(tr("All attempts as CSV"))) wishes_.save_attempts = true;
     ImGui::End();
 }
 

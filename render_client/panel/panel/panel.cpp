@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "render_client/hand/controls/viewer_controls.h"
+#include "render_client/language/language.h"
 #include "render_client/panel/panel/hand_card.h"
 #include "render_client/panel/panel/lesson_cards.h"
 #include "render_client/panel/panel/panel_content.h"
@@ -62,12 +63,12 @@ void buildQuestion(ViewerControls& controls, const SessionView& session, Wishes&
     ImGui::PopTextWrapPos();
     ImGui::Dummy(ImVec2(0, 6 * scale));
     std::optional<Answer> answer;
-    if (isAnswered(question->yes + " (Enter)", places)) answer = Answer::kYes;
+    if (isAnswered(question->yes + tr(" (Enter)"), places)) answer = Answer::kYes;
     ImGui::SameLine();
-    if (isAnswered(question->no + " (Esc)", places)) answer = Answer::kNo;
+    if (isAnswered(question->no + tr(" (Esc)"), places)) answer = Answer::kNo;
     if (question->offers_checkpoint) {
         ImGui::SameLine();
-        if (isAnswered("Save a checkpoint first", places)) answer = Answer::kSaveFirst;
+        if (isAnswered(tr("Save a checkpoint first"), places)) answer = Answer::kSaveFirst;
     }
     ImGui::End();
     ImGui::PopStyleColor(2);
@@ -127,7 +128,7 @@ void buildSessionChoice(const SessionView& session, Wishes& wishes, std::map<std
     ImGui::Begin("##sessions", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize |
                      ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav);
-    ImGui::TextUnformatted("There are several sessions. Click one, or press its number:");
+    ImGui::TextUnformatted(tr("There are several sessions. Click one, or press its number:"));
     ImGui::Dummy(ImVec2(0, 2 * scale));
     for (size_t n = 0; n < session.offered.size(); ++n) {
         const std::string label = std::to_string(n + 1) + "   " + session.offered[n].text;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/commands/role_rules.h"
+#include "render_client/language/language.h"
 
 namespace bonemill {
 namespace {
@@ -32,31 +33,32 @@ void PanelContent::build() {
         if (isPartOpen(name, true)) (this->*build_it)();
     };
     using Content = PanelContent;
-    section(controls_.toolHold().isHolding() || isHeldByMouse(session_), "Tool in the mouse",
+    section(controls_.toolHold().isHolding() || isHeldByMouse(session_), trMark("Tool in the mouse"),
             &Content::buildHold);
-    section(isReplay(session_), "Replay", &Content::buildReplay);
-    section(session_.lesson && session_.lesson->scenes_size() > 0, "Lesson", &Content::buildLesson);
-    section(session_.has_launcher && session_.past && !session_.past->empty(), "Last sessions",
+    section(isReplay(session_), trMark("Replay"), &Content::buildReplay);
+    section(session_.lesson && session_.lesson->scenes_size() > 0, trMark("Lesson"), &Content::buildLesson);
+    section(session_.has_launcher && session_.past && !session_.past->empty(), trMark("Last sessions"),
             &Content::buildPast);
-    section(true, "View", &Content::buildView);
-    section(hasStructures(), "Structures", &Content::buildStructures);
-    section(hasEffects(), "Effects", &Content::buildEffects);
-    section(true, "Session", isReplay(session_) ? &Content::buildEnd : &Content::buildSession);
-    section(session_.status && session_.status->has_training(), "Training", &Content::buildTraining);
-    section(!session_.faults.empty(), "Faults", &Content::buildFaults);
-    section(true, "Notes and strokes", &Content::buildRemarks);
-    section(true, "Who is watching", &Content::buildWatchers);
-    section(session_.has_launcher && !isReplay(session_), "Invite a colleague", &Content::buildInvite);
+    section(true, trMark("View"), &Content::buildView);
+    section(hasStructures(), trMark("Structures"), &Content::buildStructures);
+    section(hasEffects(), trMark("Effects"), &Content::buildEffects);
+    section(true, trMark("Session"), isReplay(session_) ? &Content::buildEnd : &Content::buildSession);
+    section(session_.status && session_.status->has_training(), trMark("Training"), &Content::buildTraining);
+    section(!session_.faults.empty(), trMark("Faults"), &Content::buildFaults);
+    section(true, trMark("Notes and strokes"), &Content::buildRemarks);
+    section(true, trMark("Who is watching"), &Content::buildWatchers);
+    section(session_.has_launcher && !isReplay(session_), trMark("Invite a colleague"),
+            &Content::buildInvite);
     if (session_.info && session_.status && !isReplay(session_) &&
         mayOrder(session_.role, topics::Command::kTune)) {
         gap();
-        if (isPartOpen("Tuning", false)) buildTuning();
-        note("Tuning", "Stiffness, damping and limits of the contact law, while the session runs");
+        if (isPartOpen(trMark("Tuning"), false)) buildTuning();
+        note(tr("Tuning"), tr("Stiffness, damping and limits of the contact law, while the session runs"));
     }
     if (session_.tool) {
         gap();
-        if (isPartOpen("Plots", false)) buildPlots();  // for the lab
-        note("Plots", "Force, torque and the tick's work over the last 10 s");
+        if (isPartOpen(trMark("Plots"), false)) buildPlots();  // for the lab
+        note(tr("Plots"), tr("Force, torque and the tick's work over the last 10 s"));
     }
     ImGui::End();
 }
@@ -64,7 +66,7 @@ void PanelContent::build() {
 bool PanelContent::isPartOpen(const char* name, bool is_open_at_first) {
     bool& is_open = folds_.try_emplace(name, is_open_at_first).first->second;
     ImGui::SetNextItemOpen(is_open);
-    return is_open = ImGui::CollapsingHeader(name);
+    return is_open = ImGui::CollapsingHeader(tr(name));
 }
 
 // The button that opens the panel is called so, too.
@@ -142,6 +144,14 @@ std::optional<double> PanelContent::slider(const char* label, double fraction, d
 
 void PanelContent::button(const char* text, Action action, const char* what) {
     if (button(withKey(text, action), what)) act(action);
+}
+
+void PanelContent::buttonBeside(const char* text, Action action, const char* what) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float width = ImGui::CalcTextSize(withKey(text, action).c_str()).x + 2 * style.FramePadding.x;
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
+    button(text, action, what);
 }
 
 void PanelContent::box(const char* text, Action action, bool is_on, const char* what) {

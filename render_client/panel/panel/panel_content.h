@@ -64,6 +64,7 @@ class PanelContent {
     void buildSigns();
     void buildQualityPick();
     void buildReading();
+    void buildLanguages();
     // These say which structures are seen, and how (panel_view.cpp).
     bool hasStructures() const;
     void buildStructures();
@@ -125,6 +126,8 @@ class PanelContent {
     std::optional<double> slider(const char* label, double fraction, double least, const char* what);
     // These controls do what a key does; the key stands beside the text.
     void button(const char* text, Action action, const char* what);
+    // Stands beside the control before it, or below it where there is no room.
+    void buttonBeside(const char* text, Action action, const char* what);
     void box(const char* text, Action action, bool is_on, const char* what);
     void note(const std::string& label, const char* what);
     void explain(const std::string& text);

@@ -4,25 +4,32 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render_client/language/language.h"
 #include "render_client/panel/panel/panel_content.h"
 
 namespace bonemill {
 
 void PanelContent::buildInvite() {
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
-    ImGui::InputTextWithHint("##guest", "Whose link", invite_draft_.name.data(), invite_draft_.name.size());
-    note("##guest", "The name that others read; the link is for one person");
+    ImGui::InputTextWithHint("##guest", tr("Whose link"), invite_draft_.name.data(),
+                             invite_draft_.name.size());
+    note("##guest", tr("The name that others read; the link is for one person"));
     ImGui::PopItemWidth();
     ImGui::SameLine();
     ImGui::PushItemWidth(-1);
-    ImGui::Combo("##role", &invite_draft_.role, kInvitedRoles.data(), int(kInvitedRoles.size()));
-    note("##role",
-         "observer: looks; operator: also may take the hand; instructor: also points and ends the session");
+    const auto shown = [](void*, int role, const char** text) {
+        *text = tr(kInvitedRoles[size_t(role)]);
+        return true;
+    };
+    ImGui::Combo("##role", &invite_draft_.role, shown, nullptr, int(kInvitedRoles.size()));
+    note("##role", tr("observer: looks; operator: also may take the hand; instructor: also points and ends "
+                      "the session"));
     ImGui::PopItemWidth();
     const std::string name = invite_draft_.name.data();
     ImGui::BeginDisabled(name.find_first_not_of(' ') == std::string::npos);
-    if (button("Invite",
-               "Makes a link with which they join in a browser; guests can come while the session runs")) {
+    if (button(
+            tr("Invite"),
+            tr("Makes a link with which they join in a browser; guests can come while the session runs"))) {
         wishes_.invite = name;
         wishes_.invite_as = kInvitedRoles[size_t(invite_draft_.role)];
     }
@@ -33,10 +40,11 @@ void PanelContent::buildInvite() {
 void PanelContent::buildInvitation() {
     const Invitation& invitation = session_.invitation;
     if (!invitation.problem.empty()) return sayWrapped(invitation.problem, HudTone::kWarning);
-    if (invitation.link.empty()) return say("making a link for " + invitation.name + " ...", HudTone::kPlain);
+    if (invitation.link.empty())
+        return say(tr("making a link for {1} ...", {invitation.name}), HudTone::kPlain);
     ImGui::SameLine();
-    if (button("Copy the link", "Into the clipboard")) wishes_.copy = invitation.link;
-    sayWrapped("For " + invitation.name + ": " + invitation.link, HudTone::kGood);
+    if (button(tr("Copy the link"), tr("Into the clipboard"))) wishes_.copy = invitation.link;
+    sayWrapped(tr("For {1}: {2}", {invitation.name, invitation.link}), HudTone::kGood);
     if (invite_draft_.link != invitation.link) {
         invite_draft_.link = invitation.link;
         invite_draft_.code = qrCodeOf(invitation.link);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/attempts_csv/attempts_csv.h"
+#include "render_client/language/language.h"
 #include "render_client/look/hud/figure_text.h"
 #include "render_client/panel/panel/panel_content.h"
 
@@ -18,17 +19,19 @@ constexpr float kColumnWidth = 4.3f;  // letters' heights
 constexpr struct {
     const char* title;
     const char* what;
-} kColumns[] = {{"Trainee,\nexercise", "Who tried, and what"},
-                {"Time,\nremoved", "Time without pauses; bone that was removed"},
-                {"Force,\ndistance", "Highest force on the hand; least distance to a protected structure"},
-                {"Damage,\nscore", "Volume of protected structures that was damaged; score of 100"}};
+} kColumns[] = {
+    {trMark("Trainee,\nexercise"), trMark("Who tried, and what")},
+    {trMark("Time,\nremoved"), trMark("Time without pauses; bone that was removed")},
+    {trMark("Force,\ndistance"),
+     trMark("Highest force on the hand; least distance to a protected structure")},
+    {trMark("Damage,\nscore"), trMark("Volume of protected structures that was damaged; score of 100")}};
 
 std::string detailsOf(const topics::SceneChoice& scene) {
     std::string text;
     for (const std::string& tool : scene.tools()) text += (text.empty() ? "" : ", ") + tool;
     if (scene.expected_s() > 0)
-        text += (text.empty() ? "about " : "; about ") +
-                std::to_string(std::max(1l, std::lround(scene.expected_s() / 60))) + " min";
+        text += (text.empty() ? "" : "; ") +
+                tr("about {1} min", {std::to_string(std::max(1l, std::lround(scene.expected_s() / 60)))});
     return text;
 }
 
@@ -47,7 +50,7 @@ void PanelContent::buildLesson() {
     }
     gap();
     ImGui::BeginDisabled(!why_not.empty());
-    sayQuietly("Exercise (" + keyLabelOf(Action::kNextScene) + ": the next one)");
+    sayQuietly(tr("Exercise ({1}: the next one)", {keyLabelOf(Action::kNextScene)}));
     for (const topics::SceneChoice& scene : lesson.scenes()) buildScene(lesson, scene);
     ImGui::EndDisabled();
 }
@@ -57,24 +60,26 @@ void PanelContent::buildTrainee(const topics::Lesson& lesson) {
     draft_.wants_keyboard = false;
     ImGui::PushItemWidth(-1);
     const bool is_entered = ImGui::InputTextWithHint(
-        "##trainee", withKey("Trainee's name or number", Action::kTrainee).c_str(), draft_.trainee.data(),
+        "##trainee", withKey(tr("Trainee's name or number"), Action::kTrainee).c_str(), draft_.trainee.data(),
         draft_.trainee.size(), ImGuiInputTextFlags_EnterReturnsTrue);
-    note("##trainee", "Who tries; Enter starts the attempt");
+    note("##trainee", tr("Who tries; Enter starts the attempt"));
     ImGui::PopItemWidth();
     if (is_entered) draft_.has_entered = draft_.wants_keyboard = true;
     const bool is_started =
-        button("Start", "On whole bone, with the clock at zero; an attempt under way ends") || is_entered;
+        button(tr("Start"), tr("On whole bone, with the clock at zero; an attempt under way ends")) ||
+        is_entered;
     if (is_started) startAttempt(lesson);
     ImGui::SameLine();
     const bool is_paused = session_.status && session_.status->is_milling_paused();
-    button(is_paused ? "Go on" : "Pause", Action::kPauseMilling, "The clock of the attempt rests, too");
+    button(is_paused ? tr("Go on") : tr("Pause"), Action::kPauseMilling,
+           tr("The clock of the attempt rests, too"));
     ImGui::BeginDisabled(!lesson.is_running());
-    button("Stop", Action::kStopAttempt, "Ends the attempt, and shows how it went");
+    button(tr("Stop"), Action::kStopAttempt, tr("Ends the attempt, and shows how it went"));
     ImGui::EndDisabled();
     ImGui::SameLine();
-    if (button("Next trainee", "Ends an attempt under way, and asks for the next name"))
+    if (button(tr("Next trainee"), tr("Ends an attempt under way, and asks for the next name")))
         controls_.want({Deed::Kind::kNextTrainee}, session_, wishes_);
-    if (lesson.is_running()) say(lesson.trainee() + " is at it", HudTone::kGood);
+    if (lesson.is_running()) say(tr("{1} is at it", {lesson.trainee()}), HudTone::kGood);
 }
 
 // Whoever types no name is counted.
@@ -103,7 +108,7 @@ void PanelContent::buildScene(const topics::Lesson& lesson, const topics::SceneC
     if (is_chosen && !scene.task().empty()) say(scene.task(), HudTone::kPlain);
     if (is_chosen && !details.empty()) sayQuietly(details);
     if (!is_possible) say(scene.problem(), HudTone::kWarning);
-    if (scene.is_made_first()) sayQuietly("A click makes its bone first: some seconds");
+    if (scene.is_made_first()) sayQuietly(tr("A click makes its bone first: some seconds"));
     ImGui::PopTextWrapPos();
     ImGui::EndGroup();
     ImGui::EndGroup();
@@ -131,7 +136,7 @@ bool PanelContent::isRowClicked(const std::string& name) {
 }
 
 void PanelContent::buildAttempts(const topics::Lesson& lesson) {
-    sayQuietly("Attempts of this class");
+    sayQuietly(tr("Attempts of this class"));
     const int rows = 2 * (std::min(lesson.attempts_size(), kRowsOfTable) + 1);
     const ImVec2 size(0, ImGui::GetTextLineHeight() * (float(rows) + 0.5f * float(rows) / 2));
     const ImGuiTableFlags flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY;
@@ -144,22 +149,23 @@ void PanelContent::buildAttempts(const topics::Lesson& lesson) {
         ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
         for (const auto& [title, what] : kColumns) {
             ImGui::TableNextColumn();
-            ImGui::TextUnformatted(title);
-            note(title, what);
+            ImGui::TextUnformatted(tr(title));
+            note(tr(title), tr(what));
         }
         for (auto attempt = lesson.attempts().rbegin(); attempt != lesson.attempts().rend(); ++attempt)
             buildAttempt(lesson, *attempt);
         ImGui::EndTable();
     }
-    if (button("Save as CSV", "Writes all figures of these attempts into a file here, for a spreadsheet"))
+    if (button(tr("Save as CSV"),
+               tr("Writes all figures of these attempts into a file here, for a spreadsheet")))
         wishes_.save_attempts = true;
     if (session_.class_folder.empty()) return;
     ImGui::SameLine();
-    if (button("Class page",
-               "How the class did: distribution, what was failed most, each trainee's attempts"))
+    if (button(tr("Class page"),
+               tr("How the class did: distribution, what was failed most, each trainee's attempts")))
         wishes_.open_file = session_.class_folder + "/class.html";
     ImGui::SameLine();
-    if (button("Folder", "Table, class page and one report for each attempt"))
+    if (button(tr("Folder"), tr("Table, class page and one report for each attempt")))
         wishes_.open_file = session_.class_folder;
     sayWrapped(session_.class_folder, HudTone::kPlain);
 }
@@ -174,12 +180,13 @@ void PanelContent::buildAttempt(const topics::Lesson& lesson, const topics::Atte
     };
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    const std::string label = "Attempt " + number;
+    const std::string label = tr("Attempt {1}", {number});
     const ImVec2 corner = ImGui::GetCursorPos();
     if (ImGui::Selectable(("##" + label).c_str(), false, ImGuiSelectableFlags_SpanAllColumns,
                           ImVec2(0, 2 * ImGui::GetTextLineHeight())))
         draft_.showSummary(attempt.number());
-    const std::string what = number + ". " + attempt.trainee() + ": " + scene + "\nA click shows how it went";
+    const std::string what =
+        number + ". " + attempt.trainee() + ": " + scene + "\n" + tr("A click shows how it went");
     note(label, what.c_str());
     ImGui::SetCursorPos(corner);
     ImGui::TextUnformatted((number + "  " + attempt.trainee() + "\n" + scene).c_str());
@@ -189,7 +196,7 @@ void PanelContent::buildAttempt(const topics::Lesson& lesson, const topics::Atte
          training.has_least_distance_mm() ? readableText(training.least_distance_mm(), " mm") : kNoNumber);
     cell(!training.has_damaged_mm3()  ? kNoNumber
          : training.damaged_mm3() > 0 ? readableText(training.damaged_mm3(), " mm\u00b3")
-                                      : "none",
+                                      : trIn("volume", "none"),
          attempt.verdict().has_score_percent() ? readableText(attempt.verdict().score_percent(), "")
                                                : kNoNumber);
 }

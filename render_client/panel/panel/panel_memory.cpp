@@ -4,6 +4,8 @@
 #include <set>
 #include <utility>
 
+#include "render_client/language/language.h"
+
 namespace bonemill {
 namespace {
 
@@ -84,7 +86,7 @@ const topics::SceneChoice* sceneOf(const topics::Lesson& lesson, const std::stri
 
 std::string panelTitle(const SessionView& session) {
     const bool teaches = session.lesson && session.lesson->scenes_size() > 0;
-    return withKey(teaches ? "Lesson" : "Controls", Action::kPanel);
+    return withKey(teaches ? tr("Lesson") : tr("Controls"), Action::kPanel);
 }
 
 }  // namespace bonemill

@@ -12,6 +12,7 @@
 #include "common/picture/picture.h"
 #include "proto/topics.pb.h"
 #include "render_client/hand/controls/session_view.h"
+#include "render_client/language/language.h"
 #include "render_client/panel/panel/qr_code.h"
 
 namespace bonemill {
@@ -34,7 +35,8 @@ struct InviteDraft {
     std::string link;             // that the code was made of
     QrCode code;
 };
-inline constexpr std::array<const char*, 3> kInvitedRoles = {"observer", "operator", "instructor"};
+inline constexpr std::array<const char*, 3> kInvitedRoles = {trMark("observer"), trMark("operator"),
+                                                             trMark("instructor")};
 
 // Of what would be otherwise in the recording that is replayed.
 struct WhatIfDraft {

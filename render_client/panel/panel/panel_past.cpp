@@ -1,6 +1,7 @@
 // Here is the panel's part about attempts of before: how they went, their reports and replays.
 #include <imgui.h>
 
+#include "render_client/language/language.h"
 #include "render_client/panel/panel/panel_content.h"
 
 namespace bonemill {
@@ -24,12 +25,12 @@ void PanelContent::buildPastAttempt(const PastAttempt& attempt, const std::strin
     sayQuietly(attempt.start + "  " + attempt.trainee);
     say(attempt.score, HudTone::kPlain);
     ImGui::PopTextWrapPos();
-    if (button("Report##past " + number, "Opens the attempt's report"))
+    if (button(tr("Report") + ("##past " + number), tr("Opens the attempt's report")))
         wishes_.open_file = attempt.stem + ".html";
     if (!attempt.recording.empty()) {
         ImGui::SameLine();
-        if (button("Replay##past " + number,
-                   "Shows it again in a window of its own, just before its worst moment"))
+        if (button(tr("Replay") + ("##past " + number),
+                   tr("Shows it again in a window of its own, just before its worst moment")))
             wishes_.replay_of = attempt.stem + ".json";
     }
     ImGui::EndGroup();

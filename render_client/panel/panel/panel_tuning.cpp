@@ -6,6 +6,7 @@
 
 #include "common/config/live_fields.h"
 #include "proto/scene.pb.h"
+#include "render_client/language/language.h"
 #include "render_client/look/hud/figure_text.h"
 #include "render_client/panel/panel/panel_content.h"
 
@@ -35,13 +36,13 @@ void PanelContent::buildTuning() {
     if (!why_not.empty()) sayWrapped(why_not, HudTone::kWarning);
     ImGui::BeginDisabled(!why_not.empty());
     for (const LiveField& field : liveFields()) buildTuned(field);
-    if (button("As the scene file", "Nothing is tuned any more")) tune({});
+    if (button(tr("As the scene file"), tr("Nothing is tuned any more"))) tune({});
     ImGui::EndDisabled();
     const std::string text = sceneTextOf(*session_.status);
     if (text.empty()) return;
     gap();
     sayWrapped(text, HudTone::kPlain);
-    if (button("Copy", "The lines above into the clipboard, for the scene file")) wishes_.copy = text;
+    if (button(tr("Copy"), tr("The lines above into the clipboard, for the scene file"))) wishes_.copy = text;
 }
 
 // It is ordered when the slider is let go: each order is a tuning of its own.
@@ -60,7 +61,7 @@ void PanelContent::buildTuned(const LiveField& field) {
                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     ImGui::PopItemWidth();
     const bool is_dragged = ImGui::IsItemActive(), is_done = ImGui::IsItemDeactivatedAfterEdit();
-    note(path, ("The scene file says " + readableText(own, (" " + field.unit()).c_str())).c_str());
+    note(path, (tr("The scene file says {1}", {readableText(own, (" " + field.unit()).c_str())})).c_str());
     if (is_dragged)
         tuning_draft_ = {path, value};
     else if (tuning_draft_.path == path)

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "render_client/language/language.h"
 #include "render_client/panel/panel/panel_content.h"
 
 namespace bonemill {
@@ -33,22 +34,23 @@ std::vector<std::string> wordsOf(const WhatIfDraft& draft) {
 void PanelContent::buildWhatIf() {
     WhatIfDraft& draft = what_if_draft_;
     gap();
-    sayQuietly("What if, from this moment on, ...");
+    sayQuietly(tr("What if, from this moment on, ..."));
     if (session_.info && session_.info->tool_names_size() > 1) {
-        std::string names = std::string("the same tool") + '\0';
+        std::string names = std::string(tr("the same tool")) + '\0';
         for (const std::string& tool : session_.info->tool_names()) names += tool + '\0';
         ImGui::Combo("##what if tool", &draft.tool, names.c_str());
-        note("What if tool", "The burr with which it goes on");
+        note("What if tool", tr("The burr with which it goes on"));
     }
     ImGui::SliderFloat3("mm##what if", draft.shift_mm.data(), -kLargestShift, kLargestShift, "%.2f",
                         ImGuiSliderFlags_AlwaysClamp);
-    note("What if shift", "The hand, so many mm along x, y and z; Ctrl and a click: type");
-    ImGui::SliderFloat("times as fast##what if", &draft.pace, kSlowest, kFastest, "%.2f",
-                       ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
-    note("What if pace", "The hand on its way");
+    note("What if shift", tr("The hand, so many mm along x, y and z; Ctrl and a click: type"));
+    ImGui::SliderFloat((tr("times as fast") + std::string("##what if")).c_str(), &draft.pace, kSlowest,
+                       kFastest, "%.2f", ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+    note("What if pace", tr("The hand on its way"));
     const std::vector<std::string> words = wordsOf(draft);
     ImGui::BeginDisabled(words.empty());
-    if (button("Go on otherwise", "Judges it beside what happened, and shows both in a window of their own"))
+    if (button(tr("Go on otherwise"),
+               tr("Judges it beside what happened, and shows both in a window of their own")))
         wishes_.what_if = words;
     ImGui::EndDisabled();
 }

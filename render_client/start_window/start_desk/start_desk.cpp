@@ -5,6 +5,7 @@
 
 #include "common/process/start_apart.h"
 #include "common/text/foreign_text.h"
+#include "render_client/language/language.h"
 
 namespace bonemill {
 namespace {
@@ -110,7 +111,7 @@ void StartDesk::run(const std::vector<std::string>& words) {
 }
 
 void StartDesk::apart(const std::vector<std::string>& words) {
-    if (!startApart(words)) problem_ = words.front() + " cannot be started";
+    if (!startApart(words)) problem_ = tr("{1} cannot be started", {words.front()});
 }
 
 void StartDesk::start(const SceneCard& card) {
@@ -162,8 +163,8 @@ std::string firstErrorOf(const ChildBeside& child) {
     const std::string line = child.err().substr(0, child.err().find('\n'));
     if (!line.empty()) return printableLine(withoutName(line), 400);
     const int code = child.exitCode().value_or(0);
-    return code > 128 ? "bonemill was ended by signal " + std::to_string(code - 128)
-                      : "bonemill left with code " + std::to_string(code);
+    return code > 128 ? tr("bonemill was ended by signal {1}", {std::to_string(code - 128)})
+                      : tr("bonemill left with code {1}", {std::to_string(code)});
 }
 
 }  // namespace bonemill

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/user_error.h"
+#include "render_client/language/language.h"
 #include "render_client/start_window/start_screen/start_colours.h"
 #include "render_client/start_window/start_screen/start_screen.h"
 
@@ -20,7 +22,7 @@ const FoundHand* bestOf(const DoctorFacts& facts) {
 }
 
 std::string nameOf(const FoundHand& hand) {
-    return hand.kind == "mouse" ? "Mouse" : hand.kind + ": " + hand.text;
+    return hand.kind == "mouse" ? tr("Mouse") : hand.kind + ": " + hand.text;
 }
 
 }  // namespace
@@ -65,58 +67,72 @@ bool StartScreen::isTyped(const char* label, const char* hint, std::array<char, 
 void StartScreen::buildChoices() {
     const bool has_scenes = !desk_.list().scenes.empty();  // a PC that only watches has none
     if (has_scenes) {
-        heading("The hand");
+        heading(tr("The hand"));
         buildHands();
-        heading("For whom");
+        heading(tr("For whom"));
         buildCompany();
     }
-    heading("More");
-    if (has_scenes && button("New case from a scan")) desk_.makeCase();
-    if (button("Handbook")) desk_.openHandbook();
+    heading(tr("More"));
+    if (has_scenes && button(tr("New case from a scan"))) desk_.makeCase();
+    if (button(tr("Handbook"))) desk_.openHandbook();
+    if (languages().size() > 1) buildLanguages();
+}
+
+// Whoever cannot read the language that is spoken finds the others by their own names.
+void StartScreen::buildLanguages() {
+    heading("Language / Sprache / Spr\u00e5k");
+    for (const Language& language : languages()) {
+        if (!choice(language.name, language.code == spokenLanguage())) continue;
+        try {
+            chooseLanguage(language.code);
+        } catch (const UserError& error) {
+            problem_ = error.what();
+        }
+    }
 }
 
 void StartScreen::buildHands() {
     StartChoice& wish = desk_.choice();
     const auto& doctor = desk_.doctor();
     const FoundHand* const best = doctor ? bestOf(*doctor) : nullptr;
-    if (choice("The best that is there", wish.device.empty())) wish.device.clear();
-    say(!doctor ? "looking ..." : best ? "now: " + nameOf(*best) : "now: the mouse");
+    if (choice(tr("The best that is there"), wish.device.empty())) wish.device.clear();
+    say(!doctor ? tr("looking ...") : best ? tr("now: {1}", {nameOf(*best)}) : tr("now: the mouse"));
     if (doctor)
         for (const FoundHand& hand : doctor->hands)
             if (!hand.word.empty() && choice(nameOf(hand), wish.device == hand.word)) wish.device = hand.word;
-    if (choice("Scripted: it shows how", wish.device == "simulated")) wish.device = "simulated";
+    if (choice(tr("Scripted: it shows how"), wish.device == "simulated")) wish.device = "simulated";
 }
 
 void StartScreen::buildCompany() {
     StartChoice& wish = desk_.choice();
     const std::vector<std::string>& interfaces = desk_.list().interfaces;
-    if (choice("Me alone", !wish.is_class)) wish.is_class = false;
-    if (choice("Host a class", wish.is_class)) wish.is_class = true;
+    if (choice(tr("Me alone"), !wish.is_class)) wish.is_class = false;
+    if (choice(tr("Host a class"), wish.is_class)) wish.is_class = true;
     if (!wish.is_class) return;
-    say("Other PCs may watch. The way to them:");
+    say(tr("Other PCs may watch. The way to them:"));
     if (wish.interface.empty() && !interfaces.empty()) wish.interface = interfaces.front();
     for (const std::string& name : interfaces)
         if (choice(name, wish.interface == name)) wish.interface = name;
-    if (interfaces.empty()) say("this PC has no network", kOpen);
-    isTyped("##class", "name of the class", class_);
+    if (interfaces.empty()) say(tr("this PC has no network"), kOpen);
+    isTyped("##class", tr("name of the class"), class_);
     wish.class_name = class_.data();
 }
 
 void StartScreen::buildPast() {
-    heading("Last sessions");
+    heading(tr("Last sessions"));
     const auto& attempts = desk_.attempts();
     const auto& recordings = desk_.list().recordings;
-    if (attempts.empty() && recordings.empty()) say("none yet");
+    if (attempts.empty() && recordings.empty()) say(tr("none yet"));
     for (size_t n = 0; n < std::min(attempts.size(), kMostAttempts); ++n) {
         const PastAttempt& attempt = attempts[n];
         const std::string id = std::to_string(n + 1);
         ImGui::TextUnformatted((attempt.scene + ", " + attempt.trainee).c_str());
         say(attempt.start + ", " + attempt.score);
         if (!attempt.recording.empty()) {
-            if (button("Replay", id)) desk_.replay(attempt.stem + ".json");
+            if (button(tr("Replay"), id)) desk_.replay(attempt.stem + ".json");
             ImGui::SameLine();
         }
-        if (button("Report", id)) desk_.openReport(attempt);
+        if (button(tr("Report"), id)) desk_.openReport(attempt);
     }
     size_t shown = 0;
     for (const Recording& recording : recordings) {
@@ -124,38 +140,38 @@ void StartScreen::buildPast() {
             attempts, [&](const PastAttempt& attempt) { return attempt.recording == recording.file; });
         if (is_told || shown == kMostRecordings) continue;
         const std::string id = "recording " + std::to_string(++shown);
-        if (button("Replay", id)) desk_.replay(recording.file);
+        if (button(tr("Replay"), id)) desk_.replay(recording.file);
         ImGui::SameLine();
-        say(recording.when + ", without an attempt");
+        say(tr("{1}, without an attempt", {recording.when}));
     }
 }
 
 void StartScreen::buildOthers() {
-    heading("Watch");
+    heading(tr("Watch"));
     for (const RunningSession& session : desk_.list().running) {
-        say("session " + session.number + " on this PC: " + session.scene + " since " + session.since);
-        if (button("Watch", session.number)) desk_.watchOwn(session);
+        say(tr("session {1} on this PC: {2} since {3}", {session.number, session.scene, session.since}));
+        if (button(tr("Watch"), session.number)) desk_.watchOwn(session);
         ImGui::SameLine();
-        if (button("End", session.number)) desk_.endOwn(session);
+        if (button(tr("End"), session.number)) desk_.endOwn(session);
     }
     for (const FoundSession& session : desk_.found()) {
-        say(session.scene + " since " + session.since + " on " + session.host);
-        if (button("Watch", session.host + " " + session.number)) desk_.watch(session);
+        say(tr("{1} since {2} on {3}", {session.scene, session.since, session.host}));
+        if (button(tr("Watch"), session.host + " " + session.number)) desk_.watch(session);
     }
-    if (isTyped("##host", "a PC's name or address, then Enter", host_)) desk_.watchHost(host_.data());
+    if (isTyped("##host", tr("a PC's name or address, then Enter"), host_)) desk_.watchHost(host_.data());
 }
 
 void StartScreen::buildThisPc() {
-    heading("This PC");
+    heading(tr("This PC"));
     if (!desk_.doctor()) {
-        say("looking ...");
+        say(tr("looking ..."));
         return;
     }
-    for (const auto& [part, title] : {std::pair{"Programs", "Programs"},
-                                      {"Real time", "Real time"},
-                                      {"Network", "Network"},
-                                      {"Display", "Graphics"}})
-        buildPart(part, title);
+    for (const auto& [part, title] : {std::pair{"Programs", trMark("Programs")},
+                                      {"Real time", trMark("Real time")},
+                                      {"Network", trMark("Network")},
+                                      {"Display", trMark("Graphics")}})
+        buildPart(part, tr(title));
     buildHandsState();
 }
 
@@ -168,10 +184,12 @@ void StartScreen::buildPart(const char* part, const char* title) {
         open.push_back(&finding);
         is_missing = is_missing || finding.is_needed;
     }
-    const std::string state = open.empty() ? "good" : is_missing ? "something is missing" : "could be better";
+    const char* const state = open.empty() ? tr("good")
+                              : is_missing ? tr("something is missing")
+                                           : tr("could be better");
     ImGui::PushStyleColor(ImGuiCol_Text, open.empty() ? kGood : kOpen);
     const bool is_open =
-        ImGui::TreeNodeEx(part, open.empty() ? ImGuiTreeNodeFlags_Leaf : 0, "%s: %s", title, state.c_str());
+        ImGui::TreeNodeEx(part, open.empty() ? ImGuiTreeNodeFlags_Leaf : 0, "%s: %s", title, state);
     ImGui::PopStyleColor();
     notePlace(places_, title);
     if (!is_open) return;
@@ -189,11 +207,11 @@ void StartScreen::buildHandsState() {
     const bool is_good = std::ranges::none_of(facts.hands, waits);
     const FoundHand* const best = bestOf(facts);
     ImGui::PushStyleColor(ImGuiCol_Text, is_good ? kGood : kOpen);
-    const bool is_open =
-        ImGui::TreeNodeEx("hand", is_good ? ImGuiTreeNodeFlags_Leaf : 0, "Hand: %s",
-                          is_good ? (best ? nameOf(*best).c_str() : "none") : "one is not ready");
+    const bool is_open = ImGui::TreeNodeEx(
+        "hand", is_good ? ImGuiTreeNodeFlags_Leaf : 0, "%s: %s", tr("Hand"),
+        is_good ? (best ? nameOf(*best).c_str() : trIn("hand", "none")) : tr("one is not ready"));
     ImGui::PopStyleColor();
-    notePlace(places_, "Hand");
+    notePlace(places_, tr("Hand"));
     if (!is_open) return;
     for (const FoundHand& hand : facts.hands) {
         if (!waits(hand)) continue;
@@ -204,7 +222,7 @@ void StartScreen::buildHandsState() {
 }
 
 void StartScreen::buildCommand(const std::string& command) {
-    if (button("Copy", command)) ImGui::SetClipboardText(command.c_str());
+    if (button(tr("Copy"), command)) ImGui::SetClipboardText(command.c_str());
     ImGui::SameLine();
     say(command, ImGui::GetStyle().Colors[ImGuiCol_Text]);
 }

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "render_client/language/language.h"
 #include "render_client/start_window/start_screen/start_colours.h"
 
 namespace bonemill {
@@ -17,16 +18,17 @@ constexpr float kLeftWidth = 230, kRightWidth = 310, kCardHeight = 112, kLeastCa
 constexpr ImGuiWindowFlags kColumn = ImGuiWindowFlags_NavFlattened;
 
 std::string minutesOf(const SceneCard& card) {
-    return card.expected_minutes > 0 ? std::to_string(std::lround(card.expected_minutes)) + " min" : "";
+    return card.expected_minutes > 0 ? tr("{1} min", {std::to_string(std::lround(card.expected_minutes))})
+                                     : "";
 }
 
 // What comes before milling, or stands in its way; empty: nothing.
 std::string needsOf(const SceneCard& card) {
     if (!card.problem.empty()) return card.problem;
-    if (!card.lacks.empty()) return "needs " + card.lacks;
+    if (!card.lacks.empty()) return tr("needs {1}", {card.lacks});
     std::string names;
     for (const std::string& name : card.made_first) names += (names.empty() ? "" : ", ") + name;
-    return names.empty() ? "" : "makes its phantom first: some seconds";
+    return names.empty() ? "" : tr("makes its phantom first: some seconds");
 }
 
 bool canStart(const SceneCard& card) {
@@ -103,7 +105,7 @@ void StartScreen::frame(double seconds) {
     else if (desk_.hasList())
         buildAll();
     else
-        say("Looking for scenes ...");
+        say(tr("Looking for scenes ..."));
     ImGui::End();
     stage_.end();
 }
@@ -132,7 +134,8 @@ void StartScreen::buildAll() {
 
 void StartScreen::buildCards() {
     const float scale = stage_.scale(), gap = ImGui::GetStyle().ItemSpacing.x;
-    if (desk_.list().scenes.empty()) say("This PC only watches: the package bonemill brings scenes to mill.");
+    if (desk_.list().scenes.empty())
+        say(tr("This PC only watches: the package bonemill brings scenes to mill."));
     const float room = ImGui::GetContentRegionAvail().x;
     const int columns = std::max(1, int((room + gap) / (kLeastCardWidth * scale + gap)));
     const ImVec2 size((room - float(columns - 1) * gap) / float(columns), kCardHeight * scale);
@@ -140,7 +143,7 @@ void StartScreen::buildCards() {
     bool was_own = false;
     const auto cards = inOrder(desk_.list().scenes);
     for (const SceneCard* const card : cards) {
-        if (card->is_own && !was_own) heading("Your own cases"), column = 0;
+        if (card->is_own && !was_own) heading(tr("Your own cases")), column = 0;
         was_own = card->is_own;
         if (column % columns != 0) ImGui::SameLine();
         ++column;
@@ -195,12 +198,14 @@ void StartScreen::drawCard(const SceneCard& card, const ImVec2& low, const ImVec
 
 // What went wrong, or what can be done here.
 void StartScreen::buildFoot() {
-    if (desk_.problem().empty()) {
-        say("A click starts a scene, and so do arrows and Enter. The same in a terminal: bonemill --help");
+    const std::string& problem = desk_.problem().empty() ? problem_ : desk_.problem();
+    if (problem.empty()) {
+        say(tr(
+            "A click starts a scene, and so do arrows and Enter. The same in a terminal: bonemill --help"));
         return;
     }
     ImGui::PushTextWrapPos();
-    ImGui::TextColored(kFailed, "%s", desk_.problem().c_str());
+    ImGui::TextColored(kFailed, "%s", problem.c_str());
     ImGui::PopTextWrapPos();
     notePlace(places_, "problem");
 }
@@ -212,7 +217,7 @@ void StartScreen::buildWaiting() {
     ImGui::Text("%s %.*s", desk_.commandLine().c_str(), dots, "...");
     ImGui::TextColored(kAside, "%s", desk_.lastWords().c_str());
     ImGui::PopTextWrapPos();
-    if (button("End it")) desk_.askToEnd();
+    if (button(tr("End it"))) desk_.askToEnd();
 }
 
 }  // namespace bonemill

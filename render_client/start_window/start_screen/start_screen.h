@@ -53,6 +53,7 @@ class StartScreen {
     void buildPast();
     void buildOthers();
     void buildThisPc();
+    void buildLanguages();
     void buildPart(const char* part, const char* title);
     void buildHandsState();
     void buildCommand(const std::string& command);
@@ -68,6 +69,7 @@ class StartScreen {
     ImGuiStage stage_;
     ControlPlaces places_;
     CardPictures pictures_;
+    std::string problem_;  // of this screen; empty: none
     int width_ = 1, height_ = 1;
     std::array<char, 128> host_{}, class_{};  // as typed so far, zero-terminated
 };

@@ -8,6 +8,7 @@
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
+#include "common/files/config_folder.h"
 
 namespace bonemill::gateway {
 namespace {

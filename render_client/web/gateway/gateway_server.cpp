@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "common/base/user_error.h"
+#include "common/files/config_folder.h"
 #include "common/files/file_stamp.h"
 #include "common/tcp/listen.h"
 #include "render_client/web/gateway/gateway.h"

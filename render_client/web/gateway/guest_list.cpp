@@ -4,7 +4,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <utility>
@@ -52,13 +51,6 @@ Admission refusal(std::string reason) {
 }
 
 }  // namespace
-
-std::filesystem::path configFolder() {
-    const char* const config = std::getenv("XDG_CONFIG_HOME");
-    if (config && *config) return std::filesystem::path(config) / "bonemill";
-    const char* const home = std::getenv("HOME");
-    return std::filesystem::path(home ? home : ".") / ".config" / "bonemill";
-}
 
 GuestList::GuestList(std::filesystem::path file) : file_(std::move(file)), seats_file_(file_) {
     seats_file_ += ".seats";

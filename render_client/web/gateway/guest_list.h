@@ -75,9 +75,6 @@ class Crowd {
     std::vector<GuestOrigin> there_;
 };
 
-// $XDG_CONFIG_HOME/bonemill, or ~/.config/bonemill.
-std::filesystem::path configFolder();
-
 struct Admission {
     std::string refusal;      // a sentence for the guest; empty: welcome
     bool is_final = false;    // trying again cannot help

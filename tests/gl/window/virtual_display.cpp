@@ -50,6 +50,7 @@ VirtualDisplay::VirtualDisplay(int width, int height) {
     setenv("DISPLAY", (":" + number).c_str(), 1);
     unsetenv("WAYLAND_DISPLAY");
     setenv("XDG_CONFIG_HOME", remembered_.path().c_str(), 1);
+    setenv("LANGUAGE", "en", 1);  // what the tests look for
 }
 
 void VirtualDisplay::type(const std::vector<std::string>& words) const {

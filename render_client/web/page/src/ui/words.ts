@@ -38,7 +38,7 @@ const kFaults: Record<string, [string, Tone]> = {
   overrun: [kTooSlow, 'warning'],
   stale_device: ['The handle was not heard of for a moment, and its force went off. If it happens again, check its cable.', 'alarm'],
   bad_device_pose: ['The handle reported an impossible place, which was ignored. If it happens again, tell your instructor.', 'alarm'],
-  solve: ['The force faded for a moment: the computer could not calculate it. It comes back by itself.', 'alarm'],
+  solve: ['The force faded: the computer could not calculate it. Lift the tool off the bone until you feel it again.', 'alarm'],
   shell_overflow: ['A part of the milled surface cannot be felt: the memory for it is full. Trust the picture there.', 'warning'],
   contact_overflow: [kTooSlow, 'warning'],
   volume_full: ["The computer's memory is full: some bone was not removed. End the attempt and tell your instructor.", 'alarm'],
@@ -158,9 +158,9 @@ export function alertText(events: number, structure: number, scene?: SceneView):
 export function conditions(session: Session): { text: string; tone: Tone }[] {
   const { status, tool } = session, list: { text: string; tone: Tone }[] = [];
   if (session.connection.state !== 'open') return list;
-  if (session.hasEnded) return [{ text: 'The session has ended. The next one is shown as soon as it begins.', tone: 'plain' }];
+  if (session.hasEnded) return [{ text: 'The session has ended. Wait: the next one is shown here when somebody starts it.', tone: 'plain' }];
   if (!session.hasServer && session.scene)
-    return [{ text: "No connection to the session's computer: the picture stands still. Wait, or tell your instructor.", tone: 'alarm' }];
+    return [{ text: "The picture stands still, for there is no connection; the burr may still cut. Release the pedal. If it lasts, tell your instructor.", tone: 'alarm' }];
   const device = status?.device;
   if (device) {
     const state = tool ? tool.deviceState : device.state, name = device.name || 'Device';
@@ -169,7 +169,7 @@ export function conditions(session: Session): { text: string; tone: Tone }[] {
     if (kStopped.includes(state)) list.push({ text: `${name}: ${kStates[state]}${stop}. ${todo}`, tone: 'alarm' });
     if ((state === 3 || state === 5) && device.forceWaits) list.push({ text: `${name} is ${kStates[state]}: move the tool away.`, tone: 'warning' });
   }
-  if (device?.script?.hasEnded) list.push({ text: 'The demonstration by the scripted hand has ended.', tone: 'plain' });
+  if (device?.script?.hasEnded) list.push({ text: 'The automatic demonstration has ended.', tone: 'plain' });
   if (tool?.waitsForRelease && tool.buttons !== 0 && !status?.isMillingPaused)
     list.push({ text: 'The bone is whole again. Release the pedal: pressed anew, it cuts.', tone: 'warning' });
   if (status?.deviceStale && status.ticks > 0) list.push({ text: 'The handle sends nothing: there is no force. Check its cable and switch.', tone: 'alarm' });
