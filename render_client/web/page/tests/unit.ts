@@ -267,7 +267,7 @@ test('after a script it begins again, or is taken over', () => {
   assert.notEqual(whyNotTakeOver(session), '');
   device.script = { hasEnded: true, takenOverBy: '0' };
   assert.equal(whyNotTakeOver(session), '');
-  assert.match(conditions(session)[0].text, /scripted hand has ended/);
+  assert.match(conditions(session)[0].text, /automatic demonstration has ended/);
   assert.equal(questionBefore({ action: 'beginAgain' }, session), '', 'a script does its own work again');
   assert.notEqual(whyNotTakeOver({ ...session, role: Role.Examiner, isLive: true } as Session), '');
   device.script = { hasEnded: false, takenOverBy: '7' };
