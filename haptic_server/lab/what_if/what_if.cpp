@@ -5,12 +5,12 @@
 
 #include "common/base/units.h"
 #include "common/base/user_error.h"
-#include "common/config/scene_check.h"
 #include "common/config/scene_tools.h"
 #include "haptic_server/core/tick/tick_choices.h"
 #include "haptic_server/lab/assess/judge_attempts.h"
 #include "haptic_server/lab/what_if/otherwise_run.h"
 #include "haptic_server/lab/what_if/what_if_page.h"
+#include "haptic_server/scene/setup/scene_accuracy.h"
 #include "haptic_server/teaching/attempt_report/report_words.h"
 
 namespace bonemill {
@@ -35,12 +35,8 @@ uint64_t tickOf(const WhatIfOptions& options, const Recording& recording) {
 uint32_t accuracyNamed(const std::string& name, const scene::Scene& scene) {
     const std::optional<Preset> preset = presetOfName(name);
     if (!preset) throw UserError("--accuracy " + name + ": there are " + presetNames());
-    if (!scene.accuracy().switchable())
-        throw UserError("--accuracy " + name + ": the recorded scene says accuracy.switchable: false");
-    const char* const effect = effectOfGradientLaw(scene.effects());
-    if (effect && presetSettings(*preset).law != ContactLaw::kGradient)
-        throw UserError("--accuracy " + name + ": effects." + effect +
-                        " of the scene needs the gradient contact law, which " + name + " is not");
+    if (const std::string why_not = PresetRule(scene).whyNot(*preset); !why_not.empty())
+        throw UserError("--accuracy " + name + ": " + why_not);
     return uint32_t(AccuracySwitch::choiceOf(*preset));
 }
 

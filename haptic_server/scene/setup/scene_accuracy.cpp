@@ -6,6 +6,7 @@
 #include <set>
 
 #include "common/base/units.h"
+#include "common/config/scene_check.h"
 #include "common/config/scene_tools.h"
 
 namespace bonemill {
@@ -61,6 +62,18 @@ std::vector<AccuracySettings> accuracyChoices(const scene::Scene& scene) {
     if (scene.accuracy().switchable())
         for (const Preset preset : allPresets()) choices.push_back(presetSettings(preset));
     return choices;
+}
+
+PresetRule::PresetRule(const scene::Scene& scene)
+    : is_switchable_(scene.accuracy().switchable()),
+      effect_of_gradient_law_(effectOfGradientLaw(scene.effects())) {}
+
+std::string PresetRule::whyNot(Preset preset) const {
+    if (!is_switchable_) return "the scene says accuracy.switchable: false";
+    if (presetSettings(preset).law == ContactLaw::kGradient || !effect_of_gradient_law_) return "";
+    return std::string("effects.") + effect_of_gradient_law_ +
+           " of the scene needs the gradient contact law, which " + std::string(presetName(preset)) +
+           " is not";
 }
 
 ShellConfig shellConfigOf(const scene::Scene& scene) {

@@ -1,6 +1,7 @@
 // Reads what the scene's accuracy message asks of shell, tool and tick. It is for start-up only.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "haptic_server/core/accuracy/accuracy_settings.h"
@@ -16,6 +17,18 @@ AccuracySettings accuracyOf(const scene::Scene& scene);
 // These are all settings that may be in force while the session runs: the scene's, and if it is
 // switchable every preset's.
 std::vector<AccuracySettings> accuracyChoices(const scene::Scene& scene);
+
+// Which presets may be chosen while a scene runs. It keeps nothing of the scene.
+class PresetRule {
+  public:
+    explicit PresetRule(const scene::Scene& scene);
+    // Why not this one, for people; empty if it may be.
+    std::string whyNot(Preset preset) const;
+
+  private:
+    bool is_switchable_;
+    const char* effect_of_gradient_law_;  // null: none
+};
 
 ShellConfig shellConfigOf(const scene::Scene& scene);
 

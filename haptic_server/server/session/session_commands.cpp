@@ -1,7 +1,6 @@
 #include "haptic_server/server/session/session_commands.h"
 
 #include "common/base/units.h"
-#include "common/config/scene_check.h"
 #include "common/rt/clock.h"
 #include "common/text/foreign_text.h"
 
@@ -22,8 +21,7 @@ SessionCommands::SessionCommands(const scene::Scene& scene, const BoneModel& bon
       checkpoints_(controls.history, bone),
       remarks_(bone.volume.geometry()),
       voxel_mm3_(bone.volume.voxelVolume() * kPerCubicMillimetre),
-      is_switchable_(scene.accuracy().switchable()),
-      effect_of_gradient_law_(effectOfGradientLaw(scene.effects())),
+      presets_(scene),
       open_to_(openTo(scene, only_instructors)) {}
 
 std::optional<Answer> SessionCommands::carryOut(const topics::Command& command) {
@@ -112,10 +110,8 @@ Answer SessionCommands::setAccuracy(const std::string& name) {
     if (name != "scene" && !preset)
         return Answer::refused("no preset is called '" + repeatedText(name) + "'; " + presetNames() +
                                " or scene");
-    if (!is_switchable_ && preset) return Answer::refused("the scene says accuracy.switchable: false");
-    if (preset && presetSettings(*preset).law != ContactLaw::kGradient && effect_of_gradient_law_)
-        return Answer::refused(std::string("effects.") + effect_of_gradient_law_ +
-                               " of the scene needs the gradient contact law, which " + name + " is not");
+    if (const std::string why_not = preset ? presets_.whyNot(*preset) : ""; !why_not.empty())
+        return Answer::refused(why_not);
     controls_.accuracy.choose(preset ? AccuracySwitch::choiceOf(*preset) : AccuracySwitch::kSceneChoice);
     return Answer::done();
 }

@@ -11,6 +11,7 @@
 #include "common/commands/role_rules.h"
 #include "haptic_server/core/bone/checkpoints.h"
 #include "haptic_server/core/tick/tick_choices.h"
+#include "haptic_server/scene/setup/scene_accuracy.h"
 #include "haptic_server/scene/setup/scene_setup.h"
 #include "haptic_server/server/session/attempt_controller.h"
 #include "haptic_server/server/session/journal_notes.h"
@@ -96,8 +97,7 @@ class SessionCommands {
     Checkpoints checkpoints_;
     RemarkList remarks_;
     double voxel_mm3_;
-    bool is_switchable_;
-    const char* effect_of_gradient_law_;  // null: none
+    PresetRule presets_;
     OpenTo open_to_;
 };
 
