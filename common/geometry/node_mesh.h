@@ -36,6 +36,11 @@ struct NodeMesh {
     bool isEmpty() const noexcept { return indices.empty(); }
 };
 
+// Returns where a vertex of this mesh lies (V, m).
+inline Eigen::Vector3f positionOf(const NodeMesh& mesh, const PackedVertex& v) {
+    return mesh.origin + mesh.step.cwiseProduct(Eigen::Vector3f(v.x, v.y, v.z));
+}
+
 // The octahedral coding of a unit vector n (Cigolle et al. 2014, "Survey of Efficient Representations for
 // Independent Unit Vectors") is (u, v) = (n.x, n.y) / (|n.x| + |n.y| + |n.z|), folded over the diagonals
 // when n.z < 0, times 127. The worst error of a normal is below 1.5 degrees. Both functions are thread-safe

@@ -24,9 +24,7 @@ float distanceOf(const std::map<uint32_t, NodeMesh>& meshes, const Eigen::Vector
     float nearest = std::numeric_limits<float>::max();
     for (const auto& [leaf, mesh] : meshes) {
         if (mesh.isEmpty()) continue;  // an emptied leaf has no place
-        const PackedVertex& v = mesh.vertices.front();
-        const Eigen::Vector3f p = mesh.origin + mesh.step.cwiseProduct(Eigen::Vector3f(v.x, v.y, v.z));
-        nearest = std::min(nearest, (p - point).norm());
+        nearest = std::min(nearest, (positionOf(mesh, mesh.vertices.front()) - point).norm());
     }
     return nearest < std::numeric_limits<float>::max() ? nearest : 0;  // nothing but emptied: costs nothing
 }

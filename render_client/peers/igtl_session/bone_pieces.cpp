@@ -16,9 +16,8 @@ Eigen::Vector3d vectorOf(const google::protobuf::RepeatedField<double>& numbers)
 void add(const NodeMesh& mesh, const Eigen::Isometry3d& ras_of_V, Surface& surface) {
     const auto first = uint32_t(surface.points.size());
     for (const PackedVertex& vertex : mesh.vertices) {
-        const Eigen::Vector3f steps(vertex.x, vertex.y, vertex.z);
-        const Eigen::Vector3f p_V = mesh.origin + mesh.step.cwiseProduct(steps);
-        surface.points.push_back((ras_of_V * (p_V.cast<double>() * kPerMillimetre)).cast<float>());
+        const Eigen::Vector3d p_V = positionOf(mesh, vertex).cast<double>();
+        surface.points.push_back((ras_of_V * (p_V * kPerMillimetre)).cast<float>());
         const Eigen::Vector3f normal_V = decodeNormal(vertex.octahedral_u, vertex.octahedral_v);
         surface.normals.push_back((ras_of_V.linear() * normal_V.cast<double>()).cast<float>());
     }

@@ -13,9 +13,7 @@ constexpr std_msgs_msg_dds__ColorRGBA_ kBoneColour{0.89f, 0.85f, 0.75f, 1};
 constexpr size_t kMarkerBytes = 256;  // of what is not points
 
 Point pointOf(const NodeMesh& mesh, uint32_t index) {
-    const PackedVertex& v = mesh.vertices[index];
-    const Eigen::Vector3d p =
-        (mesh.origin + mesh.step.cwiseProduct(Eigen::Vector3f(v.x, v.y, v.z))).cast<double>();
+    const Eigen::Vector3d p = positionOf(mesh, mesh.vertices[index]).cast<double>();
     return {p.x(), p.y(), p.z()};
 }
 
