@@ -3,6 +3,7 @@ import ast
 import json
 import os
 import pathlib
+import shutil
 import threading
 import warnings
 import unittest
@@ -10,7 +11,7 @@ import unittest
 import numpy as np
 
 import bonemill
-from place import BIN, BLOCK, SCENES, TASK, Folder, run
+from place import BIN, BLOCK, SCENES, SOURCE, TASK, Folder, run
 
 DOWN = np.linspace([0, 0, 3e-3], [0.2e-3, 0.1e-3, 1.6e-3], 300)
 
@@ -244,17 +245,30 @@ class OfATask(Folder):
 
 class OfShippedScenes(Folder):
     TICKS = 300
-    ALWAYS = {"freeform", "minimal", "pedicle", "temporal_bone", "third_molar", "tooth_caries", "tooth_cavity", "tooth_corridor"}
+    WITHOUT_A_PHANTOM = {"mastoid", "tooth_wall"}  # their volumes come with a Debian package, and from the demo
+
+    def setUp(self):
+        """Scenes and phantoms lie to each other as in the repository; the largest phantom is a coarse one."""
+        super().setUp()
+        self.scenes = shutil.copytree(SCENES, self.folder / "deploy" / "scenes")
+        data = self.folder / "build" / "data"
+        data.mkdir(parents=True)
+        bone = data / "temporal_bone"
+        for words in ([BIN / "make_phantom", "temporal_bone", "--voxel-mm", 0.5, "--out", f"{bone}.nrrd",
+                       "--labels", f"{bone}_labels.nrrd"], ["touch", f"{bone}.made"],
+                      [SOURCE / "deploy" / "make-phantoms", "--bin", BIN, "--out", data]):
+            made = run(*words)
+            self.assertEqual(made.returncode, 0, made.stderr)
 
     def test_run_is_simulate(self):
         """From where each scene's own hand first presses its pedal, or from the middle of its way."""
-        for file in sorted(SCENES.glob("*.textproto")):
+        for file in sorted(self.scenes.glob("*.textproto")):
             with self.subTest(file.stem):
                 try:
                     sim = bonemill.Scene.load(file).simulation()
                 except bonemill.Error as error:
-                    self.assertNotIn(file.stem, self.ALWAYS)
-                    self.skipTest(str(error))  # its volume comes with a package, or is made by the demo
+                    self.assertIn(file.stem, self.WITHOUT_A_PHANTOM, error)
+                    self.skipTest(str(error))
                 way = bonemill.scripted_hand(sim)
                 pressed = np.flatnonzero(way["buttons"])
                 first = pressed[0] if len(pressed) else len(way["t_s"]) // 2
