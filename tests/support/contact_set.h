@@ -28,15 +28,21 @@ struct ContactSet {
         }
     }
     // The tick starts with these as the last one's contacts.
-    void giveTo(EffectTick& tick) const {
+    void giveTo(EffectTick& tick) {
+        const Eigen::Vector3d axis = tick.X_VT.rotation * Eigen::Vector3d::UnitY();
+        rubbing_radii.clear();
+        for (size_t n = 0; n < contacts.size(); ++n)
+            rubbing_radii.push_back(rubbingRadius(contacts[n].r_V.cast<double>(), axis, double(areas[n])));
         tick.contacts = contacts;
         tick.is_on_burr = on_burr;
+        tick.rubbing_radius = rubbing_radii;
         tick.place_area = areas;
         tick.burr_load = burrLoadOf(tick);
     }
 
     std::vector<SurfaceContact> contacts;
     std::vector<uint8_t> on_burr;
+    std::vector<double> rubbing_radii;
     std::vector<float> areas;
 };
 

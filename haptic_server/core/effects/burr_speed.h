@@ -37,14 +37,10 @@ inline double spinShare(double spin_speed, const Burr& burr) noexcept {
 // Calls visit(contact, r, ρ) for each contact on the burr.
 template <class Visit>
 void forEachBurrContact(const EffectTick& tick, Visit&& visit) noexcept {
-    const Eigen::Vector3d axis = tick.X_VT.rotation * Eigen::Vector3d::UnitY();  // of the contacts' tick
-    for (size_t n = 0; n < tick.contacts.size(); ++n) {
-        if (!tick.is_on_burr[n]) continue;
-        const SurfaceContact& contact = tick.contacts[n];
-        const Eigen::Vector3d r = contact.r_V.cast<double>();
-        const double area = double(tick.place_area[contact.candidate]);
-        visit(contact, r, rubbingRadius(r, axis, area));
-    }
+    for (size_t n = 0; n < tick.contacts.size(); ++n)
+        if (tick.is_on_burr[n])
+            visit(tick.contacts[n], Eigen::Vector3d(tick.contacts[n].r_V.cast<double>()),
+                  tick.rubbing_radius[n]);
 }
 
 inline BurrLoad burrLoadOf(const EffectTick& tick) noexcept {

@@ -12,6 +12,7 @@ EffectHost::EffectHost(EffectList effects, size_t most_candidates, double stiffn
     if (!any(HapticEffect::kReadsContacts)) return;
     contacts_.resize(most_candidates);
     is_on_burr_.resize(most_candidates);
+    rubbing_radius_.resize(most_candidates);
     place_area_.resize(most_candidates);
 }
 
@@ -65,12 +66,18 @@ void EffectHost::afterSolve(const Pose& X_VT, SpoModel& model) noexcept {
     const size_t count = model.listContacts(contacts_);
     tick_.contacts = {contacts_.data(), count};
     tick_.is_on_burr = {is_on_burr_.data(), count};
+    tick_.rubbing_radius = {rubbing_radius_.data(), count};
     // A contact lies inside the tool, so that those of the burr lie inside the burr but for what the tool's
     // distances may be wrong.
     const Eigen::Quaternionf R_TV = X_VT.rotation.conjugate().cast<float>();
+    const Eigen::Vector3d axis = X_VT.rotation * Eigen::Vector3d::UnitY();
     for (size_t n = 0; n < count; ++n) {
-        const Eigen::Vector3f r_T = R_TV * contacts_[n].r_V;
+        const SurfaceContact& contact = contacts_[n];
+        const Eigen::Vector3f r_T = R_TV * contact.r_V;
         is_on_burr_[n] = tick_.tool->burr.signedDistance(r_T.cast<double>()) < burr_slack_;
+        if (is_on_burr_[n])
+            rubbing_radius_[n] =
+                rubbingRadius(contact.r_V.cast<double>(), axis, double(place_area_[contact.candidate]));
     }
     tick_.burr_load = burrLoadOf(tick_);
 }

@@ -51,6 +51,7 @@ class EffectHost final : private ContactWeights, private SolveEnergy {
     EffectTick tick_;
     std::vector<SurfaceContact> contacts_;  // room for all candidates, if any effect reads them
     std::vector<uint8_t> is_on_burr_;
+    std::vector<double> rubbing_radius_;
     std::vector<float> place_area_;
 };
 

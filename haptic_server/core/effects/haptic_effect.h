@@ -57,6 +57,7 @@ struct EffectTick : EffectStart {
     // next tick's.
     std::span<const SurfaceContact> contacts;  // of the whole tool
     std::span<const uint8_t> is_on_burr;       // per contact
+    std::span<const double> rubbing_radius;    // per contact on the burr: ρ, m (burr_speed.h)
     std::span<const float> place_area;         // per candidate: what it stands for, m²
     BurrLoad burr_load;                        // of the contacts on the burr
     double cut_share = 1;                      // of the burr's moment, that cuts; the rest rubs

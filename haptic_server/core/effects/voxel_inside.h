@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "haptic_server/core/volume/floor_index.h"
+
 namespace bonemill {
 
 // Returns the voxel whose centre is nearest to a place half a voxel inside of the surface at p_V (m) with
@@ -11,7 +13,7 @@ inline Eigen::Vector3i voxelInside(const Eigen::Vector3f& p_V, const Eigen::Vect
                                    const Eigen::Vector3f& spacing) noexcept {
     const Eigen::Array3f place = p_V.array() / spacing.array() - 0.5f * n_V.array();
     constexpr float kFar = 1e6f;  // voxels: what an int holds
-    return (place + 0.5f).floor().max(-kFar).min(kFar).cast<int>().matrix();
+    return floorIndices((place + 0.5f).max(-kFar).min(kFar).matrix());
 }
 
 }  // namespace bonemill

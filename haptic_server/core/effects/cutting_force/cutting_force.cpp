@@ -34,7 +34,8 @@ class TangentialDampers {
         of_rr_ += (d * r) * r.transpose();
         Vector6d w;
         w << n, r.cross(n);
-        of_w_.selfadjointView<Eigen::Upper>().rankUpdate(w, d);
+        for (int column = 0; column < 6; ++column)
+            of_w_.col(column).head(column + 1) += d * w[column] * w.head(column + 1);
     }
     Matrix6d damping() const noexcept {
         Matrix6d all;

@@ -158,7 +158,7 @@ class EnergyRemoval final : public HapticEffect {
         const Eigen::Vector3d half(burr.radius, std::max(burr.radius, burr.length / 2), burr.radius);
         const Eigen::Vector3d r_T = tick.X_VT.rotation.conjugate() * contact.r_V.cast<double>();
         const Eigen::Array3d place = (r_T.array() / half.array() + 1) * (kRegionsPerAxis / 2.0);
-        const Eigen::Array3i at = place.floor().max(0.0).min(kRegionsPerAxis - 1.0).cast<int>();
+        const Eigen::Array3i at = place.max(0.0).min(kRegionsPerAxis - 1.0).cast<int>();
         return size_t(at.x() + kRegionsPerAxis * (at.y() + kRegionsPerAxis * at.z()));
     }
     // The contacts of a patch follow each other. Together they have the area of the whole patch, each in
@@ -198,7 +198,6 @@ class EnergyRemoval final : public HapticEffect {
     // Gives the energies of the contacts whose turn it is to the surface. Returns the sum of all, J.
     double spendContacts(EffectTick& tick, const BoneModel& bone) noexcept {
         const Burr& burr = tick.tool->burr;
-        const Eigen::Vector3d axis = tick.X_VT.rotation * Eigen::Vector3d::UnitY();
         shift_.begin(bone, burr, tick.X_VT);
         if (rubs_) weighRegions(tick);
         if (turns_ > 1 && turn_ == 0) shareLeaves(tick);
@@ -208,9 +207,7 @@ class EnergyRemoval final : public HapticEffect {
         for (size_t n = 0; n < tick.contacts.size(); ++n) {
             if (!tick.is_on_burr[n]) continue;
             const SurfaceContact& contact = tick.contacts[n];
-            const double area = double(tick.place_area[contact.candidate]);
-            const double speed =
-                std::abs(tick.spin_speed) * rubbingRadius(contact.r_V.cast<double>(), axis, area);
+            const double speed = std::abs(tick.spin_speed) * tick.rubbing_radius[n];
             const double cutting = double(contact.force) * speed * cuttingShare(n);
             const double of_contact = burr.friction * cutting * tick.milled_dt;
             energy += of_contact;

@@ -24,6 +24,8 @@ class DeadCells {
     // The brick is inside the grid, and the cell one of its kCells, x first.
     void add(const Eigen::Vector3i& brick, int cell) noexcept;
     void remove(const Eigen::Vector3i& brick, int cell) noexcept;
+    // False says that this brick has none.
+    bool mayHave(const Eigen::Vector3i& brick) const noexcept { return slotOf(brick) != kNone; }
     void forget() noexcept;
     size_t count() const noexcept { return count_; }
 

@@ -1,4 +1,4 @@
-// The bone's surface in the heat grid: how large it is, where water reaches it, and what it gives off.
+// The bone's surface in the heat grid: where water reaches it, and what it gives off.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,21 +12,6 @@ namespace {
 constexpr double kWetLookPeriod = 4e-3;  // s
 
 }  // namespace
-
-// Area of a cube of bone towards the air, from which of its neighbours are bone. A surface with the unit
-// normal n has stairs of |n_x| + |n_y| + |n_z| times its area.
-uint8_t HeatGrid::openArea(const bool* at) noexcept {
-    const int faces = !at[-kX] + !at[kX] + !at[-kY] + !at[kY] + !at[-kZ] + !at[kZ];
-    if (faces == 0) return 0;
-    Eigen::Vector3d outwards = Eigen::Vector3d::Zero();
-    for (int z = -1; z <= 1; ++z)
-        for (int y = -1; y <= 1; ++y)
-            for (int x = -1; x <= 1; ++x)
-                if (!at[x * kX + y * kY + z * kZ]) outwards += Eigen::Vector3d(x, y, z);
-    const double length = outwards.norm();
-    const double stairs = length > 0 ? outwards.lpNorm<1>() / length : 1;
-    return uint8_t(std::lround(kPartsOfFace * faces / stairs));
-}
 
 void HeatGrid::irrigate(const Eigen::Vector3d& center_V, double radius,
                         const Eigen::Vector3d& p_VN) noexcept {

@@ -6,6 +6,7 @@
 
 #include "common/base/assert.h"
 #include "common/math/pinned_math.h"
+#include "haptic_server/core/volume/floor_index.h"
 
 namespace bonemill {
 namespace {
@@ -19,7 +20,6 @@ constexpr double kPoolShare = 0.8;  // of the bricks that could have their turn 
 constexpr size_t kMostBricks = 1024, kMostDeadBricks = 16384;
 constexpr size_t kLookupsPerStep = 4;  // of a brick's cubes in the volume
 constexpr size_t kLookupsOfHeat = 2;   // of them, that dead bone leaves to the bricks whose turn it is
-constexpr int64_t kMaxBricksToRevisit = 512;
 // They are in K: a brick whose border is warmer than that opens its neighbour; one that is cooler all over is
 // closed when it has been open for a while. Cold matters less.
 constexpr float kWarm = 0.01f, kCold = -1, kSettledCold = -0.5f;
@@ -28,6 +28,14 @@ constexpr double kLeastWeight = 0.02;  // of a cube that heat is spread to
 
 const std::array<Eigen::Vector3i, 6> kSides = {
     {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
+
+// Calls visit(n) for the cells of a brick that are the last ones along the axis with this step.
+template <class Visit>
+void forEachLast(int step, Visit&& visit) noexcept {
+    const int row = DeadCells::kEdge * step;
+    for (int first = row - step; first < DeadCells::kCells; first += row)
+        for (int n = first; n < first + step; ++n) visit(n);
+}
 
 }  // namespace
 
@@ -63,25 +71,22 @@ HeatGrid::HeatGrid(const HeatConfig& config, const VoxelVolume& bone, double dt)
     for (size_t n = pool_.size(); n > 0; --n) free_.push_back(uint32_t(n - 1));
     active_.reserve(pool_.size());
     lookups_ = kLookupsPerStep;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto middleIn = [&](size_t cell) {
+            return int((double(cell) + 0.5) * config.cell / bone.spacing()[axis]);
+        };
+        std::vector<int>& voxels = voxels_[axis];
+        while (middleIn(voxels.size()) < bone.dims()[axis]) voxels.push_back(middleIn(voxels.size()));
+    }
+    const double around = kAround * config.cell / bone.spacing().x();
+    row_.resize(size_t(std::min(around + 2, double(bone.dims().x()))) + VoxelVolume::kReadSlack);
 }
 
 // The grid begins where the first voxel does, half a voxel before its centre.
 Eigen::Vector3i HeatGrid::cellAt(const Eigen::Vector3d& p_V) const noexcept {
     constexpr double kFar = 1e6;
     const Eigen::Array3d place = (p_V + bone_.spacing() / 2).array() / config_.cell;
-    return place.floor().max(-kFar).min(kFar).cast<int>().matrix();
-}
-
-// Returns the voxel in the middle of this cube along one axis, or kOutside.
-int HeatGrid::voxelAt(int cell, int axis) const noexcept {
-    const double from_border = (cell + 0.5) * config_.cell;
-    const int voxel = int(std::floor(from_border / bone_.spacing()[axis]));
-    return voxel >= 0 && voxel < bone_.dims()[axis] ? voxel : kOutside;
-}
-
-bool HeatGrid::isBone(const Eigen::Vector3i& cell) const noexcept {
-    const Eigen::Vector3i voxel(voxelAt(cell.x(), 0), voxelAt(cell.y(), 1), voxelAt(cell.z(), 2));
-    return voxel.minCoeff() != kOutside && bone_.at(voxel.x(), voxel.y(), voxel.z()) >= bone_.iso();
+    return floorIndices(place.max(-kFar).min(kFar).matrix());
 }
 
 HeatGrid::Brick* HeatGrid::find(const Eigen::Vector3i& brick) noexcept {
@@ -102,34 +107,9 @@ HeatGrid::Brick* HeatGrid::findOrOpen(const Eigen::Vector3i& index) noexcept {
     hottestOf(brick) = 0;
     brick.index = index;
     brick.opened = brick.last_time = now_;
+    brick.stale = kAllRows;
     lookUpBone(brick);
     return &brick;
-}
-
-void HeatGrid::lookUpBone(Brick& brick) noexcept {
-    --lookups_;
-    brick.is_stale = false;
-    std::array<bool, kAround * kAround * kAround> is_bone{};
-    int voxels[3][kAround];
-    for (int axis = 0; axis < 3; ++axis)
-        for (int n = 0; n < kAround; ++n) voxels[axis][n] = voxelAt(brick.index[axis] * kEdge + n - 1, axis);
-    for (int z = 0; z < kAround; ++z)
-        for (int y = 0; y < kAround; ++y) {
-            if (voxels[2][z] == kOutside || voxels[1][y] == kOutside) continue;
-            bool* row = &is_bone[size_t(y * kY + z * kZ)];
-            for (int x = 0; x < kAround; ++x)
-                row[x] = voxels[0][x] != kOutside &&
-                         bone_.at(voxels[0][x], voxels[1][y], voxels[2][z]) >= bone_.iso();
-        }
-    forEachIndex(
-        {Eigen::Vector3i::Zero(), Eigen::Vector3i::Constant(kEdge - 1)}, [&](const Eigen::Vector3i& c) {
-            const bool* at = &is_bone[size_t((c.x() + 1) * kX + (c.y() + 1) * kY + (c.z() + 1) * kZ)];
-            const int n = cellIndex(c);
-            if (*at != bool(brick.is_bone[n])) brick.excess[n] = brick.hot_time[n] = 0;
-            brick.is_bone[n] = *at;
-            brick.open_area[n] = *at ? openArea(at) : uint8_t(0);
-            if (!*at) dead_.remove(brick.index, n);
-        });
 }
 
 // The brick of a cube of bone, which it opens where there is room; null: it is no bone, or there is none.
@@ -137,7 +117,7 @@ HeatGrid::Brick* HeatGrid::boneAt(const Eigen::Vector3i& cell) noexcept {
     if ((cell.array() < 0).any()) return nullptr;
     Brick* brick = findOrOpen(brickOfCell(cell));
     if (!brick) return nullptr;
-    if (brick->is_stale && lookups_ > 0) lookUpBone(*brick);
+    if (brick->stale && lookups_ > 0) lookUpBone(*brick);
     return brick->is_bone[cellIndex(cell)] ? brick : nullptr;
 }
 
@@ -191,27 +171,6 @@ void HeatGrid::addHeat(const Eigen::Vector3d& p_V, const Eigen::Vector3d& inward
         if (Brick* const brick = boneAt(cell + side)) return putInto(*brick, cell + side, heat);
 }
 
-void HeatGrid::noteChange(const IndexBox& voxels) noexcept {
-    if (voxels.isEmpty()) return;
-    const auto brickOf = [&](const Eigen::Vector3i& voxel, int grown) {
-        const Eigen::Vector3i cell =
-            cellAt(bone_.spacing().cwiseProduct(voxel.cast<double>())).array() + grown;
-        return brickOfCell(cell);
-    };
-    const IndexBox box{brickOf(voxels.min, -1), brickOf(voxels.max, +1)};
-    if (box.count() > kMaxBricksToRevisit) return noteChangeEverywhere();
-    forEachIndex(box.clamped(Eigen::Vector3i::Zero(), bricks_.array() - 1),
-                 [&](const Eigen::Vector3i& index) {
-                     if (Brick* brick = find(index)) brick->is_stale = true;
-                     dead_.noteChange(index);
-                 });
-}
-
-void HeatGrid::noteChangeEverywhere() noexcept {
-    for (const uint32_t slot : active_) pool_[slot].is_stale = true;
-    dead_.noteChangeEverywhere();
-}
-
 void HeatGrid::forget() noexcept {
     while (!active_.empty()) close(active_.size() - 1);
     turns_due_ = 0;
@@ -230,7 +189,7 @@ void HeatGrid::step(bool has_time) noexcept {
     for (; turns_due_ >= 1 && !active_.empty(); --turns_due_) {
         if (next_ >= active_.size()) next_ = 0;
         Brick& brick = pool_[active_[next_]];
-        if (brick.is_stale) {
+        if (brick.stale) {
             if (lookups_ == 0) return;
             lookUpBone(brick);
         }
@@ -275,23 +234,23 @@ void HeatGrid::openNeighbours(Brick& brick) noexcept {
 // neighbours' own turns do the others.
 void HeatGrid::conduct(Brick& brick, double elapsed) noexcept {
     const float share = float(per_time_ * elapsed);
-    std::array<float, kCells> gain{};
+    std::array<float, kCells> gain{}, flow, is_bone;
+    std::copy_n(brick.is_bone, kCells, is_bone.begin());
     for (int axis = 0; axis < 3; ++axis) {
-        const int step = 1 << (kShift * axis);
-        Brick* above = find(brick.index + kSides[size_t(axis)]);
-        for (int n = 0; n < kCells; ++n) {
-            const bool is_last = (n >> (kShift * axis) & (kEdge - 1)) == kEdge - 1;
-            if (!brick.is_bone[n] || (is_last && !above)) continue;
-            const int m = is_last ? n - (kEdge - 1) * step : n + step;
-            Brick& other = is_last ? *above : brick;
-            if (!other.is_bone[m]) continue;
-            const float flow = share * (brick.excess[n] - other.excess[m]);
-            gain[size_t(n)] -= flow;
-            if (is_last)
-                other.excess[m] += flow;
-            else
-                gain[size_t(m)] += flow;
-        }
+        const int step = 1 << (kShift * axis), to_first = (kEdge - 1) * step;
+        for (int n = 0; n < kCells - step; ++n)
+            flow[size_t(n)] = share * (brick.excess[n] - brick.excess[n + step]) *
+                              (is_bone[size_t(n)] * is_bone[size_t(n + step)]);
+        forEachLast(step, [&](int n) { flow[size_t(n)] = 0; });
+        for (int n = step; n < kCells; ++n) gain[size_t(n)] += flow[size_t(n - step)];
+        if (Brick* above = find(brick.index + kSides[size_t(axis)]))
+            forEachLast(step, [&](int n) {
+                const int m = n - to_first;
+                if (!brick.is_bone[n] || !above->is_bone[m]) return;
+                flow[size_t(n)] = share * (brick.excess[n] - above->excess[m]);
+                above->excess[m] += flow[size_t(n)];
+            });
+        for (int n = 0; n < kCells; ++n) gain[size_t(n)] -= flow[size_t(n)];
     }
     for (int n = 0; n < kCells; ++n) brick.excess[n] += gain[size_t(n)];
 }

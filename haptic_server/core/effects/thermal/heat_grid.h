@@ -9,7 +9,9 @@
 // The frame is V. Construction allocates; all else is RT-safe, for the tick thread only.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "haptic_server/core/effects/thermal/dead_cells.h"
@@ -54,15 +56,21 @@ class HeatGrid {
     static constexpr uint32_t kNone = ~uint32_t(0);
     static constexpr int kOutside = -1;
     static constexpr int kAround = kEdge + 2;  // cubes that a look at a brick sees along an axis
-    static constexpr Eigen::Index kX = 1, kY = kAround, kZ = kAround * kAround;
+    // Of the cubes around a brick, which are bone: a bit for each along x, rows along y first.
+    using BoneRows = std::array<uint16_t, size_t(kAround* kAround)>;
     static constexpr double kSpareForSources = 0.25;  // of the pool, that heat on its way does not take
     static constexpr int kTurnsPerLook = 4;
+
+    // Rows of a brick's cubes along x: a bit for each, those along y first.
+    using RowSet = uint64_t;
+    static constexpr RowSet kAllRows = ~RowSet(0);
+    static_assert(kEdge * kEdge == std::numeric_limits<RowSet>::digits);
 
     struct Brick {
         Eigen::Vector3i index = Eigen::Vector3i::Zero();
         double opened, last_time;  // s; up to the latter its faces are done
         float coldest;             // above body temperature; of its bone
-        bool is_stale;             // whether cells are bone is to be looked up anew
+        RowSet stale;              // whether cells of these rows are bone is to be looked up anew
         float excess[kCells];      // temperature above the body's
         float hot_time[kCells];    // s above necrosis without a break
         uint8_t is_bone[kCells];
@@ -98,8 +106,19 @@ class HeatGrid {
         return (p_V - wet_center_V_).squaredNorm() < wet_radius_ * wet_radius_ && brick.is_reached[cell];
     }
     void openWet() noexcept;
-    static uint8_t openArea(const bool* at) noexcept;
+    // The rows are the first of 3 x 3 around one, and a bit of it is a cube's that is bone, or has a face to
+    // the air, too.
+    static unsigned boneIn(const uint16_t* rows) noexcept {
+        return rows[1 + kAround] >> 1 & ((1 << kEdge) - 1);
+    }
+    static unsigned openIn(const uint16_t* rows) noexcept {
+        const unsigned row = rows[1 + kAround];
+        const unsigned beside = rows[1] & rows[kAround] & rows[2 + kAround] & rows[1 + 2 * kAround];
+        return boneIn(rows) & ~(row & row >> 2 & beside >> 1);
+    }
+    static uint8_t openArea(const uint16_t* rows, int x) noexcept;
     void lookUpBone(Brick& brick) noexcept;
+    BoneRows rowsAround(const Brick& brick) noexcept;
     void conduct(Brick& brick, double elapsed) noexcept;
     void openNeighbours(Brick& brick) noexcept;
     void cool(Brick& brick, double elapsed) noexcept;
@@ -136,6 +155,8 @@ class HeatGrid {
     std::vector<uint32_t> free_;
     std::vector<uint32_t> active_;
     std::vector<uint32_t> directory_;  // per brick: in pool_
+    std::vector<int> voxels_[3];       // per cube along an axis with a voxel in its middle: which one
+    std::vector<Density> row_;         // scratch
     DeadCells dead_;
 };
 
