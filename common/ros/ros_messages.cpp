@@ -39,6 +39,10 @@ const dds_topic_descriptor_t* typeOf<TFMessage>() {
     return &tf2_msgs_msg_dds__TFMessage__desc;
 }
 template <>
+const dds_topic_descriptor_t* typeOf<JointState>() {
+    return &sensor_msgs_msg_dds__JointState__desc;
+}
+template <>
 const dds_topic_descriptor_t* typeOf<Joy>() {
     return &sensor_msgs_msg_dds__Joy__desc;
 }

@@ -22,6 +22,7 @@ using TwistStamped = geometry_msgs_msg_dds__TwistStamped_;
 using WrenchStamped = geometry_msgs_msg_dds__WrenchStamped_;
 using TransformStamped = geometry_msgs_msg_dds__TransformStamped_;
 using TFMessage = tf2_msgs_msg_dds__TFMessage_;
+using JointState = sensor_msgs_msg_dds__JointState_;
 using Joy = sensor_msgs_msg_dds__Joy_;
 using Marker = visualization_msgs_msg_dds__Marker_;
 using MarkerArray = visualization_msgs_msg_dds__MarkerArray_;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "device_daemon/ares/kinematics/ares_kinematics.h"
+#include "common/ares_kinematics/ares_kinematics.h"
 
 namespace bonemill {
 namespace {

@@ -6,7 +6,7 @@
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/config/scene_geometry.h"
-#include "device_daemon/ares/kinematics/ares_kinematics.h"
+#include "common/ares_kinematics/ares_kinematics.h"
 
 namespace bonemill {
 namespace {
@@ -69,15 +69,6 @@ void addHome(std::ostringstream& out, const std::optional<HomePlace>& home) {
     }
 }
 
-AresGeometry geometryOfAres(const scene::Device& device) {
-    return {.base_radius = kMillimetre * device.base_radius_mm(),
-            .platform_radius = kMillimetre * device.platform_radius_mm(),
-            .base_half_angle = kDegree * device.base_half_angle_deg(),
-            .platform_half_angle = kDegree * device.platform_half_angle_deg(),
-            .link_length = kMillimetre * device.link_length_mm(),
-            .stroke = kMillimetre * device.stroke_mm()};
-}
-
 MovingWeight weightOf(const scene::Device& device) {
     MovingWeight weight;
     if (device.is_counterweighted()) return weight;
@@ -133,7 +124,7 @@ std::string describe(const AresDeviceConfig& config) {
 
 AresDeviceConfig aresConfigOf(const scene::Device& device, bool is_simulated, const Pose& X_DT_start) {
     AresDeviceConfig config;
-    config.geometry = geometryOfAres(device);
+    config.geometry = aresGeometryOf(device);
     config.guard.encoder_step = kMicrometre * device.encoder_step_um();
     config.guard.friction = device.coulomb_friction_n();
     config.guard.X_DT_start = X_DT_start;

@@ -27,7 +27,7 @@
 #include "common/geometry/pose.h"
 #include "device_daemon/ares/driver/joint_device.h"
 #include "device_daemon/ares/driver/jump_check.h"
-#include "device_daemon/ares/kinematics/ares_kinematics.h"
+#include "common/ares_kinematics/ares_kinematics.h"
 
 namespace bonemill {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "device_daemon/ares/kinematics/ares_kinematics.h"
+#include "common/ares_kinematics/ares_kinematics.h"
 
 namespace bonemill {
 namespace {

@@ -9,7 +9,7 @@
 // RT-safe and pure. Frames and units: D about T's origin, m, N, N·m, J.
 #pragma once
 
-#include "device_daemon/ares/kinematics/ares_kinematics.h"
+#include "common/ares_kinematics/ares_kinematics.h"
 
 namespace bonemill {
 

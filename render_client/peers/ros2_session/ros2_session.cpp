@@ -85,6 +85,8 @@ void Ros2Session::takeTicks() {
 
 void Ros2Session::beginRun() {
     scene_info_.reset();
+    is_ares_ = false;
+    useArm();
     speaker_.beginRun();
     said_.beginRun();
     markers_.clear();
@@ -92,9 +94,20 @@ void Ros2Session::beginRun() {
 
 void Ros2Session::hear(topics::SceneInfo&& info) {
     scene_info_ = std::move(info);
+    useArm();
+}
+
+// Sliders are an ARES', and stand where the scene says that its base is.
+void Ros2Session::useArm() {
+    const bool is_known = is_ares_ && scene_info_ && scene_info_->has_device() &&
+                          !scene_info_->p_wd_m().empty() && !scene_info_->q_wd().empty();
+    if (!is_known) return speaker_.setArm({});
+    speaker_.setArm(AresArm(scene_info_->device(), poseOfFields(scene_info_->p_wd_m(), scene_info_->q_wd())));
 }
 
 void Ros2Session::hear(const topics::Status& status) {
+    const bool is_ares = DeviceKind(status.device().kind()) == DeviceKind::kAres;
+    if (std::exchange(is_ares_, is_ares) != is_ares) useArm();
     sayEvents(said_.of(status));
     std::string text;
     if (!google::protobuf::util::MessageToJsonString(status, &text).ok()) return;

@@ -64,6 +64,7 @@ class Ros2Session : private SessionSink {
     void join();
     void rejoinIfDeaf();
     void takeTicks();
+    void useArm();
     void sayFrames(const topics::ToolState& state);
     void sayOperatingState(const topics::ToolState& state);
     void sayEvents(const std::vector<std::string>& lines);
@@ -73,6 +74,7 @@ class Ros2Session : private SessionSink {
     std::optional<Link> link_;
     SessionEar ear_;
     std::optional<topics::SceneInfo> scene_info_;
+    bool is_ares_ = false;  // the device
 
     dds::Participant ros_;
     TickSpeaker speaker_;

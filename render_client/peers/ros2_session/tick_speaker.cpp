@@ -1,11 +1,16 @@
 #include "render_client/peers/ros2_session/tick_speaker.h"
 
+#include <array>
+#include <vector>
+
 #include "common/base/units.h"
 #include "common/ros/ros_messages.h"
 
 namespace bonemill::ros2 {
 namespace {
 
+constexpr std::array<const char*, kLegCount> kSliderNames = {"slider_1", "slider_2", "slider_3",
+                                                             "slider_4", "slider_5", "slider_6"};
 constexpr int64_t kPauseNs = 50 * kNsPerMillisecond;
 
 Eigen::Vector3d vectorOfFields(const google::protobuf::RepeatedField<double>& v) {
@@ -36,7 +41,8 @@ TickSpeaker::TickSpeaker(const dds::Participant& participant, const std::string&
     : measured_cp_(participant, name_space + "/measured_cp"),
       setpoint_cp_(participant, name_space + "/setpoint_cp"),
       measured_cv_(participant, name_space + "/measured_cv"),
-      measured_cf_(participant, name_space + "/measured_cf") {}
+      measured_cf_(participant, name_space + "/measured_cf"),
+      measured_js_(participant, name_space + "/measured_js") {}
 
 void TickSpeaker::say(const topics::Tick& tick) {
     if (last_tick_ && tick.tick() > *last_tick_) missing_ += tick.tick() - *last_tick_ - 1;
@@ -47,8 +53,25 @@ void TickSpeaker::say(const topics::Tick& tick) {
     setpoint_cp_.write(poseOf(stamp_ns, kWorldFrame, poseOfFields(tick.p_wt_m(), tick.q_wt())));
     measured_cf_.write(
         wrenchOf(stamp_ns, kWorldFrame, {vectorOfFields(tick.force_n()), vectorOfFields(tick.torque_nm())}));
-    if (const auto motion = velocity_.take(X_WT_device, stamp_ns))
-        measured_cv_.write(twistOf(stamp_ns, kWorldFrame, motion->v, motion->w));
+    const auto motion = velocity_.take(X_WT_device, stamp_ns);
+    if (motion) measured_cv_.write(twistOf(stamp_ns, kWorldFrame, motion->v_WT, motion->w_WT));
+    sayJoints(stamp_ns, X_WT_device, motion);
+}
+
+// How hard the motors push is not among what a session tells: no effort is said.
+void TickSpeaker::sayJoints(int64_t stamp_ns, const Pose& X_WT,
+                            const std::optional<AresArm::Motion>& motion) {
+    const auto joints = arm_ ? arm_->jointsAt(X_WT, motion) : std::nullopt;
+    if (!joints) return;
+    std::vector<char*> names;
+    for (const char* name : kSliderNames) names.push_back(textOf(name));
+    std::vector<double> positions(joints->positions.begin(), joints->positions.end()), velocities;
+    if (joints->velocities) velocities.assign(joints->velocities->begin(), joints->velocities->end());
+    JointState message{.header = headerOf(stamp_ns, kDeviceFrame)};
+    pointAt(message.name, names);
+    pointAt(message.position, positions);
+    pointAt(message.velocity, velocities);
+    measured_js_.write(message);
 }
 
 void TickSpeaker::beginRun() {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "common/ares_kinematics/ares_kinematics.h"
 #include "common/ros/ros_endpoint.h"
 #include "tests/integration/ros2/fast_peer.h"
 #include "tests/integration/ros2/ros_session.h"
@@ -153,6 +154,50 @@ TEST_F(Ros2Session, SaysEveryTickToBothKindsOfNodesWithTheSameBytes) {
     const test::Finished finished = ros_->wait();
     EXPECT_EQ(finished.exit_code, 0);
     EXPECT_NE(finished.err.find(" ticks were said, "), std::string::npos) << finished.err;
+}
+
+// The simulated hand holds a simulated ARES, whose base is where the scene says.
+TEST_F(Ros2Session, SaysTheSlidersThatLeadToTheHandsPose) {
+    const std::string type = "sensor_msgs::msg::dds_::JointState_";
+    auto joints = fast_.read("rt/bonemill/measured_js", type, {.depth = 1000});
+    auto hands =
+        fast_.read("rt/bonemill/measured_cp", "geometry_msgs::msg::dds_::PoseStamped_", {.depth = 1000});
+    const Pose X_WD{{0, 1e-4, 2e-3}, Eigen::Quaterniond(1, 1, 0, 0).normalized()};
+    ByStamp poses;
+    std::map<int64_t, Vector6d> sliders;
+    ASSERT_TRUE(test::waitFor([&] {
+        usleep(5000);
+        for (const Bytes& bytes : hands.take()) takeStamped(bytes, 7, poses);
+        for (const Bytes& bytes : joints.take()) {
+            CdrBytes cdr(bytes);
+            const Header header = headerOf(cdr);
+            EXPECT_EQ(header.frame, "bonemill_device");
+            EXPECT_EQ(cdr.u32(), 6u);
+            for (int n = 1; n <= 6; ++n) EXPECT_EQ(cdr.text(), "slider_" + std::to_string(n));
+            EXPECT_EQ(cdr.u32(), 6u);
+            Vector6d& positions = sliders[header.stamp_ns];
+            for (double& position : positions) position = cdr.f64();
+            const uint32_t velocities = cdr.u32();
+            EXPECT_TRUE(velocities == 0 || velocities == 6);
+            for (uint32_t n = 0; n < velocities; ++n) EXPECT_LT(std::abs(cdr.f64()), 1);
+            EXPECT_EQ(cdr.u32(), 0u);  // no effort
+            EXPECT_TRUE(cdr.isWhole());
+        }
+        return sliders.size() > 500 && poses.size() > 500;
+    })) << sliders.size()
+        << ros_->errSoFar();
+    size_t compared = 0;
+    for (const auto& [stamp, positions] : sliders) {
+        const auto found = poses.find(stamp);
+        if (found == poses.end()) continue;
+        const Numbers& p = found->second.numbers;
+        const Pose X_WT{{p[0], p[1], p[2]}, {p[6], p[3], p[4], p[5]}};
+        Vector6d q;
+        ASSERT_TRUE(AresKinematics().inverse(X_WD.inverse() * X_WT, q));
+        EXPECT_LT((q - positions).cwiseAbs().maxCoeff(), 1e-9);
+        ++compared;
+    }
+    EXPECT_GT(compared, 300u);
 }
 
 TEST_F(Ros2Session, SaysFramesStateAndStatus) {

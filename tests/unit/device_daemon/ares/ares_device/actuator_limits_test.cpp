@@ -4,7 +4,7 @@
 #include <random>
 
 #include "device_daemon/ares/ares_device/ares_device.h"
-#include "device_daemon/ares/kinematics/ares_kinematics.h"
+#include "common/ares_kinematics/ares_kinematics.h"
 #include "tests/support/random_direction.h"
 
 namespace bonemill {

@@ -5,7 +5,7 @@
 #include <random>
 #include <string>
 
-#include "device_daemon/ares/kinematics/ares_kinematics.h"
+#include "common/ares_kinematics/ares_kinematics.h"
 #include "tests/support/random_direction.h"
 #include "tests/unit/device_daemon/ares/ares_device/ares_bench.h"
 

@@ -2,7 +2,7 @@
 
 #include "common/base/user_error.h"
 #include "device_daemon/ares/ares_device/ares_settings.h"
-#include "device_daemon/ares/kinematics/ares_kinematics.h"
+#include "common/ares_kinematics/ares_kinematics.h"
 
 namespace bonemill {
 namespace {

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "common/base/units.h"
-#include "device_daemon/ares/kinematics/ares_kinematics.h"
+#include "common/ares_kinematics/ares_kinematics.h"
 #include "tests/support/random_direction.h"
 
 namespace bonemill {

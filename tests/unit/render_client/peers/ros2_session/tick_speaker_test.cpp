@@ -18,8 +18,8 @@ TEST(HandVelocity, IsThatOfAnEvenMotion) {
     for (int n = 1; n < 50; ++n) {
         const auto motion = velocity.take(moving(n * 1e-3, v, w), n * kTickNs);
         ASSERT_TRUE(motion);
-        EXPECT_LT((motion->v - v).norm(), 1e-9);
-        EXPECT_LT((motion->w - w).norm(), 1e-9);
+        EXPECT_LT((motion->v_WT - v).norm(), 1e-9);
+        EXPECT_LT((motion->w_WT - w).norm(), 1e-9);
     }
 }
 

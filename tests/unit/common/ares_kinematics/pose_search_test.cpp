@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "device_daemon/ares/kinematics/ares_kinematics.h"
+#include "common/ares_kinematics/ares_kinematics.h"
 #include "tests/support/random_direction.h"
 
 namespace bonemill {

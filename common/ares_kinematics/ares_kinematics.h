@@ -140,7 +140,7 @@ Wrench wrenchOf(const Matrix6d& J_inv, const Vector6d& actuator_forces) noexcept
 // Six slider positions fit several poses: a six-legged platform has up to 40 assemblies. Only one of them
 // lies in the workspace that may be believed: turned by no more than kMaxTurn, assembled as the neutral pose,
 // better conditioned than kMinSingularityIndex, and within stroke and lean. That there is no second one is
-// measured, not proved: tests/property/device_daemon/ares/kinematics.
+// measured, not proved: tests/property/common/ares_kinematics.
 //
 // Encoders, and a stop that gives way, may show so much beyond stroke and lean (m).
 inline constexpr double kWorkspaceSlack = 1e-3;

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "common/base/units.h"
-#include "device_daemon/ares/kinematics/ares_kinematics.h"
+#include "common/ares_kinematics/ares_kinematics.h"
 
 namespace bonemill {
 namespace {

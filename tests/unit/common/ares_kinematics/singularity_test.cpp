@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "device_daemon/ares/kinematics/ares_kinematics.h"
+#include "common/ares_kinematics/ares_kinematics.h"
 
 namespace bonemill {
 namespace {

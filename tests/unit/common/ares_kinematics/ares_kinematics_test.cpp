@@ -1,4 +1,4 @@
-#include "device_daemon/ares/kinematics/ares_kinematics.h"
+#include "common/ares_kinematics/ares_kinematics.h"
 
 #include <gtest/gtest.h>
 

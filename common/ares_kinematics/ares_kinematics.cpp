@@ -1,4 +1,4 @@
-#include "device_daemon/ares/kinematics/ares_kinematics.h"
+#include "common/ares_kinematics/ares_kinematics.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
