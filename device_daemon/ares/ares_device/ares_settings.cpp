@@ -3,10 +3,10 @@
 #include <iomanip>
 #include <sstream>
 
+#include "common/ares_kinematics/ares_kinematics.h"
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/config/scene_geometry.h"
-#include "common/ares_kinematics/ares_kinematics.h"
 
 namespace bonemill {
 namespace {

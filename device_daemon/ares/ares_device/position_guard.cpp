@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "common/base/units.h"
 #include "common/ares_kinematics/ares_kinematics.h"
+#include "common/base/units.h"
 
 namespace bonemill {
 namespace {

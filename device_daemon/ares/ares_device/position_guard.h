@@ -24,10 +24,10 @@
 #include <array>
 #include <optional>
 
+#include "common/ares_kinematics/ares_kinematics.h"
 #include "common/geometry/pose.h"
 #include "device_daemon/ares/driver/joint_device.h"
 #include "device_daemon/ares/driver/jump_check.h"
-#include "common/ares_kinematics/ares_kinematics.h"
 
 namespace bonemill {
 

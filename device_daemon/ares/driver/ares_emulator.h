@@ -17,9 +17,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/ares_kinematics/ares_kinematics.h"
 #include "common/geometry/pose.h"
 #include "device_daemon/ares/driver/joint_device.h"
-#include "common/ares_kinematics/ares_kinematics.h"
 
 namespace bonemill {
 

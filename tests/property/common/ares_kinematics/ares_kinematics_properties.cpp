@@ -5,8 +5,8 @@
 
 #include <numbers>
 
-#include "common/base/units.h"
 #include "common/ares_kinematics/ares_kinematics.h"
+#include "common/base/units.h"
 
 namespace bonemill {
 namespace {

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <random>
 
-#include "common/base/units.h"
 #include "common/ares_kinematics/ares_kinematics.h"
+#include "common/base/units.h"
 
 namespace bonemill {
 namespace {

@@ -3,8 +3,8 @@
 #include <limits>
 #include <random>
 
-#include "device_daemon/ares/ares_device/ares_device.h"
 #include "common/ares_kinematics/ares_kinematics.h"
+#include "device_daemon/ares/ares_device/ares_device.h"
 #include "tests/support/random_direction.h"
 
 namespace bonemill {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "common/ares_kinematics/ares_kinematics.h"
 #include "common/base/user_error.h"
 #include "device_daemon/ares/ares_device/ares_settings.h"
-#include "common/ares_kinematics/ares_kinematics.h"
 
 namespace bonemill {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "common/base/units.h"
 #include "common/ares_kinematics/ares_kinematics.h"
+#include "common/base/units.h"
 #include "tests/support/random_direction.h"
 
 namespace bonemill {
