@@ -1,7 +1,6 @@
 // A scene's vectors, poses and handle in SI; frames are those that the fields name.
 #pragma once
 
-#include "common/ares_kinematics/ares_kinematics.h"
 #include "common/base/units.h"
 #include "common/device_messages/device_messages.h"
 #include "common/geometry/pose.h"
@@ -29,15 +28,6 @@ inline Pose poseOf(const scene::SimulatedOperator::Waypoint& waypoint) {
 // D in W.
 inline Pose poseOf(const scene::Device& device) {
     return {metresOf(device.p_wd_mm()), rotationOf(device.q_wd())};
-}
-
-inline AresGeometry aresGeometryOf(const scene::Device& device) {
-    return {.base_radius = kMillimetre * device.base_radius_mm(),
-            .platform_radius = kMillimetre * device.platform_radius_mm(),
-            .base_half_angle = kDegree * device.base_half_angle_deg(),
-            .platform_half_angle = kDegree * device.platform_half_angle_deg(),
-            .link_length = kMillimetre * device.link_length_mm(),
-            .stroke = kMillimetre * device.stroke_mm()};
 }
 
 // What a scene says of the mass, damping and delay of its ARES, as the device itself says it

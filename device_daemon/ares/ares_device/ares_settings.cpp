@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "common/ares_kinematics/ares_kinematics.h"
+#include "common/ares_kinematics/scene_ares.h"
 #include "common/base/units.h"
 #include "common/base/user_error.h"
 #include "common/config/scene_geometry.h"

@@ -1,6 +1,6 @@
 #include "render_client/peers/ros2_session/arm_joints.h"
 
-#include "common/config/scene_geometry.h"
+#include "common/ares_kinematics/scene_ares.h"
 
 namespace bonemill::ros2 {
 
