@@ -49,6 +49,19 @@ class OfABlock(Folder):
         self.assertAlmostEqual(result.force_n[2], 3000 * lower, delta=2e-3)
         self.assertGreater(result.force_n[2], 0.02)
 
+    def test_an_effect_that_is_taken_away_was_never_there(self):
+        def hash_of(listed, **options):
+            sim = bonemill.Scene.load(self.scene(BLOCK.replace("time_removal { }", listed))).simulation(**options)
+            sideways = np.linspace([0, 0, 0], [1e-3, 0, 0], len(DOWN))
+            sim.run(DOWN + sideways, buttons=(np.arange(len(DOWN)) >= 230).astype(int))  # it rubs, then mills
+            return sim.state_hash
+
+        without, with_it = hash_of("time_removal { }"), "time_removal { } surface_friction { coefficient: 0.5 }"
+        self.assertNotEqual(hash_of(with_it), without)
+        self.assertEqual(hash_of(with_it, effects={"surface_friction": False}), without)
+        self.assertEqual(hash_of(with_it, effects={"surface_friction": np.False_}), without)
+        self.assertEqual(hash_of(with_it, effects={"surface_friction": False, "time_removal": False}), hash_of(""))
+
     def test_a_checkpoint_is_restored_to_the_bit(self):
         sim = self.simulation()
         sim.run(DOWN[:200], buttons=1)
@@ -135,7 +148,8 @@ class OfABlock(Folder):
             "no such scene file": lambda: bonemill.Scene.load(self.folder / "no.textproto"),
             "unknown field": lambda: scene.simulation(settings=["volume.colour=3"]),
             "unknown field `glitter`": lambda: scene.simulation(effects={"glitter": True}),
-            "cannot be taken away": lambda: scene.simulation(effects={"time_removal": False}),
+            "has no `thermal` to take away": lambda: scene.simulation(effects={"thermal": False}),
+            "thermal is True, False or its fields, got 1": lambda: scene.simulation(effects={"thermal": 1}),
             "expected one of fast": lambda: scene.simulation(accuracy="best"),
             "accuracy of its own": lambda: scene.simulation(accuracy="exact", law="vps"),
             "no tool of the scene": lambda: scene.simulation(tool="saw"),
