@@ -12,6 +12,7 @@
 #include "common/device_messages/device_messages.h"
 #include "haptic_server/apps/python/arrays.h"
 #include "haptic_server/apps/python/inputs.h"
+#include "haptic_server/lab/stepping/depth_picture.h"
 #include "haptic_server/lab/stepping/tick_table.h"
 #include "proto/scene.pb.h"
 
@@ -110,6 +111,27 @@ py::tuple toolMeshOf(const py::object& self) {
     return py::make_tuple(viewOf(reinterpret_cast<const float*>(surface.positions.data()), {vertices, 3},
                                  {3 * kFloat, kFloat}, self),
                           viewOf(surface.indices.data(), {triangles, 3}, {3 * kIndex, kIndex}, self));
+}
+
+DepthCamera cameraOf(const py::object& camera) {
+    const Pose X_WC = handOf(camera.attr("position_m"), camera.attr("orientation_wxyz"), py::int_(0)).X_WT;
+    try {
+        return {X_WC, kDegree * camera.attr("fov_degrees").cast<double>(), camera.attr("width").cast<int>(),
+                camera.attr("height").cast<int>(), camera.attr("far_m").cast<double>()};
+    } catch (const py::cast_error&) {
+        throw UserError("a camera's fov_degrees and far_m are numbers, its width and height whole numbers");
+    }
+}
+
+py::array depthOf(Run& run, const py::object& camera) {
+    const DepthCamera of = cameraOf(camera);
+    const InUse in_use(run.isUsed());
+    std::vector<float> depths;
+    {
+        const py::gil_scoped_release release;
+        depths = depthPicture(run.own(), of);
+    }
+    return rowsOf<float>(std::move(depths), size_t(of.width)).reshape({of.height, of.width});
 }
 
 py::dict poseDict(const Pose& pose) {
@@ -284,6 +306,12 @@ void defineRuns(py::module_& module) {
              "outside.")
         .def("tool_mesh", toolMeshOf,
              "The tool's surface in its own frame T, m: views of vertices (N, 3) and triangles (M, 3).")
+        .def(
+            "depth", depthOf, py::arg("camera"),
+            "How far what a DepthCamera sees is away, along its axis: float32, m, shape (height, width), the "
+            "upper row\nfirst; far_m where nothing is. Bone by rays through its densities, and after the "
+            "first "
+            "tick the tool.")
         .def("progress", progressOf,
              "How far the scene's task is, mm3: zones with what is gone of each, what shall be gone and what "
              "of it is.")

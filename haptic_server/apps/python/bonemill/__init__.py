@@ -22,8 +22,9 @@ from numpy.typing import NDArray
 
 from ._bonemill import (Checkpoint, Error, Recording, Replay, Run, Simulation, StepResult, __version__, fault_names,
                         figures, read_trajectory)
+from .camera import DepthCamera
 
-__all__ = ["ACCURACIES", "ADD", "Checkpoint", "Error", "LAWS", "REMOVE", "Recording", "Replay", "Run", "Scene", "Simulation",
+__all__ = ["ACCURACIES", "ADD", "Checkpoint", "DepthCamera", "Error", "LAWS", "REMOVE", "Recording", "Replay", "Run", "Scene", "Simulation",
            "StepResult", "__version__", "demonstrations", "fault_names", "figures", "gym", "read_recording", "read_trajectory", "replay", "scripted_hand"]
 
 REMOVE, ADD = 1, 2  # buttons
