@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <cmath>
 
 #include "common/base/units.h"
@@ -12,14 +13,27 @@
 #include "common/device_messages/device_messages.h"
 #include "haptic_server/apps/python/arrays.h"
 #include "haptic_server/apps/python/inputs.h"
-#include "haptic_server/lab/stepping/depth_picture.h"
 #include "haptic_server/lab/stepping/tick_table.h"
 #include "proto/scene.pb.h"
 
 namespace bonemill::python {
 namespace {
 
-constexpr size_t kTicksBetweenSignals = 1000;
+// Between ticks, without the GIL: Ctrl+C ends them.
+class Interruption {
+  public:
+    void look() {
+        const auto now = std::chrono::steady_clock::now();
+        if (now < next_) return;
+        next_ = now + kBetween;
+        const py::gil_scoped_acquire acquire;
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    }
+
+  private:
+    static constexpr std::chrono::milliseconds kBetween{100};
+    std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + kBetween;
+};
 
 // Runs so many ticks, each by tick(n), without the GIL; Ctrl+C ends it. The caller is the run's only user.
 template <class Tick>
@@ -28,11 +42,10 @@ py::dict runTicks(Run& run, size_t ticks, Tick&& tick) {
     table.reserve(ticks);
     {
         const py::gil_scoped_release release;
+        Interruption interruption;
         for (size_t n = 0; n < ticks; ++n) {
             table.add(tick(n));
-            if (n % kTicksBetweenSignals != kTicksBetweenSignals - 1) continue;
-            const py::gil_scoped_acquire acquire;
-            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+            interruption.look();
         }
     }
     py::dict columns;
@@ -111,27 +124,6 @@ py::tuple toolMeshOf(const py::object& self) {
     return py::make_tuple(viewOf(reinterpret_cast<const float*>(surface.positions.data()), {vertices, 3},
                                  {3 * kFloat, kFloat}, self),
                           viewOf(surface.indices.data(), {triangles, 3}, {3 * kIndex, kIndex}, self));
-}
-
-DepthCamera cameraOf(const py::object& camera) {
-    const Pose X_WC = handOf(camera.attr("position_m"), camera.attr("orientation_wxyz"), py::int_(0)).X_WT;
-    try {
-        return {X_WC, kDegree * camera.attr("fov_degrees").cast<double>(), camera.attr("width").cast<int>(),
-                camera.attr("height").cast<int>(), camera.attr("far_m").cast<double>()};
-    } catch (const py::cast_error&) {
-        throw UserError("a camera's fov_degrees and far_m are numbers, its width and height whole numbers");
-    }
-}
-
-py::array depthOf(Run& run, const py::object& camera) {
-    const DepthCamera of = cameraOf(camera);
-    const InUse in_use(run.isUsed());
-    std::vector<float> depths;
-    {
-        const py::gil_scoped_release release;
-        depths = depthPicture(run.own(), of);
-    }
-    return rowsOf<float>(std::move(depths), size_t(of.width)).reshape({of.height, of.width});
 }
 
 py::dict poseDict(const Pose& pose) {
@@ -377,11 +369,13 @@ void defineRuns(py::module_& module) {
         .def(
             "restore",
             [](Simulation& self, const RunCheckpoint& to) {
-                whileFree(self, [&](SimulatedRun& run) { run.restore(to); });
+                whileFree(self, [&](SimulatedRun& run) {
+                    run.restore(to, [interruption = Interruption()]() mutable { interruption.look(); });
+                });
             },
             py::arg("checkpoint"),
             "Runs its ticks again, to the same bits; only those that are missing, where this run began "
-            "alike.");
+            "alike.\nCtrl+C ends it half way: then reset() or restore().");
     defineReplay(module);
 }
 
