@@ -70,6 +70,19 @@ std::string quotedText(const std::string& value) {
     return text + "\"";
 }
 
+// A message is there by {}, with its defaults, and gone by nothing at all.
+void setMessage(Message& message, const FieldDescriptor& field, const std::string& value,
+                const std::string& refusal) {
+    const auto& reflection = *message.GetReflection();
+    if (!value.empty() && value != "{}")
+        throw UserError(refusal + "`" + field.name() + "` takes no " + value +
+                        "; set its fields, or {} to have it, or nothing to be without it");
+    if (value.empty() && !reflection.HasField(message, &field))
+        throw UserError(refusal + "the scene has no `" + field.name() + "` to take away");
+    reflection.ClearField(&message, &field);
+    if (!value.empty()) reflection.MutableMessage(&message, &field);
+}
+
 }  // namespace
 
 void setField(scene::Scene& scene, const std::string& assignment) {
@@ -86,14 +99,11 @@ void setField(scene::Scene& scene, const std::string& assignment) {
     if (field.is_repeated())
         throw UserError(refusal + "elements of `" + steps.back().name + "` are set field by field");
     const std::string value = assignment.substr(equals + 1);
+    if (field.message_type()) return setMessage(*message, field, value, refusal);
     message->GetReflection()->ClearField(message, &field);
-    if (value == "{}" && !isText(field) && field.message_type())
-        message->GetReflection()->MutableMessage(message, &field);
-    else if (field.message_type() || !TextFormat::ParseFieldValueFromString(
-                                         isText(field) ? quotedText(value) : value, &field, message))
+    if (!TextFormat::ParseFieldValueFromString(isText(field) ? quotedText(value) : value, &field, message))
         throw UserError(refusal + "`" + field.name() + "` takes no " +
-                        (value.empty() ? "empty value" : value) +
-                        (field.message_type() ? "; set its fields, or {} to have it" : ""));
+                        (value.empty() ? "empty value" : value));
 }
 
 }  // namespace bonemill

@@ -113,8 +113,10 @@ void addSimulateOptions(CLI::App& app, SimulateOptions& simulate) {
     app.add_option("--trajectory", simulate.trajectory,
                    "device poses: t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons")
         ->required();
-    app.add_option("--set", simulate.settings,
-                   "set a field of the scene, may be given again: coupling.max_speed_mm_per_s=80")
+    app.add_option(
+           "--set", simulate.settings,
+           "set a field of the scene, may be given again: coupling.max_speed_mm_per_s=80, an effect is had "
+           "by effects.thermal={} and taken away by effects.thermal=")
         ->type_name("PATH=VALUE")
         ->allow_extra_args(false);
     app.add_option("--tool", simulate.tool, "name of the scene's tool, or its number; default: the first")

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <cmath>
 
 #include "common/base/units.h"
@@ -18,7 +19,21 @@
 namespace bonemill::python {
 namespace {
 
-constexpr size_t kTicksBetweenSignals = 1000;
+// Between ticks, without the GIL: Ctrl+C ends them.
+class Interruption {
+  public:
+    void look() {
+        const auto now = std::chrono::steady_clock::now();
+        if (now < next_) return;
+        next_ = now + kBetween;
+        const py::gil_scoped_acquire acquire;
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    }
+
+  private:
+    static constexpr std::chrono::milliseconds kBetween{100};
+    std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + kBetween;
+};
 
 // Runs so many ticks, each by tick(n), without the GIL; Ctrl+C ends it. The caller is the run's only user.
 template <class Tick>
@@ -27,11 +42,10 @@ py::dict runTicks(Run& run, size_t ticks, Tick&& tick) {
     table.reserve(ticks);
     {
         const py::gil_scoped_release release;
+        Interruption interruption;
         for (size_t n = 0; n < ticks; ++n) {
             table.add(tick(n));
-            if (n % kTicksBetweenSignals != kTicksBetweenSignals - 1) continue;
-            const py::gil_scoped_acquire acquire;
-            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+            interruption.look();
         }
     }
     py::dict columns;
@@ -284,6 +298,12 @@ void defineRuns(py::module_& module) {
              "outside.")
         .def("tool_mesh", toolMeshOf,
              "The tool's surface in its own frame T, m: views of vertices (N, 3) and triangles (M, 3).")
+        .def(
+            "depth", depthOf, py::arg("camera"),
+            "How far what a DepthCamera sees is away, along its axis: float32, m, shape (height, width), the "
+            "upper row\nfirst; far_m where nothing is. Bone by rays through its densities, and after the "
+            "first "
+            "tick the tool.")
         .def("progress", progressOf,
              "How far the scene's task is, mm3: zones with what is gone of each, what shall be gone and what "
              "of it is.")
@@ -349,11 +369,13 @@ void defineRuns(py::module_& module) {
         .def(
             "restore",
             [](Simulation& self, const RunCheckpoint& to) {
-                whileFree(self, [&](SimulatedRun& run) { run.restore(to); });
+                whileFree(self, [&](SimulatedRun& run) {
+                    run.restore(to, [interruption = Interruption()]() mutable { interruption.look(); });
+                });
             },
             py::arg("checkpoint"),
             "Runs its ticks again, to the same bits; only those that are missing, where this run began "
-            "alike.");
+            "alike.\nCtrl+C ends it half way: then reset() or restore().");
     defineReplay(module);
 }
 

@@ -2,6 +2,7 @@
 // whatever looks at what can change holds InUse meanwhile.
 #pragma once
 
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
 #include <atomic>
@@ -64,6 +65,9 @@ class Replay final : public Run {
     std::shared_ptr<const Recording> recording_;
     std::shared_ptr<RecordedRun> own_;
 };
+
+// What a bonemill.DepthCamera sees of it: (height, width).
+pybind11::array depthOf(Run& run, const pybind11::object& camera);
 
 void defineResults(pybind11::module_& module);
 void defineRuns(pybind11::module_& module);

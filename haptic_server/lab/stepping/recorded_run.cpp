@@ -15,6 +15,11 @@ void RecordedRun::makeRerun() {
                                      bones_.keyframes.front());
 }
 
+Rerun& RecordedRun::rerun() const {
+    if (!rerun_) throw UserError("this run is half way between two states: restart() it");
+    return *rerun_;
+}
+
 void RecordedRun::restart() {
     rerun_.reset();
     beginAnew();
@@ -22,28 +27,28 @@ void RecordedRun::restart() {
 }
 
 const TickRecord& RecordedRun::stepAsRecorded() {
-    if (rerun_->hasLeft())
+    if (rerun().hasLeft())
         throw UserError(recording_.path().string() +
                         ": another hand has gone on; restart() to follow it again");
-    if (rerun_->isAtEnd())
+    if (rerun().isAtEnd())
         throw UserError(recording_.path().string() + ": ends after " + std::to_string(recording_.ticks()) +
                         " ticks");
-    const TickRecord& record = note(rerun_->step());
-    if (rerun_->isBonePutBack()) noteAllChanged();
+    const TickRecord& record = note(rerun().step());
+    if (rerun().isBonePutBack()) noteAllChanged();
     return record;
 }
 
 void RecordedRun::chooseTool(size_t tool) {
-    if (tool >= rerun_->tools().count())
+    if (tool >= rerun().tools().count())
         throw UserError("there is no tool " + std::to_string(tool) + ": the scene has " +
-                        std::to_string(rerun_->tools().count()));
-    rerun_->tools().choose(tool);
+                        std::to_string(rerun().tools().count()));
+    rerun().tools().choose(tool);
 }
 
 const TickRecord& RecordedRun::tick(const HandStep& hand) {
     if (hand.t_s) throw UserError("a replay has its own times: leave t_s out");
-    const TickRecord& record = rerun_->step(hand.X_WT, hand.buttons);
-    if (rerun_->isBonePutBack()) noteAllChanged();
+    const TickRecord& record = rerun().step(hand.X_WT, hand.buttons);
+    if (rerun().isBonePutBack()) noteAllChanged();
     return record;
 }
 

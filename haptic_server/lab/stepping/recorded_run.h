@@ -21,26 +21,28 @@ class RecordedRun final : public SteppedRun {
     // UserError.
     const TickRecord& stepAsRecorded();
     using SteppedRun::step;  // with another hand
-    bool hasLeft() const noexcept { return rerun_->hasLeft(); }
+    bool hasLeft() const { return rerun().hasLeft(); }
     // The recorded tick that stepAsRecorded() runs.
-    uint64_t next() const noexcept { return rerun_->next(); }
-    bool isAtEnd() const noexcept { return rerun_->isAtEnd(); }
+    uint64_t next() const { return rerun().next(); }
+    bool isAtEnd() const { return rerun().isAtEnd(); }
     // An order has begun to put the bone back, and is not done.
-    bool isRestoring() const noexcept { return rerun_->history().isRestoring(); }
-    // Back to its first tick.
+    bool isRestoring() const { return rerun().history().isRestoring(); }
+    // Back to its first tick. After an exception, as one for want of memory, all that asks for ticks throws
+    // UserError until it gets through.
     void restart();
 
-    size_t tool() const noexcept override { return rerun_->tools().chosen(); }
+    size_t tool() const override { return rerun().tools().chosen(); }
     // Another hand goes on with it.
     void chooseTool(size_t tool) override;
 
   private:
     const TickRecord& tick(const HandStep& hand) override;
     void makeRerun();
+    Rerun& rerun() const;
 
     const Recording& recording_;
     Recording::Bones bones_;
-    std::unique_ptr<Rerun> rerun_;
+    std::unique_ptr<Rerun> rerun_;  // null: it is half way between two states
 };
 
 }  // namespace bonemill

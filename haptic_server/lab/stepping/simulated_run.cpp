@@ -36,6 +36,10 @@ void SimulatedRun::reset() {
     makeTick();
 }
 
+void SimulatedRun::requireWhole() const {
+    if (!tick_) throw UserError("this run is half way between two states: reset() or restore() it");
+}
+
 void SimulatedRun::chooseTool(size_t tool) {
     if (tool >= tools_.count())
         throw UserError("there is no tool " + std::to_string(tool) + ": the scene has " +
@@ -54,6 +58,7 @@ void SimulatedRun::keep(const HandStep& hand) {
 }
 
 const TickRecord& SimulatedRun::tick(const HandStep& hand) {
+    requireWhole();
     if (keeps_inputs_) keep(hand);
     DeviceInput input;
     input.X_WT_device = hand.X_WT;
@@ -67,6 +72,7 @@ const TickRecord& SimulatedRun::tick(const HandStep& hand) {
 
 RunCheckpoint SimulatedRun::checkpoint() const {
     if (!keeps_inputs_) throw UserError("this run keeps no inputs, so it has no checkpoints");
+    requireWhole();
     RunCheckpoint checkpoint;
     checkpoint.ticks_ = std::make_shared<const std::vector<RunCheckpoint::Done>>(done_);
     checkpoint.tool_ = uint32_t(tools_.chosen());
@@ -74,7 +80,7 @@ RunCheckpoint SimulatedRun::checkpoint() const {
     return checkpoint;
 }
 
-void SimulatedRun::restore(const RunCheckpoint& checkpoint) {
+void SimulatedRun::restore(const RunCheckpoint& checkpoint, const std::function<void()>& after_tick) {
     if (!keeps_inputs_) throw UserError("this run keeps no inputs, so it restores no checkpoint");
     const auto is_same = [](const RunCheckpoint::Done& a, const RunCheckpoint::Done& b) {
         using Bits = std::array<uint64_t, sizeof a / sizeof(uint64_t)>;
@@ -83,11 +89,20 @@ void SimulatedRun::restore(const RunCheckpoint& checkpoint) {
     const std::vector<RunCheckpoint::Done>& wanted = *checkpoint.ticks_;
     if (checkpoint.scene_hash_ != sceneHashOf(loaded().scene))
         throw UserError("the checkpoint is of another scene, or of other settings");
-    if (isJudged() || done_.size() > wanted.size() ||
+    if (!tick_ || isJudged() || done_.size() > wanted.size() ||
         !std::equal(done_.begin(), done_.end(), wanted.begin(), is_same))
         reset();
-    for (size_t n = done_.size(); n < wanted.size(); ++n) {
-        const RunCheckpoint::Done& done = wanted[n];
+    try {
+        runAgain(checkpoint, after_tick);
+    } catch (...) {
+        tick_.reset();
+        throw;
+    }
+}
+
+void SimulatedRun::runAgain(const RunCheckpoint& checkpoint, const std::function<void()>& after_tick) {
+    for (size_t n = done_.size(); n < checkpoint.ticks_->size(); ++n) {
+        const RunCheckpoint::Done& done = (*checkpoint.ticks_)[n];
         HandStep hand;
         hand.X_WT = {Eigen::Vector3d(done.p_WT),
                      Eigen::Quaterniond(done.q_WT[0], done.q_WT[1], done.q_WT[2], done.q_WT[3])};
@@ -95,6 +110,7 @@ void SimulatedRun::restore(const RunCheckpoint& checkpoint) {
         if (!std::isnan(done.t_s)) hand.t_s = done.t_s;
         tools_.choose(done.tool);
         step(hand);
+        if (after_tick) after_tick();
     }
     tools_.choose(checkpoint.tool_);
 }

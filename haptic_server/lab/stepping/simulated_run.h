@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -37,21 +38,25 @@ class SimulatedRun final : public SteppedRun {
     SimulatedRun(const LoadedScene& loaded, size_t first_tool = 0, bool keeps_inputs = true);
     ~SimulatedRun() override;
 
-    // The bone as scanned, and no tick: some hundredth of a second to some seconds, by the bone's size.
+    // The bone as scanned, and no tick: some hundredth of a second to some seconds, by the bone's size. After
+    // an exception, as one for want of memory, there are no ticks and no checkpoints until one of these two
+    // gets through: they throw UserError.
     void reset();
+    // Takes as long as its ticks did, or those from here on if this run has come this far by the same ones
+    // and was not judged. Calls after_tick after each; what that throws ends it half way. Throws UserError,
+    // and all is as before, if it is of another scene.
+    void restore(const RunCheckpoint& checkpoint, const std::function<void()>& after_tick = {});
     // Throws UserError if inputs are not kept.
     RunCheckpoint checkpoint() const;
-    // Takes as long as its ticks did, or those from here on if this run has come this far by the same ones
-    // and was not judged.
-    // Throws UserError if it is of another scene.
-    void restore(const RunCheckpoint& checkpoint);
 
-    size_t tool() const noexcept override { return tools_.chosen(); }
+    size_t tool() const override { return tools_.chosen(); }
     void chooseTool(size_t tool) override;
 
   private:
     const TickRecord& tick(const HandStep& hand) override;
     void makeTick();
+    void requireWhole() const;
+    void runAgain(const RunCheckpoint& checkpoint, const std::function<void()>& after_tick);
     void keep(const HandStep& hand);
 
     size_t first_tool_;
@@ -59,7 +64,7 @@ class SimulatedRun final : public SteppedRun {
     bool has_own_times_ = false;  // the caller's, from some tick on
     ToolSwitch tools_;
     AccuracySwitch accuracy_;
-    std::unique_ptr<HapticTick> tick_;
+    std::unique_ptr<HapticTick> tick_;  // null: it is half way between two states
     std::vector<RunCheckpoint::Done> done_;
 };
 

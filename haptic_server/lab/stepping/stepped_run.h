@@ -81,7 +81,7 @@ class SteppedRun {
     void copyVoxels(const IndexBox& box, std::span<Density> all) const;
     RunSurface surface() const;
 
-    virtual size_t tool() const noexcept = 0;
+    virtual size_t tool() const = 0;
     // From the next tick on.
     virtual void chooseTool(size_t tool) = 0;
 

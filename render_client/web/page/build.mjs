@@ -1,15 +1,17 @@
-// Builds the page: node build.mjs --source DIR --shaders DIR --proto DIR --work DIR --out DIR
+// Builds the page: node build.mjs --source DIR --shaders DIR --proto DIR --languages DIR --work DIR --out DIR
 // In the work folder lie copies of the sources, the packages (npm ci, when package-lock.json changed) and the code made
-// from proto/, and contained.json names the packages that the page holds; the out folder gets index.html, page.css and the three scripts, each also compressed, and tests.mjs.
+// from proto/, and contained.json names the packages that the page holds; the out folder gets index.html, page.css and the three scripts, each also compressed, and a JSON file for each language, of the windows' catalogues.
 import { execFileSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { dirname, join, resolve } from 'node:path';
 import { gzipSync } from 'node:zlib';
+import { cataloguesIn, sentencesIn } from './languages.mjs';
 
 const options = Object.fromEntries(process.argv.slice(2).map((word, i, all) => (word.startsWith('--') ? [word.slice(2), resolve(all[i + 1] ?? '')] : ['', ''])));
-const { source, shaders, proto, work, out } = options;
-if (!source || !shaders || !proto || !work || !out) throw new Error('usage: node build.mjs --source DIR --shaders DIR --proto DIR --work DIR --out DIR');
+const { source, shaders, proto, languages, work, out } = options;
+if (!source || !shaders || !proto || !languages || !work || !out)
+  throw new Error('usage: node build.mjs --source DIR --shaders DIR --proto DIR --languages DIR --work DIR --out DIR');
 const kMostPageBytes = 200_000;  // compressed, of all that a guest loads
 
 function run(program, ...args) {
@@ -39,6 +41,12 @@ const protos = readdirSync(proto).filter((name) => /^(bounds|gateway|topics|dens
 run('protoc', '-I', proto, `--plugin=protoc-gen-es=${join(work, 'node_modules/.bin/protoc-gen-es')}`, '--es_out=generated', '--es_opt=target=ts', ...protos);
 const fromWork = createRequire(join(work, 'package.json'));
 writeFileSync(join(work, 'generated/command_rows.ts'), commandRows());
+const { sentences, others } = sentencesIn(fromWork('typescript'), join(work, 'src')), catalogues = cataloguesIn(languages, sentences);
+const offered = [{ code: 'en', name: 'English' }, ...Object.entries(catalogues).map(([code, { name }]) => ({ code, name }))];
+writeFileSync(join(work, 'generated/languages.ts'), `export const kLanguages = ${JSON.stringify(offered)};\n`);
+writeFileSync(join(work, 'generated/catalogues.ts'),
+  `export const kSentences: string[] = ${JSON.stringify(sentences)}, kOthers: string[] = ${JSON.stringify(others)};\n` +
+  `export const kCatalogues: Record<string, { name: string; words: Record<string, string> }> = ${JSON.stringify(catalogues)};\n`);
 run(process.execPath, join(work, 'node_modules/typescript/bin/tsc'), '--noEmit');
 
 // The option (row) of each action of Command, as a table that needs no Protobuf.
@@ -85,6 +93,12 @@ for (const file of ['index.html', 'page.css', 'page.js', 'link.js', 'sound.js'])
   const packed = gzipSync(readFileSync(join(out, file)), { level: 9 });
   writeFileSync(join(out, `${file}.gz`), packed);
   total += packed.length;
+}
+rmSync(join(out, 'languages'), { recursive: true, force: true });
+mkdirSync(join(out, 'languages'));
+for (const [code, { words }] of Object.entries(catalogues)) {
+  writeFileSync(join(out, `languages/${code}.json`), JSON.stringify(words));
+  writeFileSync(join(out, `languages/${code}.json.gz`), gzipSync(JSON.stringify(words), { level: 9 }));
 }
 console.log(`page: ${total} bytes compressed`);
 if (total > kMostPageBytes) throw new Error(`the page is too large: ${total} of ${kMostPageBytes} bytes`);

@@ -2,6 +2,7 @@
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -25,6 +26,29 @@ simulated_operator { waypoint { time_s: 0 p_WT_mm { z: 3 } q_WT { w: 1 } } }
 
 def run(*words):
     return subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=250)
+
+
+def without_memory(code):
+    """Runs this, which says what sim, begin() and step() are, in a process of its own; begin() gets no memory of 64 kB or
+    more, for which the C library asks the system each time."""
+    return subprocess.run([sys.executable, "-c", f"""
+import bonemill, resource
+{code}
+step()
+resource.setrlimit(resource.RLIMIT_AS, (1, resource.RLIM_INFINITY))
+try:
+    begin()
+except MemoryError:
+    print("MemoryError", flush=True)
+resource.setrlimit(resource.RLIMIT_AS, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+try:
+    step()
+except bonemill.Error as error:
+    print(error, flush=True)
+begin()
+step()
+print("begun")
+"""], capture_output=True, text=True, timeout=250, env=os.environ | {"MALLOC_MMAP_THRESHOLD_": "65536"})
 
 
 class Folder(unittest.TestCase):

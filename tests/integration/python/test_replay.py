@@ -4,7 +4,7 @@ import unittest
 import numpy as np
 
 import bonemill
-from place import TESTS, Folder, run
+from place import TESTS, Folder, run, without_memory
 
 
 class OfASession(Folder):
@@ -38,6 +38,13 @@ class OfASession(Folder):
         replay.run_recorded()
         self.assertEqual(replay.state_hash, self.state_hash)
         np.testing.assert_array_equal(replay.voxels(), end)
+
+    def test_without_memory_it_stays_in_one_piece(self):
+        done = without_memory(f"sim = bonemill.replay({str(self.folder / 'session.mcap')!r})\n"
+                              "begin, step = sim.restart, lambda: (sim.tool, sim.has_left, sim.step_recorded())")
+        self.assertEqual(done.stdout.split("\n")[0], "MemoryError", done.stderr)
+        self.assertIn("half way between two states: restart()", done.stdout)
+        self.assertTrue(done.stdout.endswith("begun\n"), done.stdout + done.stderr)
 
     def test_it_runs_to_a_time_or_a_tick(self):
         t_s, replay = self.recording.hand()["t_s"], bonemill.replay(self.recording)

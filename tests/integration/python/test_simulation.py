@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import shutil
+import signal
 import threading
 import warnings
 import unittest
@@ -11,7 +12,7 @@ import unittest
 import numpy as np
 
 import bonemill
-from place import BIN, BLOCK, SCENES, SOURCE, TASK, Folder, run
+from place import BIN, BLOCK, SCENES, SOURCE, TASK, Folder, run, without_memory
 
 DOWN = np.linspace([0, 0, 3e-3], [0.2e-3, 0.1e-3, 1.6e-3], 300)
 
@@ -49,6 +50,19 @@ class OfABlock(Folder):
         self.assertAlmostEqual(result.force_n[2], 3000 * lower, delta=2e-3)
         self.assertGreater(result.force_n[2], 0.02)
 
+    def test_an_effect_that_is_taken_away_was_never_there(self):
+        def hash_of(listed, **options):
+            sim = bonemill.Scene.load(self.scene(BLOCK.replace("time_removal { }", listed))).simulation(**options)
+            sideways = np.linspace([0, 0, 0], [1e-3, 0, 0], len(DOWN))
+            sim.run(DOWN + sideways, buttons=(np.arange(len(DOWN)) >= 230).astype(int))  # it rubs, then mills
+            return sim.state_hash
+
+        without, with_it = hash_of("time_removal { }"), "time_removal { } surface_friction { coefficient: 0.5 }"
+        self.assertNotEqual(hash_of(with_it), without)
+        self.assertEqual(hash_of(with_it, effects={"surface_friction": False}), without)
+        self.assertEqual(hash_of(with_it, effects={"surface_friction": np.False_}), without)
+        self.assertEqual(hash_of(with_it, effects={"surface_friction": False, "time_removal": False}), hash_of(""))
+
     def test_a_checkpoint_is_restored_to_the_bit(self):
         sim = self.simulation()
         sim.run(DOWN[:200], buttons=1)
@@ -76,6 +90,33 @@ class OfABlock(Folder):
             self.simulation(settings=["contact.stiffness_n_per_mm3=500"]).restore(checkpoint)
         with self.assertRaisesRegex(bonemill.Error, "keeps no inputs"):
             self.simulation(keep_inputs=False).checkpoint()
+
+    def test_ctrl_c_ends_a_restore(self):
+        sim = self.simulation()
+        sim.run(np.tile([0, 0, 5e-3], (100_000, 1)))
+        checkpoint, then = sim.checkpoint(), sim.state_hash
+        sim.reset()
+        threading.Timer(0.05, os.kill, (os.getpid(), signal.SIGINT)).start()
+        with self.assertRaises(KeyboardInterrupt):
+            sim.restore(checkpoint)
+        self.assertLess(sim.ticks, checkpoint.ticks, "it was run to the end all the same")
+        for call in (lambda: sim.step([0, 0, 5e-3]), sim.checkpoint):
+            with self.assertRaisesRegex(bonemill.Error, r"half way between two states: reset\(\) or restore\(\)"):
+                call()
+        sim.restore(checkpoint)
+        self.assertEqual((sim.ticks, sim.state_hash), (checkpoint.ticks, then))
+        sim.step([0, 0, 5e-3])
+
+    def test_without_memory_it_stays_in_one_piece(self):
+        """A beginning that fails leaves a run that says so, and that can begin anew."""
+        made = run(BIN / "make_phantom", "body", "--kind", "slab", "--dims", "300", "300", "300", "--thickness-mm", "30",
+                   "--out", self.folder / "block.nrrd")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        done = without_memory("sim = bonemill.Scene.load(%r).simulation()\nbegin, step = sim.reset, lambda: sim.step([0, 0, 0.02])"
+                              % str(self.scene()))
+        self.assertEqual(done.stdout.split("\n")[0], "MemoryError", done.stderr)
+        self.assertIn("half way between two states: reset()", done.stdout)
+        self.assertTrue(done.stdout.endswith("begun\n"), done.stdout + done.stderr)
 
     def test_voxels_are_one_array_that_is_brought_up_to_date(self):
         sim = self.simulation()
@@ -135,7 +176,8 @@ class OfABlock(Folder):
             "no such scene file": lambda: bonemill.Scene.load(self.folder / "no.textproto"),
             "unknown field": lambda: scene.simulation(settings=["volume.colour=3"]),
             "unknown field `glitter`": lambda: scene.simulation(effects={"glitter": True}),
-            "cannot be taken away": lambda: scene.simulation(effects={"time_removal": False}),
+            "has no `thermal` to take away": lambda: scene.simulation(effects={"thermal": False}),
+            "thermal is True, False or its fields, got 1": lambda: scene.simulation(effects={"thermal": 1}),
             "expected one of fast": lambda: scene.simulation(accuracy="best"),
             "accuracy of its own": lambda: scene.simulation(accuracy="exact", law="vps"),
             "no tool of the scene": lambda: scene.simulation(tool="saw"),

@@ -52,6 +52,19 @@ TEST_F(Sweep, ASettingIsAsIfTheSceneSaidIt) {
     EXPECT_EQ(lastLineOf(simulate({}).out)["state_hash"], set["state_hash"]);
 }
 
+TEST_F(Sweep, AnEffectIsTakenAwayAsIfTheSceneNeverHadIt) {
+    const auto with_it = lastLineOf(simulate({}).out);
+    const auto taken = lastLineOf(simulate({"--set", "effects.time_removal="}).out);
+    EXPECT_NE(with_it["state_hash"], taken["state_hash"]);
+    writeFile(scene(), "effects { } volume { path: \"slab.nrrd\" }");
+    EXPECT_EQ(lastLineOf(simulate({}).out)["state_hash"], taken["state_hash"]);
+    const auto refused = simulate({"--set", "effects.time_removal="});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_NE(refused.err.find("--set effects.time_removal=: the scene has no `time_removal` to take away\n"),
+              std::string::npos)
+        << refused.err;
+}
+
 TEST_F(Sweep, IsARunWithEachValue) {
     const auto finished = simulate({"--sweep", "accuracy.preset=FAST,BALANCED"});
     ASSERT_EQ(finished.exit_code, 0) << finished.err;

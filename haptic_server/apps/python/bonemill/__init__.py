@@ -22,8 +22,9 @@ from numpy.typing import NDArray
 
 from ._bonemill import (Checkpoint, Error, Recording, Replay, Run, Simulation, StepResult, __version__, fault_names,
                         figures, read_trajectory)
+from .camera import DepthCamera
 
-__all__ = ["ACCURACIES", "ADD", "Checkpoint", "Error", "LAWS", "REMOVE", "Recording", "Replay", "Run", "Scene", "Simulation",
+__all__ = ["ACCURACIES", "ADD", "Checkpoint", "DepthCamera", "Error", "LAWS", "REMOVE", "Recording", "Replay", "Run", "Scene", "Simulation",
            "StepResult", "__version__", "demonstrations", "fault_names", "figures", "gym", "read_recording", "read_trajectory", "replay", "scripted_hand"]
 
 REMOVE, ADD = 1, 2  # buttons
@@ -55,7 +56,8 @@ class Scene:
 
         accuracy: fast, balanced, exact or thesis_2012; by default what the scene says. law: gradient, thesis_2012,
         proxy_3dof, vps, penalty_sdf or constraint; another law than the gradient law has an accuracy of its own, and
-        some effects do not go with it. effects: by name, True or their fields, beside those of the scene. settings:
+        some effects do not go with it. effects: by name, True or their fields, beside those of the scene, or
+        False for one of the scene's that shall not be. settings:
         PATH=VALUE each. tool: the first one's name or number from 1. keep_inputs: without, there are no checkpoints,
         and no 72 bytes a tick.
         """
@@ -110,16 +112,16 @@ def _accuracy_settings(accuracy: str | None, law: str | None) -> list[str]:
 
 def _effect_settings(effects: Mapping[str, bool | Mapping[str, Value]]) -> list[str]:
     if not isinstance(effects, Mapping):
-        raise Error(f"effects: expected a mapping of names to True or to fields, got {effects!r}")
+        raise Error(f"effects: expected a mapping of names to True, False or fields, got {effects!r}")
     settings = []
     for name, fields in effects.items():
-        if fields is False:
-            raise Error(f"effects: {name} is False, but an effect of the scene cannot be taken away; "
-                        "give a scene without it")
-        if not fields or fields is True:
-            settings.append(f"effects.{name}={{}}")
+        if isinstance(fields, Mapping):
+            settings.extend([f"effects.{name}.{field}={_text_of(value)}" for field, value in fields.items()]
+                            or [f"effects.{name}={{}}"])
+        elif isinstance(fields, (bool, np.bool_)):
+            settings.append(f"effects.{name}={'{}' if fields else ''}")
         else:
-            settings.extend(f"effects.{name}.{field}={_text_of(value)}" for field, value in fields.items())
+            raise Error(f"effects: {name} is True, False or its fields, got {fields!r}")
     return settings
 
 

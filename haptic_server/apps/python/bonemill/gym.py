@@ -14,6 +14,9 @@ w, x, y, z, the hand's place less the tool's (m, W), force on the hand (N, W), t
 step (mm3), the share of the target that is gone, the distance to the nearest protected structure (m; 0.1 where none is
 nearer or known).
 
+With depth=DepthCamera(...) an observation is a dict: "state", the above, and "depth", float32 (height, width), how far
+what the camera sees is away along its axis, m, and far_m where nothing is: bone as it is milled, and the tool.
+
 The reward of a step is the share of the target that it removed, less the share, of the target's size, that it removed
 elsewhere (times overcut_weight), less 1 when it damaged a protected structure. With final_score the last step adds the
 task's total, 0 to 1, or 0 where a gate failed. info has removed_mm3, target_share, is_damaged, and at the end of an
@@ -29,10 +32,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import REMOVE, Scene
+from . import REMOVE, DepthCamera, Scene
 from ._bonemill import Error, Run, Simulation, StepResult
 
-__all__ = ["Box", "MillingEnv", "OBSERVED", "Observer"]
+__all__ = ["Box", "Dict", "MillingEnv", "OBSERVED", "Observer"]
 
 OBSERVED = {"tool_offset_m": 3, "tool_orientation_wxyz": 4, "hand_offset_m": 3, "force_n": 3, "torque_nm": 3,
             "removed_mm3": 1, "target_share": 1, "protected_distance_m": 1}
@@ -40,6 +43,7 @@ _FAR_M = 0.1
 _FASTEST_M_PER_S, _FASTEST_RAD_PER_S = 3.0, 60.0  # faster poses are not believed (docs: safety, "Jolts")
 
 Observation = NDArray[np.float32]
+Seen = Observation | dict[str, Observation]  # a dict with a depth picture
 
 try:
     import gymnasium as _gymnasium  # type: ignore[import]
@@ -70,13 +74,44 @@ class Box:
         x = np.asarray(x)
         return x.shape == self.shape and bool(np.isfinite(x).all() and (x >= self.low).all() and (x <= self.high).all())
 
+    def __contains__(self, x: Any) -> bool:
+        return self.contains(x)
+
+
+class Dict:
+    """Boxes by name, as gymnasium.spaces.Dict, for where that is not installed."""
+
+    def __init__(self, spaces: dict[str, Box]) -> None:
+        self.spaces = spaces
+
+    def seed(self, seed: int | None = None) -> None:
+        for n, space in enumerate(self.spaces.values()):
+            space.seed(None if seed is None else seed + n)
+
+    def sample(self) -> dict[str, NDArray[np.float32]]:
+        return {name: space.sample() for name, space in self.spaces.items()}
+
+    def contains(self, x: Any) -> bool:
+        return (isinstance(x, dict) and x.keys() == self.spaces.keys() and
+                all(space.contains(x[name]) for name, space in self.spaces.items()))
+
+    def __getitem__(self, name: str) -> Box:
+        return self.spaces[name]
 
     def __contains__(self, x: Any) -> bool:
         return self.contains(x)
 
 
-def _box(low: float, high: float, size: int) -> Any:
-    return _gymnasium.spaces.Box(low, high, (size,), np.float32) if _gymnasium else Box(low, high, (size,))
+def _box(low: float, high: float, *shape: int) -> Any:
+    return _gymnasium.spaces.Box(low, high, shape, np.float32) if _gymnasium else Box(low, high, shape)
+
+
+def _observed(depth: DepthCamera | None) -> Any:
+    state = _box(-np.inf, np.inf, sum(OBSERVED.values()))
+    if depth is None:
+        return state
+    spaces = {"state": state, "depth": _box(0, depth.far_m, depth.height, depth.width)}
+    return _gymnasium.spaces.Dict(spaces) if _gymnasium else Dict(spaces)
 
 
 class Observer:
@@ -119,8 +154,9 @@ class MillingEnv(_Environment):  # type: ignore[misc]
     def __init__(self, scene: Scene | str | os.PathLike[str], *, ticks_per_step: int = 5, max_seconds: float = 60,
                  max_move_m: float = 0.0005, max_turn_rad: float = 0.02, overcut_weight: float = 1.0,
                  done_share: float = 0.95, start_jitter_m: float = 0.0005, final_score: bool = False,
-                 **simulation: Any) -> None:
-        """simulation: what Scene.simulation() takes. reset(seed) moves the start by start_jitter_m at most."""
+                 depth: DepthCamera | None = None, **simulation: Any) -> None:
+        """simulation: what Scene.simulation() takes. depth: a camera whose picture each observation has, too; without,
+        no picture is made. reset(seed) moves the start by start_jitter_m at most."""
         if not isinstance(ticks_per_step, int) or ticks_per_step < 1:
             raise Error(f"ticks_per_step={ticks_per_step}: expected a whole number from 1 on")
         if not (math.isfinite(max_seconds) and max_seconds > 0):
@@ -138,9 +174,9 @@ class MillingEnv(_Environment):  # type: ignore[misc]
         self.ticks_per_step, self.max_seconds = ticks_per_step, max_seconds
         self.max_move_m, self.max_turn_rad = max_move_m, max_turn_rad
         self.overcut_weight, self.done_share = overcut_weight, done_share
-        self.start_jitter_m, self.final_score = start_jitter_m, final_score
+        self.start_jitter_m, self.final_score, self.depth = start_jitter_m, final_score, depth
         self.action_space = _box(-1, 1, 7)
-        self.observation_space = _box(-np.inf, np.inf, sum(OBSERVED.values()))
+        self.observation_space = _observed(depth)
         self._random = np.random.default_rng()
         if not self.sim.waypoints:
             raise Error(f"{scene.path}: an environment begins where the scene's own hand does, and it has none")
@@ -151,7 +187,7 @@ class MillingEnv(_Environment):  # type: ignore[misc]
     def unwrapped(self) -> MillingEnv:
         return self
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Seen, dict[str, Any]]:
         """Begins an episode with the scanned bone; equal seeds and actions give equal bits."""
         if seed is not None:
             if seed < 0:
@@ -165,9 +201,9 @@ class MillingEnv(_Environment):  # type: ignore[misc]
         self._observer = Observer(self.sim, self.overcut_weight)
         self._is_over = False
         result = self.sim.step(self._hand_m, self._hand_wxyz)
-        return self._observer.observe(result, 0.0), {}
+        return self._seen(self._observer.observe(result, 0.0)), {}
 
-    def step(self, action: ArrayLike) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+    def step(self, action: ArrayLike) -> tuple[Seen, float, bool, bool, dict[str, Any]]:
         try:
             a = np.asarray(action, float)
         except (TypeError, ValueError):
@@ -196,13 +232,16 @@ class MillingEnv(_Environment):  # type: ignore[misc]
         if self._is_over and self.final_score:
             info["judgement"] = judgement = self.sim.judge()
             reward += score_of(judgement) or 0.0
-        return observation, reward, terminated, truncated, info
+        return self._seen(observation), reward, terminated, truncated, info
 
     def render(self) -> None:
-        """There are no pictures: mesh() and voxels() of self.sim are the bone."""
+        """There are no pictures but depth: mesh() and voxels() of self.sim are the bone."""
 
     def close(self) -> None:
         """Nothing is held but memory."""
+
+    def _seen(self, state: Observation) -> Seen:
+        return state if self.depth is None else {"state": state, "depth": self.sim.depth(self.depth)}
 
     def _way(self, move: NDArray[Any], turn: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
         """The hand's poses of one step's ticks, evenly apart."""

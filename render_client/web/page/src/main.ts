@@ -1,5 +1,6 @@
 // The page: brings together the link (a worker), the picture, and what the user does.
 import { mayOrder, mayPoint, orderText } from './shared/commands';
+import { addressIn, chosenLanguage, loadLanguage, tr, trMark } from './shared/language';
 import { CommandOrder, FromLink, ToLink } from './shared/messages';
 import { hasTakenOver, kPointerDevice, OrderDesk, whyNot, whyNotHold, whyNotPoint, whyNotTakeOver } from './orders';
 import { Session } from './session';
@@ -15,12 +16,17 @@ import { askForNote } from './ui/note_form';
 import { Panel, pressed } from './ui/panel';
 import { PictureInput } from './ui/picture_input';
 import { Keyboard } from './ui/keyboard';
+import { keyText } from './ui/key_table';
+import { languageSection } from './ui/language_section';
 import { viewSection } from './ui/view_section';
 import { lessonSection, ordersSection, remarksSection, watchersSection } from './ui/session_sections';
 import { StrokePen } from './stroke_pen';
 import { firstSettings, type DragMode } from './view_settings';
 import { add, centreOf, cornersOf, norm, normalized, placed, scale, sub, boxAround, radiusOf, type Vec3 } from './math/linear';
 
+document.documentElement.lang = await loadLanguage(chosenLanguage(location.search, navigator.languages));
+for (const [id, name] of [['picture', tr('The bone and the tool')], ['figures', tr('Figures')], ['bar', tr('Tools')], ['panel', tr('Control panel')]])
+  byId(id).setAttribute('aria-label', name);
 const session = new Session(), settings = firstSettings(), hold = new ToolHold(), hud = new Hud(), sound = new SoundPlayer();
 const canvas = byId<HTMLCanvasElement>('picture');
 const token = takeToken();
@@ -45,7 +51,7 @@ function follow(sender: string): void {
 
 // Whoever moves the view goes their own way again.
 function moved(): void {
-  if (settings.following) say('You look for yourself again');
+  if (settings.following) say(tr('You look for yourself again'));
   settings.following = '';
   stage.invalidate(true);
 }
@@ -63,7 +69,7 @@ function takeFollowed(): void {
 const acts = { session, desk, settings, follow, writeNote: () => askForNote((note) => remark(note, [])) };
 const panel = new Panel([
   lessonSection(acts), ordersSection(acts), viewSection(session, settings, changed, firstView), watchersSection(acts),
-  remarksSection(acts),
+  remarksSection(acts), languageSection(document.documentElement.lang, (code) => location.assign(addressIn(code, location.href))),
 ]);
 
 function remark(note: string, points: Vec3[]): void {
@@ -115,7 +121,7 @@ function holdOrLetGo(at?: Place): void {
     if (why) return say(why, 'warning');
     const burr = session.scene?.burrRadius || 1e-3;
     hold.begin(beginInFrontOf(surfaceInView(at), stage.camera(), burr, session.tool?.X_WT_device), burr, true);
-    say('The mouse holds the tool: left mills, right turns, the wheel goes deeper, G lets go');
+    say(tr('The mouse holds the tool: left mills, right turns, the wheel goes deeper, G lets go'));
   }
   stage.invalidate();
   refresh();
@@ -189,28 +195,28 @@ new Keyboard({
 });
 
 function toggleSound(): void {
-  if (!SoundPlayer.isOffered(session)) return say('This scene has no sound');
-  sound.toggle().catch(() => say('This browser plays no sound', 'warning')).finally(refresh);
+  if (!SoundPlayer.isOffered(session)) return say(tr('This scene has no sound'));
+  sound.toggle().catch(() => say(tr('This browser plays no sound'), 'warning')).finally(refresh);
 }
 
 // The buttons over the picture.
 function drawBar(): void {
   const modes: [DragMode, string, string, boolean][] = [
-    ['point', 'Point', 'the laser goes where you drag', mayPoint(session.role)],
-    ['draw', 'Draw', 'draws on the bone, for everyone', mayOrder(session.role, 'addRemark')],
-    ['note', 'Note', 'tap on the bone and write', mayOrder(session.role, 'addRemark')],
+    ['point', tr('Point'), tr('the laser goes where you drag'), mayPoint(session.role)],
+    ['draw', tr('Draw'), tr('draws on the bone, for everyone'), mayOrder(session.role, 'addRemark')],
+    ['note', tr('Note'), tr('tap on the bone and write'), mayOrder(session.role, 'addRemark')],
   ];
   const buttons = modes.filter((one) => one[3]).map(([mode, text, title]) => pressed(button(text, title, () => setMode(mode)), settings.mode === mode));
-  if (SoundPlayer.isOffered(session)) buttons.push(pressed(button('Sound', 'Shift+M', toggleSound), sound.isOn));
+  if (SoundPlayer.isOffered(session)) buttons.push(pressed(button(tr('Sound'), keyText('Shift+M'), toggleSound), sound.isOn));
   if (session.status?.device?.kind === kPointerDevice && !whyNot('selectTool', session))
-    buttons.push(pressed(button('Hold tool', 'G', () => holdOrLetGo()), hold.isHolding));
+    buttons.push(pressed(button(tr('Hold the tool'), 'G', () => holdOrLetGo()), hold.isHolding));
   if (!whyNotTakeOver(session))
-    buttons.push(button('Again', 'Shift+C: whole bone, the scripted hand anew', () => desk.give({ action: 'beginAgain' })),
-      button('Take over', 'G: the tool comes to your mouse', () => holdOrLetGo()));
+    buttons.push(button(tr('Again'), tr('whole bone, the scripted hand anew'), () => desk.give({ action: 'beginAgain' })),
+      button(tr('Take over'), tr('The tool comes to your mouse'), () => holdOrLetGo()));
   const bar = byId('bar'), key = JSON.stringify(buttons.map((one) => [one.textContent, one.ariaPressed]));
   if (bar.dataset.key === key) return;
   bar.dataset.key = key;
-  bar.replaceChildren(...buttons, button('?', 'H: help', toggleHelp), button('☰', 'M: control panel', () => panel.toggle()));
+  bar.replaceChildren(...buttons, button('?', tr('H: help'), toggleHelp), button('☰', tr('M: control panel'), () => panel.toggle()));
 }
 
 function refresh(): void {
@@ -256,12 +262,12 @@ link.onmessage = (event: MessageEvent<FromLink>) => {
       if (message.sender === settings.following) takeFollowed();
       return;
     case 'outcome':
-      return say(`${orderText(message.order)}: ${message.result}`, message.isDone ? undefined : 'warning');
+      return say(`${orderText(message.order)}: ${tr(message.result)}`, message.isDone ? undefined : 'warning');
     case 'away':
       hold.letGo();
   }
 };
-link.onerror = () => say('The page could not start: load it again', 'alarm');
+link.onerror = () => say(tr('The page could not start: load it again'), 'alarm');
 
 setInterval(refresh, 200);
 setInterval(onTick, 33);
@@ -270,5 +276,5 @@ document.addEventListener('visibilitychange', () => {
 });
 window.addEventListener('online', () => tell({ kind: 'retry' }));
 if (token) tell({ kind: 'open', url: `${location.protocol === 'http:' ? 'ws' : 'wss'}://${location.host}/session`, token });
-else session.take({ kind: 'refused', reason: 'This address needs an invitation: ask for a link, and open it whole.' }, Date.now());
+else session.take({ kind: 'refused', reason: trMark('This address needs an invitation: ask for a link, and open it whole.') }, Date.now());
 refresh();

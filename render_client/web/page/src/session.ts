@@ -125,6 +125,10 @@ export class Session {
   get isLive(): boolean {
     return this.connection.state === 'open' && this.hasServer;
   }
+  // Connected, and all of the bone has been seen.
+  get isShown(): boolean {
+    return this.isLive && !this.hasEnded && this.hasBeenComplete;
+  }
   get isComplete(): boolean {
     return this.status !== undefined && !this.status.isModelPartial && this.nodes === this.status.nodeCount;
   }

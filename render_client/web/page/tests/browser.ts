@@ -18,7 +18,9 @@ const { browser, close } = await startChromium(1280, 720);
 const stand_in = await startStandIn({ page: page_dir, role: kInstructor, nodes: boneNodes(Number(triangles)), hasOthers: true });
 const faults: string[] = [];
 
-async function open(width: number, height: number, hash = '#invited'): Promise<Page> {
+const requests: string[] = [];
+
+async function open(width: number, height: number, hash = '#invited', search = ''): Promise<Page> {
   const page = await browser.newPage();
   await page.setViewportSize({ width, height });
   page.on('console', (message) => {
@@ -26,9 +28,10 @@ async function open(width: number, height: number, hash = '#invited'): Promise<P
   });
   page.on('pageerror', (error) => faults.push(`page: ${error.message}`));
   page.on('request', (request) => {
+    requests.push(request.url());
     if (!/^(http|ws):\/\/127\.0\.0\.1|^(data|blob):/.test(request.url())) faults.push(`request: ${request.url()}`);
   });
-  await page.goto(stand_in.url + hash);
+  await page.goto(stand_in.url + search + hash);
   return page;
 }
 
@@ -151,6 +154,28 @@ async function phone(): Promise<void> {
   await page.close();
 }
 
+// In the language of the address; another one is chosen in the panel, with the same invitation.
+async function translated(): Promise<void> {
+  assert.ok(!requests.some((url) => url.includes('languages')), 'English needs no catalogue');
+  const page = await open(1280, 720, '#invited', '?lang=de');
+  await stateIs(page, 'live');
+  await page.keyboard.press('m');
+  await has(page, 'panel', 'Sitzung');
+  await has(page, 'panel', 'Ihre Rolle: ');
+  await page.keyboard.press('h');
+  await has(page, 'help', 'Shift+N');
+  await has(page, 'help', 'nächste Übung der Lektion');
+  await page.screenshot({ path: join(pictures, 'german_help.png') });
+  await page.keyboard.press('h');
+  await page.screenshot({ path: join(pictures, 'german.png') });
+  await page.getByRole('combobox', { name: 'Sprache' }).selectOption('Svenska');
+  await stateIs(page, 'direkt');
+  await page.keyboard.press('m');
+  await has(page, 'panel', 'Din roll: ');
+  assert.deepEqual([new URL(page.url()).search, await page.evaluate(() => document.documentElement.lang)], ['?lang=sv', 'sv']);
+  await page.close();
+}
+
 async function refused(): Promise<void> {
   const page = await open(1280, 720, '#wrong');
   await has(page, 'banner', 'This invitation is not known');
@@ -160,6 +185,7 @@ async function refused(): Promise<void> {
 try {
   await desktop();
   await phone();
+  await translated();
   await refused();
   assert.deepEqual(faults, []);
   console.log(`the page works; pictures lie in ${pictures}`);

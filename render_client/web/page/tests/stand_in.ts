@@ -11,6 +11,7 @@ import * as synthetic from './synthetic';
 
 const kTypes: Record<string, string> = {
   '.html': 'text/html; charset=utf-8', '.css': 'text/css; charset=utf-8', '.js': 'text/javascript; charset=utf-8',
+  '.json': 'application/json',
 };
 export const kPolicy = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; " +
   "connect-src 'self'; img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
@@ -39,8 +40,8 @@ function toGuest(samples: Sample[]): Uint8Array {
 
 export async function startStandIn({ page, role, nodes, hasOthers, tls }: Wish): Promise<StandIn> {
   const answer: RequestListener = (request, response) => {
-    const name = request.url === '/' ? 'index.html' : String(request.url).slice(1);
-    if (!/^[a-z]+\.(html|css|js)$/.test(name)) return void response.writeHead(404).end();
+    const asked = String(request.url).replace(/\?.*/, '').slice(1), name = asked || 'index.html';
+    if (!/^(languages\/)?[a-z]+\.(html|css|js|json)$/.test(name)) return void response.writeHead(404).end();
     const headers = { 'Content-Type': kTypes[extname(name)], 'Content-Security-Policy': kPolicy, 'X-Content-Type-Options': 'nosniff' };
     response.writeHead(200, headers).end(readFileSync(join(page, name)));
   };

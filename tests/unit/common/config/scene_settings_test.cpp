@@ -35,6 +35,14 @@ TEST(SceneSettings, SetAFieldWhereverItIs) {
     EXPECT_EQ(with({"title=x", "title=y"}).title(), "y");
 }
 
+TEST(SceneSettings, AMessageIsTakenAwayWithAllThatItSays) {
+    const scene::Scene scene = with({"effects.thermal.heat_share=0.3", "effects.cutting_force={}",
+                                     "effects.thermal=", "coupling.max_speed_mm_per_s=80", "coupling="});
+    EXPECT_FALSE(scene.effects().has_thermal());
+    EXPECT_TRUE(scene.effects().has_cutting_force());
+    EXPECT_FALSE(scene.has_coupling());
+}
+
 TEST(SceneSettings, ElementsOfListsHaveNumbers) {
     const scene::Scene scene = with({"tool[0].burr_radius_mm=2", "tool[1].name=small", "tool[0].name=large"});
     ASSERT_EQ(scene.tool_size(), 2);
@@ -52,6 +60,8 @@ TEST(SceneSettings, WhatIsWrongIsNamed) {
                                            {"coupling.max_speed_mm_per_s=fast", "takes no fast"},
                                            {"coupling.max_speed_mm_per_s=", "takes no empty"},
                                            {"coupling=3", "set its fields"},
+                                           {"coupling=", "has no `coupling` to take away"},
+                                           {"effects.thermal=", "has no `thermal` to take away"},
                                            {"title.x=3", "has no fields"},
                                            {"tool.name=x", "is a list"},
                                            {"title[0]=x", "is no list"},

@@ -36,7 +36,7 @@ TEST_F(SpoiledCatalogue, IsFoundInEveryWay) {
     EXPECT_EQ(told.exit_code, 1);
     for (const char* const line :
          {"de.po: 'Bone dust' has no translation\n", "de.po: 'Bleeding' has no translation\n",
-          "de.po: 'Bleeding a lot' is no sentence of the windows\n",
+          "de.po: 'Bleeding a lot' is no sentence of the windows, nor of the page\n",
           "de.po: 'Irrigation' is fuzzy: look at it, and take the mark away\n",
           "de.po: '{1} of {2} open' has other {1}, {2} ... than the sentence\n",
           "de.po: ', incomplete' has other blanks at its ends, or other line breaks, than the sentence\n",

@@ -1,6 +1,7 @@
 // The guest's orders, one after the other: each waits for its answer in the server's status.
 import { rowOf } from '../shared/commands';
 import type { CommandOrder, StatusView } from '../shared/messages';
+import { trMark } from '../shared/language';
 
 const kTimeoutMs = 5000;
 const kLongTimeoutMs = 300_000;  // a scene that is read from a slow disk
@@ -37,7 +38,7 @@ export class CommandOutbox {
     const first = this.waiting[0];
     if (!first || status.lastCommandSender !== sender || status.lastCommandSequence !== first.sequence) return undefined;
     this.waiting.shift();
-    return { order: first.order, isDone: status.isLastCommandDone, result: status.lastCommandResult || 'the server gave no result' };
+    return { order: first.order, isDone: status.isLastCommandDone, result: status.lastCommandResult || trMark('the server gave no result') };
   }
 
   // Writes the first one as often as it takes; returns one that nobody has answered in time.
@@ -48,7 +49,7 @@ export class CommandOutbox {
     const is_long = first.written !== undefined && rowOf(first.order.action).isLong;
     if (now - first.started >= (is_long ? kLongTimeoutMs : kTimeoutMs)) {
       this.waiting.shift();
-      return { order: first.order, isDone: false, result: first.written === undefined ? 'no server' : 'the server did not answer' };
+      return { order: first.order, isDone: false, result: first.written === undefined ? trMark('no server') : trMark('the server did not answer') };
     }
     if (!is_connected || (first.written !== undefined && now - first.written < kRepeatAfterMs)) return undefined;
     write(first.order, first.sequence);

@@ -12,6 +12,7 @@ import * as payloads from './payloads';
 import { Placement } from './place_node';
 import { SessionSocket } from './session_socket';
 import { StructureMeshSchema } from '#proto/topics_scene_pb';
+import { trMark } from '../shared/language';
 
 const kMostStructureTriangles = 1 << 18;
 const kMostKeys = 1024;  // viewers, remarks and pictures each
@@ -181,7 +182,7 @@ function onPage(message: ToLink): void {
 
 // Nothing is done before nodes can be decoded; what the page says until then waits, in its order.
 const isReady = decoderReady.then(() => true, () => {
-  post({ kind: 'refused', reason: 'This browser runs no WebAssembly, which the page needs.' });
+  post({ kind: 'refused', reason: trMark('This browser runs no WebAssembly, which the page needs.') });
   return false;
 });
 self.onmessage = (event: MessageEvent<ToLink>) => void isReady.then((is_ready) => is_ready && onPage(event.data));

@@ -2,6 +2,7 @@
 // holds already, and opens it again after a loss, ever more slowly, until the gateway refuses for good.
 import { create, fromBinary, toBinary, type MessageInitShape } from '@bufbuild/protobuf';
 import { FromGuestSchema, ToGuestSchema, type Samples, type Welcome } from '#proto/gateway_pb';
+import { trMark } from '../shared/language';
 
 const kVersion = 2;
 const kSubprotocol = 'bonemill.v1';
@@ -73,7 +74,7 @@ export class SessionSocket {
     try {
       socket = new WebSocket(this.url, kSubprotocol);
     } catch {
-      this.lost('The address of the session cannot be opened.');
+      this.lost(trMark('The address of the session cannot be opened.'));
       return;
     }
     socket.binaryType = 'arraybuffer';
@@ -86,7 +87,7 @@ export class SessionSocket {
     socket.onmessage = (event) => {
       if (connection === this.connection) this.take(event.data);
     };
-    socket.onclose = ifCurrent(() => this.lost('The connection is lost.'));
+    socket.onclose = ifCurrent(() => this.lost(trMark('The connection is lost.')));
   }
 
   private drop(): void {
@@ -109,13 +110,13 @@ export class SessionSocket {
   }
 
   private lookForSilence(): void {
-    if (this.socket && Date.now() - this.lastHeard > kSilenceMs) this.lost('The gateway is silent.');
+    if (this.socket && Date.now() - this.lastHeard > kSilenceMs) this.lost(trMark('The gateway is silent.'));
   }
 
   private take(data: unknown): void {
     this.lastHeard = Date.now();
     if (!(data instanceof ArrayBuffer) || data.byteLength > kMostFrameBytes) {
-      this.lost('The gateway sent what is no frame.');
+      this.lost(trMark('The gateway sent what is no frame.'));
       return;
     }
     this.bytes += data.byteLength;
@@ -123,7 +124,7 @@ export class SessionSocket {
     try {
       kind = fromBinary(ToGuestSchema, new Uint8Array(data)).kind;
     } catch {
-      this.lost('The gateway sent what is no frame.');
+      this.lost(trMark('The gateway sent what is no frame.'));
       return;
     }
     if (kind.case === 'welcome') this.enter(kind.value);
@@ -142,7 +143,7 @@ export class SessionSocket {
 
   private refuse(reason: string, is_final: boolean): void {
     if (!is_final) {
-      this.lost(reason || 'The gateway does not let you in yet.');
+      this.lost(reason || trMark('The gateway does not let you in yet.'));
       return;
     }
     this.isRefused = true;

@@ -1,5 +1,6 @@
 // Figures, notices, alert and banner over the picture. Only what has changed is written into the document.
 import { clockText } from '../shared/format';
+import { tr } from '../shared/language';
 import type { Session } from '../session';
 import type { ViewSettings } from '../view_settings';
 import { byId, make, setShown, setText } from './dom';
@@ -29,9 +30,9 @@ export class Hud {
     setShown(byId('figures'), settings.showsFigures);
     setText(byId('title'), session.scene?.title || session.status?.scene || 'bonemill');
     const state = stateText(session), clock = session.status ? `, ${clockText(session.status.sessionS)}` : '';
-    const is_counting = state.value === 'live' && session.status !== undefined;
+    const is_counting = session.isShown && session.status !== undefined;
     const waits = is_counting && session.status?.ticks === 0;
-    setText(byId('state'), waits ? 'waits for a device' : state.value + (is_counting ? clock : ''));
+    setText(byId('state'), waits ? tr('waits for a device') : state.value + (is_counting ? clock : ''));
     byId('state').className = waits ? 'warning' : (state.tone ?? '');
     this.rows('rows', taskRows(session, events));
     setShown(byId('details'), settings.showsDetails);
@@ -70,12 +71,12 @@ export class Hud {
   private banner(session: Session, now: number): void {
     const { connection } = session, element = byId('banner');
     setShown(element, connection.state === 'away' || connection.state === 'refused');
-    if (connection.state === 'refused') setText(element, connection.reason || 'The gateway refuses this invitation.');
+    if (connection.state === 'refused') setText(element, connection.reason ? tr(connection.reason) : tr('The gateway refuses this invitation.'));
     if (connection.state !== 'away') return;
     const away = clockText((now - connection.sinceMs) / 1000), next = Math.ceil((connection.nextTryMs - now) / 1000);
-    const trying = next > 0 ? `trying again in ${next} s` : 'trying again';
-    const picture = session.scene ? ' The picture is the last that came.' : '';
-    setText(element, `${connection.reason} Away for ${away}, ${trying}.${picture}`);
+    const trying = next > 0 ? tr('trying again in {1} s', next) : tr('trying again');
+    const picture = session.scene ? tr(' The picture is the last that came.') : '';
+    setText(element, `${tr(connection.reason)} ${tr('Away for {1}, {2}.', away, trying)}${picture}`);
   }
 
   private sayNews(session: Session): void {
@@ -92,7 +93,7 @@ export class Hud {
     this.notices = this.notices.filter((one) => one.until > now);
     const changing = titleOf(session.lesson, session.lesson?.changingTo);
     const list: { text: string; tone: Tone }[] = [
-      ...(changing ? [{ text: `Changing to ${changing} …`, tone: 'plain' as const }] : []),
+      ...(changing ? [{ text: tr('Changing to {1} …', changing), tone: 'plain' as const }] : []),
       ...conditions(session), ...this.notices,
     ];
     const text = JSON.stringify(list.map(({ text, tone }) => [text, tone]));

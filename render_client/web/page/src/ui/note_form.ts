@@ -1,4 +1,5 @@
 // A line to write a note in.
+import { tr } from '../shared/language';
 import { button, make } from './dom';
 import { row } from './panel';
 
@@ -8,7 +9,7 @@ export function askForNote(done: (note: string) => void): void {
   form.id = 'note-form';
   input.type = 'text';
   input.maxLength = 300;
-  input.placeholder = 'a note for everyone';
+  input.placeholder = tr('Note for everyone');
   input.setAttribute('aria-label', input.placeholder);
   const close = () => form.remove();
   form.addEventListener('submit', (event) => {
@@ -20,9 +21,9 @@ export function askForNote(done: (note: string) => void): void {
   form.addEventListener('keydown', (event) => {
     if (event.key === 'Escape') close();
   });
-  const ok = button('Show it', 'to everyone', () => undefined);
+  const ok = button(tr('Show'), tr('to everyone'), () => undefined);
   ok.type = 'submit';
-  form.append(row(input, ok, button('Cancel', 'Esc', close)));
+  form.append(row(input, ok, button(tr('Cancel'), 'Esc', close)));
   document.body.append(form);
   input.focus();
 }

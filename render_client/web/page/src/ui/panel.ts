@@ -61,3 +61,17 @@ export function disabledFor(element: HTMLButtonElement, why: string): HTMLButton
   if (why) element.title = why;
   return element;
 }
+
+export function choice(name: string, options: string[], chosen: number, why: string, choose: (i: number) => void): HTMLElement {
+  const select = make('select');
+  select.append(...options.map((text, i) => {
+    const option = make('option', { text });
+    option.value = String(i);
+    return option;
+  }));
+  select.value = String(chosen);
+  select.disabled = why !== '';
+  select.setAttribute('aria-label', name);
+  select.addEventListener('change', () => choose(Number(select.value)));
+  return row(make('span', { text: name }), select);
+}
