@@ -1,7 +1,8 @@
-"""The figures that texts quote: docs/figures.json, which deploy/measure writes, and their marks in README.md,
-CONTRIBUTING.md and docs/. A mark is a comment, which a reader of the page does not see:
+"""The figures that texts quote: docs/figures.json, which deploy/measure writes, docs/benchmark.json, which
+tests/bench/benchmark/run writes, and their marks in README.md, CONTRIBUTING.md and docs/. A mark is a comment, which a reader of the page does not see:
 
   in 62<!--=accuracy.tooth_corridor.balanced.tick_p50_us--> µs    the number before the mark is this figure
+  <!--=benchmark.bonemill balanced.peg.force_error-->             a program's figure in a scene of the benchmark, or of all
   (Intel Xeon, 2 cores)<!--=machine-->                            what is in the brackets; so, too, commit and date
 
   <!--=table accuracy.tooth_corridor.{}.tick_p50_us - .tick_p99_us-->
@@ -17,7 +18,7 @@ import hashlib
 import json
 import re
 
-FILE = "docs/figures.json"
+FILE, BENCHMARK = "docs/figures.json", "docs/benchmark.json"
 # What a tick's time depends on: its own code, and how it is compiled.
 CODE = ("haptic_server/core", "haptic_server/laws", "common/geometry", "common/math", "CMakeLists.txt", "CMakePresets.json")
 HEADER = ("machine", "commit", "date")
@@ -43,8 +44,8 @@ def code_of(root):
     return found
 
 
-def read(root):
-    return json.loads((root / FILE).read_text(encoding="utf-8")) if (root / FILE).exists() else {}
+def read(root, file=FILE):
+    return json.loads((root / file).read_text(encoding="utf-8")) if (root / file).exists() else {}
 
 
 def write(root, measured):
@@ -59,6 +60,17 @@ def values(measured):
     found = {name: measured[name] for name in (*HEADER, "load_before") if name in measured}
     for bench, result in measured.get("benches", {}).items():
         found |= {f"{bench}.{name}": numbers[0] for name, numbers in result["figures"].items()}
+    return found
+
+
+def benchmark_values(result):
+    """Each figure of the benchmark by its name; those that a program cannot have are not there."""
+    found = {}
+    for program in result.get("programs", []):
+        for scene, figures in (("", program["figures"]), *program["scenes"].items()):
+            for name, figure in figures.items():
+                if figure["value"] is not None:
+                    found[".".join(filter(None, ("benchmark", program["name"], scene, name)))] = figure["value"]
     return found
 
 
@@ -124,9 +136,9 @@ class Text:
         for start, end, name in self.quotes:
             shown = self.text[start:end]
             if name not in known:
-                found.append((start, f"{FILE} has no figure {name}"))
+                found.append((start, f"{file_of(name)} has no figure {name}"))
             elif shown_as(known[name], shown) != shown:
-                found.append((start, f"{shown} is {shown_as(known[name], shown)} in {FILE}: {name}"))
+                found.append((start, f"{shown} is {shown_as(known[name], shown)} in {file_of(name)}: {name}"))
         return sorted(found)
 
     def rewritten(self, known):
@@ -152,6 +164,10 @@ def shipped_faults(root, measured):
     return found
 
 
+def file_of(name):
+    return BENCHMARK if name.startswith("benchmark.") else FILE
+
+
 def rounded(value):
     return float(f"{value:.5g}")
 
@@ -159,7 +175,7 @@ def rounded(value):
 def faults(root, texts):
     """What is wrong with the figures of these texts: place -> content."""
     measured = read(root)
-    known, quotes = values(measured), 0
+    known, quotes = values(measured) | benchmark_values(read(root, BENCHMARK)), 0
     found = shipped_faults(root, measured)
     for place, content in texts.items():
         text = Text(content)

@@ -164,6 +164,20 @@ TEST_F(CheckFigures, AreRoundedAsTheTextShowsThem) {
                 "10: 2026-11-23 is 2026-11-27 in docs/figures.json: date");
 }
 
+TEST_F(CheckFigures, MayBeTheBenchmarks) {
+    set("docs/benchmark.json",
+        R"({"programs": [{"name": "ours best", "figures": {"z_width": {"value": 16.03, "unit": "N/mm"}},)"
+        R"( "scenes": {"peg": {"force_error": {"value": 0.396, "unit": "%"},)"
+        R"( "false_friction": {"value": null, "unit": "%"}}}}]})");
+    expectInOrder(
+        "It is 0.4<!--=benchmark.ours best.peg.force_error--> % off, 16<!--=benchmark.ours best.z_width--> "
+        "N/mm.\n");
+    expectFound("It is 0.5<!--=benchmark.ours best.peg.force_error--> % off.\n",
+                "10: 0.5 is 0.4 in docs/benchmark.json: benchmark.ours best.peg.force_error");
+    expectFound("It has 1<!--=benchmark.ours best.peg.false_friction--> %.\n",
+                "10: docs/benchmark.json has no figure benchmark.ours best.peg.false_friction");
+}
+
 TEST_F(CheckFigures, InATableFollowOneAnother) {
     expectInOrder(kTable +
                   "| `balanced` (default) | **0.05 %** of 2 | 62 |\n| fast, s = 3 | 9.7 % of 2 | 31 |\n");
