@@ -50,8 +50,8 @@ TEST_F(RunTutorials, AnotherOutputIsNamedWithWhatCame) {
 }
 
 TEST_F(RunTutorials, WhatABackgroundProgramPrintsLaterIsWaitedFor) {
-    const Finished finished = follow(
-        "<!-- run -->\n```bash\n(sleep 1; echo late) &\n```\n<!-- prints -->\n```text\nlate\n```\n");
+    const Finished finished =
+        follow("<!-- run -->\n```bash\n(sleep 1; echo late) &\n```\n<!-- prints -->\n```text\nlate\n```\n");
     EXPECT_EQ(finished.exit_code, 0) << finished.out << finished.err;
 }
 

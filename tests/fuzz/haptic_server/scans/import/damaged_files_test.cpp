@@ -1,7 +1,7 @@
 // Small valid files of every format with random damage are imported or refused with UserError; nothing
-// crashes, hangs or takes absurd amounts of memory. AddressSanitizer's build tries each damage; the others, which
-// would see a part of what it sees, the first third. BONEMILL_FUZZ_SEED and BONEMILL_FUZZ_ROUNDS change what
-// is tried.
+// crashes, hangs or takes absurd amounts of memory. AddressSanitizer's build tries each damage; the others,
+// which would see a part of what it sees, the first third. BONEMILL_FUZZ_SEED and BONEMILL_FUZZ_ROUNDS change
+// what is tried.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
