@@ -19,7 +19,7 @@ namespace bonemill {
 namespace {
 
 constexpr int kWidth = 800, kHeight = 600;
-constexpr int kRounds = 10;                   // or BONEMILL_KILL_ROUNDS
+constexpr int kRounds = 5;                    // each part once, or BONEMILL_KILL_ROUNDS
 constexpr int kLatest = 6000, kAfter = 2000;  // ms
 const std::vector<std::string> kParts{"start_window", "bonemill", "haptic_server", "device_daemon",
                                       "render_client"};

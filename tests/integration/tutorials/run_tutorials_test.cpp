@@ -49,6 +49,12 @@ TEST_F(RunTutorials, AnotherOutputIsNamedWithWhatCame) {
     expectFailure(block + "<!-- prints -->\n```text\nthree\none\n```\n", "says that it prints:\nthree");
 }
 
+TEST_F(RunTutorials, WhatABackgroundProgramPrintsLaterIsWaitedFor) {
+    const Finished finished =
+        follow("<!-- run -->\n```bash\n(sleep 1; echo late) &\n```\n<!-- prints -->\n```text\nlate\n```\n");
+    EXPECT_EQ(finished.exit_code, 0) << finished.out << finished.err;
+}
+
 TEST_F(RunTutorials, AFileThatIsMissingOrEmptyIsNamed) {
     const std::string block = kBlock;
     expectFailure(block + "<!-- leaves gone -->\n", "there is gone now");
