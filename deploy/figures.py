@@ -63,6 +63,11 @@ def values(measured):
     return found
 
 
+def known(root):
+    """Each figure that a text may quote, by its name."""
+    return values(read(root)) | benchmark_values(read(root, BENCHMARK))
+
+
 def benchmark_values(result):
     """Each figure of the benchmark by its name; those that a program cannot have are not there."""
     found = {}
@@ -175,12 +180,12 @@ def rounded(value):
 def faults(root, texts):
     """What is wrong with the figures of these texts: place -> content."""
     measured = read(root)
-    known, quotes = values(measured) | benchmark_values(read(root, BENCHMARK)), 0
+    all_known, quotes = known(root), 0
     found = shipped_faults(root, measured)
     for place, content in texts.items():
         text = Text(content)
         quotes += len(text.quotes)
-        found += [f"{place}:{content.count(chr(10), 0, start) + 1}: {what}" for start, what in text.wrong(known)]
+        found += [f"{place}:{content.count(chr(10), 0, start) + 1}: {what}" for start, what in text.wrong(all_known)]
     code = code_of(root)
     changed = [part for part in CODE if code.get(part) != measured.get("code", {}).get(part)]
     if quotes and measured and changed:

@@ -20,6 +20,7 @@ void EffectHost::restart(Restart why) noexcept {
     for (const auto& effect : effects_) effect->restart(why);
     tick_.contacts = {};
     tick_.is_on_burr = {};
+    tick_.rubbing_radius = {};
     tick_.burr_load = {};
     tick_.cut_share = 1;
 }

@@ -71,22 +71,25 @@ class BoneRays {
     BoneRays(const BoneModel& bone, const Pose& X_WC) : bone_(bone) {
         const Pose X_VC = bone.volume.geometry().X_WV.inverse() * X_WC;
         eye_ = X_VC.position.array() / bone.volume.spacing().array();
-        R_VC_ = X_VC.rotation.normalized().toRotationMatrix();
+        R_VC_ = X_VC.rotation.toRotationMatrix();
     }
 
     // The depth at which the ray through this place of the screen meets bone; `far` where it does not.
     double depth(double x, double y, double far) const {
-        const VoxelRay ray{eye_, (R_VC_ * Eigen::Vector3d(x, y, -1)).array() / volume().spacing().array()};
+        Eigen::Array3d per_m = (R_VC_ * Eigen::Vector3d(x, y, -1)).array() / volume().spacing().array();
+        // Along a node's border rounding would not say on which side of it the ray is.
+        per_m = (per_m.abs() < kLeastShare * per_m.abs().maxCoeff()).select(0, per_m);
+        const VoxelRay ray{eye_, per_m};
         const auto [begin, end] = ray.within(Eigen::Array3d::Constant(-1),
                                              volume().dims().cast<double>().array(), {kNearestDepth, far});
         const double step = kStepVoxels / ray.per_m.abs().maxCoeff();
         if (begin < end && isBone(ray, begin)) return begin;  // the camera is in it
         for (double from = begin; from < end;) {
-            const Node node = nodeAround(ray.point(from + kNudge * step));
+            const Node node = nodeAround(ray.point(from + kProgress * step));
             const double leaves = ray.within(node.cells.min.cast<double>().array(),
                                              node.cells.max.cast<double>().array() + 1, {begin, end})
                                       .second,
-                         to = std::min(std::max(leaves, from + kNudge * step), end);
+                         to = std::min(std::max(leaves, from + kProgress * step), end);
             if (node.may_hold_bone)
                 if (const double hit = firstBone(ray, from, to, step); hit <= to) return hit;
             from = to;
@@ -95,9 +98,10 @@ class BoneRays {
     }
 
   private:
-    static constexpr double kStepVoxels = 0.5;  // thinner bone may be passed by
-    static constexpr double kNudge = 1e-6;      // of a step: into the next leaf
-    static constexpr int kHalvings = 8;         // of a step: 1/512 of a voxel
+    static constexpr double kStepVoxels = 0.5;   // thinner bone may be passed by
+    static constexpr double kProgress = 1e-3;    // of a step, at least: into the next leaf
+    static constexpr double kLeastShare = 1e-9;  // of the largest part of a direction
+    static constexpr int kHalvings = 8;          // of a step: 1/512 of a voxel
 
     const VoxelVolume& volume() const { return bone_.volume; }
     Eigen::Vector3i cellAt(const Eigen::Array3d& place) const {
@@ -224,14 +228,15 @@ void paintTool(const TriangleSurface& surface, const Pose& X_CT, const Screen& s
 
 std::vector<float> depthPicture(const SteppedRun& run, const DepthCamera& camera) {
     check(camera);
+    const Pose X_WC{camera.X_WC.position, camera.X_WC.rotation.normalized()};
     const Screen screen(camera);
     std::vector<float> depths(size_t(camera.width) * size_t(camera.height), float(camera.far));
     if (run.ticks() > 0) {
         const auto& [p, q] = std::pair{run.record().p_WT, run.record().q_WT};
         const Pose X_WT{Eigen::Vector3d(p), Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
-        paintTool(run.setup().tools[run.record().tool].surface, camera.X_WC.inverse() * X_WT, screen, depths);
+        paintTool(run.setup().tools[run.record().tool].surface, X_WC.inverse() * X_WT, screen, depths);
     }
-    const BoneRays rays(run.bone(), camera.X_WC);
+    const BoneRays rays(run.bone(), X_WC);
     auto depth = depths.begin();
     for (int row = 0; row < camera.height; ++row)
         for (int column = 0; column < camera.width; ++column, ++depth)

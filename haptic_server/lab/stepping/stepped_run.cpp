@@ -25,7 +25,6 @@ SteppedRun::SteppedRun(const LoadedScene& loaded)
 void SteppedRun::beginWatching() {
     hash_ = {};
     beginAttempt();
-    tally_.reset();
     noteAllChanged();
     record_ = {};
     ticks_ = 0;
@@ -36,6 +35,7 @@ void SteppedRun::noteAllChanged() noexcept {
 }
 
 void SteppedRun::beginAnew() {
+    tally_.reset();  // of the bone that goes
     setup_.bone = std::make_unique<BoneModel>(scanned_.withoutSpareBricks(), setup_.bone->lattice.leafCells(),
                                               shellConfigOf(loaded_.scene));
     beginWatching();

@@ -111,6 +111,8 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const SceneSetup& simulat
     assign(info.mutable_p_wd_m(), simulation.X_WD.position);
     assign(info.mutable_q_wd(), Eigen::Vector4d(q_WD.w(), q_WD.x(), q_WD.y(), q_WD.z()));
     *info.mutable_device() = scene.device();
+    info.mutable_device()->clear_p_wd_mm();
+    info.mutable_device()->clear_q_wd();
     info.set_leaf_count(simulation.bone->lattice.leafCount());
     if (simulation.surroundings)  // their nodes are numbered behind those of the bone
         info.set_leaf_count(info.leaf_count() + surroundingsLeafCount(*simulation.surroundings));

@@ -30,6 +30,7 @@ class AresArm {
 
   private:
     AresKinematics kinematics_;
+    bool is_buildable_;
     HandSpace hand_space_;
     Pose X_DW_;
 };

@@ -83,7 +83,7 @@ const packages = parts.map((file) => /^.*node_modules\/(@[^/]+\/)?[^/]+/.exec(fi
 writeFileSync(join(work, 'contained.json'), JSON.stringify([...new Set(packages)].sort()));
 await build({
   ...common, platform: 'node', target: 'node18', outdir: join(work, 'tests_out'), outExtension: { '.js': '.mjs' },
-  entryPoints: { unit: 'tests/unit.ts', journal: 'tests/journal.ts', foxglove: 'tests/foxglove.ts', stand_in: 'tests/stand_in.ts', browser: 'tests/browser.ts', native: 'tests/native.ts', rate: 'tests/rate.ts' },
+  entryPoints: { unit: 'tests/unit.ts', language: 'tests/language.ts', journal: 'tests/journal.ts', foxglove: 'tests/foxglove.ts', stand_in: 'tests/stand_in.ts', browser: 'tests/browser.ts', native: 'tests/native.ts', rate: 'tests/rate.ts' },
   external: ['playwright-core', 'ws'],
 });
 

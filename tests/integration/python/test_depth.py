@@ -3,6 +3,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 import unittest
 
 import numpy as np
@@ -53,6 +54,21 @@ class OfAPlate(Folder):
         hits = np.abs((eye + expected[..., None] * way)[..., :2]).max(axis=-1) < 2.2e-3
         self.assertGreater(hits.sum(), 3000)
         np.testing.assert_allclose(self.simulation().depth(camera)[hits], expected[hits], atol=0.3 * VOXEL_M)
+
+    def test_a_look_along_the_borders_of_the_voxels_comes_to_an_end(self):
+        for voxels in (31, 63):
+            made = run(BIN / "make_phantom", "body", "--kind", "slab", "--voxel-mm", 0.125, "--dims", *[voxels] * 3,
+                       "--thickness-mm", 1, "--out", self.folder / "block.nrrd")
+            self.assertEqual(made.returncode, 0, made.stderr)
+            sim = self.simulation()
+            for eye in ([0.03, 0, 0], [-0.03, 0, 0], [0, 0.03, 0]):
+                camera = bonemill.DepthCamera.looking(eye, [0, 0, 0], width=85, height=85)
+                begin = time.process_time()
+                sides = sim.depth(camera)
+                self.assertLess(time.process_time() - begin, 20, (voxels, eye))
+                # The plate ends with the grid; its side is as far away as it is, above and below of it is nothing.
+                self.assertAlmostEqual(sides[42, 42], 0.03 - voxels / 2 * VOXEL_M, delta=VOXEL_M)
+                self.assertEqual(sides[0, 42], np.float32(camera.far_m))
 
     def test_the_hole_that_is_milled_and_the_tool_above_it_are_seen(self):
         sim = self.simulation()

@@ -56,9 +56,9 @@ class Scene:
 
         accuracy: fast, balanced, exact or thesis_2012; by default what the scene says. law: gradient, thesis_2012,
         proxy_3dof, vps, penalty_sdf or constraint; another law than the gradient law has an accuracy of its own, and
-        some effects do not go with it. effects: by name, True or their fields, beside those of the scene, or
-        False for one of the scene's that shall not be. settings:
-        PATH=VALUE each. tool: the first one's name or number from 1. keep_inputs: without, there are no checkpoints,
+        some effects do not go with it. effects: by name, True (with its defaults), some of its
+        fields, or False for one of the scene's that shall not be; the scene's others stay. settings: PATH=VALUE each.
+        tool: the first one's name or number from 1. keep_inputs: without, there are no checkpoints,
         and no 72 bytes a tick.
         """
         chosen = [*self.settings, *_accuracy_settings(accuracy, law), *_effect_settings(effects or {}), *_listed(settings)]

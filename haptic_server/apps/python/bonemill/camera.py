@@ -27,6 +27,11 @@ class DepthCamera:
     height: int = 84
     far_m: float = 0.3
 
+    def __post_init__(self) -> None:
+        for name in ("position_m", "orientation_wxyz"):  # so that cameras are equal where their numbers are
+            if isinstance(getattr(self, name), np.ndarray):
+                object.__setattr__(self, name, tuple(getattr(self, name).tolist()))
+
     @classmethod
     def looking(cls, from_m: ArrayLike, at_m: ArrayLike, up: ArrayLike = (0, 0, 1), **rest: Any) -> DepthCamera:
         """One that stands there and looks at that place (m, W), with this way (W) up in the picture."""

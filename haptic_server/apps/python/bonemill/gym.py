@@ -157,6 +157,8 @@ class MillingEnv(_Environment):  # type: ignore[misc]
                  depth: DepthCamera | None = None, **simulation: Any) -> None:
         """simulation: what Scene.simulation() takes. depth: a camera whose picture each observation has, too; without,
         no picture is made. reset(seed) moves the start by start_jitter_m at most."""
+        if depth is not None and not isinstance(depth, DepthCamera):
+            raise Error(f"depth={depth!r}: expected a DepthCamera, or None for no pictures")
         if not isinstance(ticks_per_step, int) or ticks_per_step < 1:
             raise Error(f"ticks_per_step={ticks_per_step}: expected a whole number from 1 on")
         if not (math.isfinite(max_seconds) and max_seconds > 0):

@@ -3,7 +3,6 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { create, fromBinary, getOption, ScalarType, toBinary, type DescMessage } from '@bufbuild/protobuf';
 import { items, shape, Shape } from '#proto/bounds_pb';
-import { kCatalogues, kOthers, kSentences } from '#proto/catalogues';
 import * as wire from '../src/link/wire';
 import * as linear from '../src/math/linear';
 import { read } from '../src/link/bounds';
@@ -17,14 +16,13 @@ import { kMilledBit, kVertexBytes, Role, type CommandOrder, type StatusView, typ
 import { clockText, readableText } from '../src/shared/format';
 import { hasTakenOver, kPointerDevice, OrderDesk, questionBefore, whyNot, whyNotHold, whyNotTakeOver } from '../src/orders';
 import { orderText } from '../src/shared/commands';
-import { addressIn, chosenLanguage, speak, tr } from '../src/shared/language';
 import { Pace } from '../src/pace';
 import { Session } from '../src/session';
 import { MillingSynth } from '../src/sound/milling_synth';
 import { thinned } from '../src/stroke_pen';
 import { ToolHold } from '../src/tool_hold';
-import { actionOf, keyText, kKeys } from '../src/ui/key_table';
-import { conditions, detailRows, loadOf, stateText, workOf } from '../src/ui/words';
+import { actionOf } from '../src/ui/key_table';
+import { conditions, loadOf, workOf } from '../src/ui/words';
 import { vertexColours } from '../src/view/vertex_colours';
 import { Orbit, frustumPlanes, isBoxSeen, pixelOf } from '../src/view/camera';
 import { makeFrame, type PictureView } from '../src/view/picture_view';
@@ -460,46 +458,4 @@ test('the sound is heard under load and fades without', () => {
   loudness();
   assert.ok(loud > 2 * idle && idle > 0.001 && loudness() < 1e-4);
   near(synth.frequency, 3000 / (2 * Math.PI), 1);
-});
-
-test('every sentence of the page is in the catalogues of the windows', () => {
-  assert.ok(kSentences.length > 150, `${kSentences.length} sentences`);
-  assert.ok(Object.keys(kCatalogues).length >= 2);
-  for (const [code, { words }] of Object.entries(kCatalogues))
-    for (const sentence of kSentences) {
-      assert.ok(words[sentence], `${code} lacks ${JSON.stringify(sentence)}`);
-      assert.deepEqual((words[sentence].match(/\{\d\}/g) ?? []).sort(), (sentence.match(/\{\d\}/g) ?? []).sort(), sentence);
-    }
-});
-
-test('no text of several words is left out of the catalogues', () => {
-  // What is logged or thrown, and names in the drawing.
-  const kNotForPeople = [' is too long', ' of length 1', 'a sample was dropped:', 'bone depth', 'card chosen', 'model too large',
-    'precision highp ', 'tool indices', 'tool shadow'];
-  assert.deepEqual(kOthers.filter((text) => !kNotForPeople.includes(text)), []);
-});
-
-test('a language is that of the address, or the first of the browser that there is', () => {
-  assert.equal(chosenLanguage('', ['de-AT', 'en']), 'de');
-  assert.equal(chosenLanguage('?lang=sv', ['de-AT']), 'sv');
-  assert.equal(chosenLanguage('?lang=en', ['de']), 'en');
-  assert.equal(chosenLanguage('?lang=tlh', ['fi', 'sv-FI', 'de']), 'sv');
-  assert.equal(chosenLanguage('', ['fi']), 'en');
-  assert.equal(addressIn('de', 'https://host/a?lang=en&b=1#t'), 'https://host/a?lang=de&b=1#t');
-});
-
-test('what the session says is said in the language that was chosen', () => {
-  speak(Object.fromEntries(kSentences.map((sentence) => [sentence, `«${sentence.replace(/^.*\u0004/, '')}»`])));
-  try {
-    const session = new Session();
-    session.take({ kind: 'status', status: payloads.statusOf(synthetic.status({ nodes: { count: 1, digest: 0n } }).payload) }, 0);
-    assert.equal(tr('Back to {1}', 3), '«Back to 3»');
-    assert.equal(tr('not of the page'), 'not of the page');
-    for (const text of [stateText(session).value, whyNot('setAccuracy', session), ...detailRows(session, 30, 1, 1).map((row) => row.label).filter((label) => label !== 'simulated hand'),
-      ...kKeys.map((one) => tr(one.meaning)), keyText('Shift+X')])
-      assert.match(text, /^«.*»/);
-  } finally {
-    speak({});
-  }
-  assert.equal(tr('Back to {1}', 3), 'Back to 3');
 });

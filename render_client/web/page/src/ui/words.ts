@@ -188,7 +188,7 @@ export function titleOf(lesson?: LessonView, id = ''): string {
 
 export function faults(fault_text: string): { text: string; tone: Tone }[] {
   const names = [...new Set(fault_text.split(/[\s,]+/).filter(Boolean))];
-  return names.filter((name) => kFaults[name]).map((name) => ({ text: tr(kFaults[name][0]), tone: kFaults[name][1] }));
+  return names.filter((name) => Object.hasOwn(kFaults, name)).map((name) => ({ text: tr(kFaults[name][0]), tone: kFaults[name][1] }));
 }
 
 export function trainingRows(training: TrainingView): Row[] {
