@@ -78,6 +78,8 @@ TEST_F(RealStart, TwoClicksLeadFromTheWindowToMilledBone) {
 TEST_F(RealStart, AnotherCardAndTheScriptedHandAreStartedByKeysAndClicks) {
     rig_.open();
     rig_.await("a session", [&] {
+        // A busy PC may take the first click for one at a window that is not yet before the others.
+        rig_.click("Scripted: it shows how");
         rig_.click("Scripted: it shows how");
         rig_.click("tooth_caries");
         return test::waitFor([&] { return rig_.session().has_value(); }, std::chrono::seconds(2));

@@ -196,7 +196,7 @@ TEST_F(CheckFigures, MustBeThereAndStandBehindANumber) {
     expectFound("It takes long<!--=accuracy.tooth.balanced.p50_us-->.\n",
                 "10: the mark accuracy.tooth.balanced.p50_us does not stand behind a figure");
     expectFound("## How exact, how fast, how stable\n\nIt takes 62 µs.\n",
-                "12: 62 µs has no mark of docs/figures.json");
+                "12: 62 µs has no mark of docs/figures.json or docs/benchmark.json");
 }
 
 TEST_F(CheckFigures, AreOldWhenTheTickHasOtherCode) {

@@ -168,7 +168,7 @@ async function translated(): Promise<void> {
   await page.screenshot({ path: join(pictures, 'german_help.png') });
   await page.keyboard.press('h');
   await page.screenshot({ path: join(pictures, 'german.png') });
-  await page.getByRole('combobox', { name: 'Sprache' }).selectOption('Svenska');
+  await Promise.all([page.waitForURL(/\?lang=sv$/), page.getByRole('combobox', { name: 'Sprache' }).selectOption('Svenska')]);
   await stateIs(page, 'direkt');
   await page.keyboard.press('m');
   await has(page, 'panel', 'Din roll: ');
