@@ -1,5 +1,6 @@
 """The figures that texts quote: docs/figures.json, which deploy/measure writes, docs/benchmark.json, which
-tests/bench/benchmark/run writes, and their marks in README.md, CONTRIBUTING.md and docs/. A mark is a comment, which a reader of the page does not see:
+tests/bench/benchmark/run writes, and their marks in README.md, CONTRIBUTING.md and docs/. A mark is a comment, which a
+reader of the page does not see:
 
   in 62<!--=accuracy.tooth_corridor.balanced.tick_p50_us--> µs    the number before the mark is this figure
   <!--=benchmark.bonemill balanced.peg.force_error-->             a program's figure in a scene of the benchmark, or of all

@@ -42,7 +42,9 @@ TickSpeaker::TickSpeaker(const dds::Participant& participant, const std::string&
       setpoint_cp_(participant, name_space + "/setpoint_cp"),
       measured_cv_(participant, name_space + "/measured_cv"),
       measured_cf_(participant, name_space + "/measured_cf"),
-      measured_js_(participant, name_space + "/measured_js") {}
+      measured_js_(participant, name_space + "/measured_js") {
+    for (const char* name : kSliderNames) slider_names_.push_back(textOf(name));
+}
 
 void TickSpeaker::say(const topics::Tick& tick) {
     if (last_tick_ && tick.tick() > *last_tick_) missing_ += tick.tick() - *last_tick_ - 1;
@@ -63,12 +65,10 @@ void TickSpeaker::sayJoints(int64_t stamp_ns, const Pose& X_WT,
                             const std::optional<AresArm::Motion>& motion) {
     const auto joints = arm_ ? arm_->jointsAt(X_WT, motion) : std::nullopt;
     if (!joints) return;
-    std::vector<char*> names;
-    for (const char* name : kSliderNames) names.push_back(textOf(name));
     std::vector<double> positions(joints->positions.begin(), joints->positions.end()), velocities;
     if (joints->velocities) velocities.assign(joints->velocities->begin(), joints->velocities->end());
     JointState message{.header = headerOf(stamp_ns, kDeviceFrame)};
-    pointAt(message.name, names);
+    pointAt(message.name, slider_names_);
     pointAt(message.position, positions);
     pointAt(message.velocity, velocities);
     measured_js_.write(message);

@@ -8,6 +8,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/geometry/pose.h"
 #include "common/ros/ros_endpoint.h"
@@ -52,6 +53,7 @@ class TickSpeaker {
     Writer<TwistStamped> measured_cv_;
     Writer<WrenchStamped> measured_cf_;
     Writer<JointState> measured_js_;
+    std::vector<char*> slider_names_;
     std::optional<AresArm> arm_;
     HandVelocity velocity_;
     std::optional<uint64_t> last_tick_;

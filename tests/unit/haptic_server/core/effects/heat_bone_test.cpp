@@ -4,7 +4,7 @@
 #include <random>
 
 #include "haptic_server/core/effects/thermal/heat_grid.h"
-#include "tests/support/test_bodies.h"
+#include "tests/support/full_block.h"
 #include "tests/support/typical_effects.h"
 
 namespace bonemill {
@@ -14,18 +14,6 @@ using Eigen::Vector3d;
 using Eigen::Vector3i;
 
 constexpr double kPeriod = 1e-3;
-
-VoxelVolume block(const Vector3i& dims, const Vector3d& spacing) {
-    VolumeGeometry geometry;
-    geometry.dims = dims;
-    geometry.spacing = spacing;
-    VoxelVolume bone(geometry, test::kTestIso);
-    bone.fill([&](int i, int j, int k) {
-        const bool is_inside = i >= 0 && j >= 0 && k >= 0 && i < dims.x() && j < dims.y() && k < dims.z();
-        return is_inside ? kMaxDensity : Density(0);
-    });
-    return bone;
-}
 
 void expectSame(const HeatGrid& noted, const HeatGrid& looking, const VoxelVolume& bone) {
     forEachIndex({Vector3i::Zero(), bone.dims().array() - 1}, [&](const Vector3i& voxel) {
@@ -41,7 +29,7 @@ TEST_P(HeatBone, IsThatOfTheVoxelsAfterEachCut) {
     std::mt19937 random(7);
     const Vector3d spacing = GetParam() * Vector3d(1, 0.9, 1.2);
     const Vector3i dims = (Vector3d(7.9e-3, 3.9e-3, 3.9e-3).array() / spacing.array()).cast<int>();
-    VoxelVolume bone = block(dims, spacing);
+    VoxelVolume bone = test::fullBlock(dims, spacing);
     HeatConfig config = test::kHeat;
     config.cell = 0.5e-3;
     HeatGrid noted(config, bone, kPeriod), looking(config, bone, kPeriod);
@@ -71,7 +59,8 @@ TEST_P(HeatBone, IsThatOfTheVoxelsAfterEachCut) {
 INSTANTIATE_TEST_SUITE_P(VoxelsOf, HeatBone, testing::Values(0.15e-3, 0.3e-3, 0.45e-3));
 
 TEST(HeatBoneOfASliver, HasNone) {
-    const VoxelVolume sliver = block({1, 8, 8}, {0.1e-3, 0.3e-3, 0.3e-3});  // no cube's middle is in it
+    const VoxelVolume sliver =
+        test::fullBlock({1, 8, 8}, {0.1e-3, 0.3e-3, 0.3e-3});  // no cube's middle is in it
     HeatConfig config = test::kHeat;
     config.cell = 0.5e-3;
     HeatGrid heat(config, sliver, kPeriod);

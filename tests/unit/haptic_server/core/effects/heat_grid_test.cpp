@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/support/test_bodies.h"
+#include "tests/support/full_block.h"
 #include "tests/support/typical_effects.h"
 
 namespace bonemill {
@@ -27,15 +27,7 @@ double diffusivity(const HeatConfig& config) {
 }
 
 VoxelVolume boneOf(const Eigen::Vector3i& dims, double spacing = kSpacing) {
-    VolumeGeometry geometry;
-    geometry.dims = dims;
-    geometry.spacing.setConstant(spacing);
-    VoxelVolume bone(geometry, test::kTestIso);
-    bone.fill([&](int i, int j, int k) {
-        const bool is_inside = i >= 0 && j >= 0 && k >= 0 && i < dims.x() && j < dims.y() && k < dims.z();
-        return is_inside ? kMaxDensity : Density(0);
-    });
-    return bone;
+    return test::fullBlock(dims, Vector3d::Constant(spacing));
 }
 
 void run(HeatGrid& heat, double seconds, double dt = kDt) {
