@@ -37,12 +37,12 @@ void addPieces(const NodeMesh& mesh, const MeshGrid& grid, const ChangeGrid& cha
 constexpr int kMaxPixels = 480;  // per side
 constexpr double kFineScale = 1e-3, kScaleVoxels = 3;
 
-using Rgb = std::array<double, 3>;
-constexpr Rgb kPaper{255, 255, 255}, kBone{228, 220, 200}, kRight{150, 200, 150}, kTooFar{205, 40, 30},
+using PaintRgb = std::array<double, 3>;
+constexpr PaintRgb kPaper{255, 255, 255}, kBone{228, 220, 200}, kRight{150, 200, 150}, kTooFar{205, 40, 30},
     kNotFar{40, 80, 205};
 
-Rgb mixOf(const Rgb& a, const Rgb& b, double share) {
-    Rgb mixed;
+PaintRgb mixOf(const PaintRgb& a, const PaintRgb& b, double share) {
+    PaintRgb mixed;
     for (size_t n = 0; n < mixed.size(); ++n) mixed[n] = a[n] + share * (b[n] - a[n]);
     return mixed;
 }
@@ -57,7 +57,7 @@ class Canvas {
         depth_.assign(size_t(size_.prod()), std::numeric_limits<double>::infinity());
         colour_.assign(depth_.size(), kPaper);
     }
-    void splat(const Eigen::Vector2d& at, double depth, double radius, const Rgb& colour) {
+    void splat(const Eigen::Vector2d& at, double depth, double radius, const PaintRgb& colour) {
         const Eigen::Array2d middle = (at - low_).array() / pixel_;
         const int reach = int(std::ceil(radius / pixel_));
         const Eigen::Array2i pixel = middle.round().cast<int>();
@@ -87,7 +87,7 @@ class Canvas {
     double pixel_;
     Eigen::Array2i size_;
     std::vector<double> depth_;
-    std::vector<Rgb> colour_;
+    std::vector<PaintRgb> colour_;
 };
 
 struct View {
@@ -100,13 +100,13 @@ struct View {
         up = right.cross(into);
     }
     Eigen::Vector2d place(const Eigen::Vector3d& p) const { return {right.dot(p), up.dot(p)}; }
-    Rgb shaded(const Rgb& colour, const Eigen::Vector3d& normal) const {
+    PaintRgb shaded(const PaintRgb& colour, const Eigen::Vector3d& normal) const {
         const double light = 0.45 + 0.55 * std::max(0.0, -normal.dot(into));
         return mixOf({0, 0, 0}, colour, light);
     }
 };
 
-Rgb colourOf(double distance, double scale) {
+PaintRgb colourOf(double distance, double scale) {
     const double share = std::min(1.0, std::abs(distance) / scale);
     return mixOf(kRight, distance > 0 ? kTooFar : kNotFar, share);
 }
@@ -164,7 +164,7 @@ DeviationPicture drawDeviation(const Deviation& deviation, const std::vector<Cut
     const double pixel = std::max(voxel / 16, window.sizes().maxCoeff() / kMaxPixels);
     Canvas canvas(window, pixel);
     const double radius = std::max(0.8 * voxel, pixel);
-    const auto draw = [&](const CutPiece& piece, const Rgb& colour) {
+    const auto draw = [&](const CutPiece& piece, const PaintRgb& colour) {
         if (piece.normal_V.dot(view.into) > 0) return;  // seen from behind
         canvas.splat(view.place(piece.center_V), view.into.dot(piece.center_V), radius,
                      view.shaded(colour, piece.normal_V));

@@ -13,6 +13,7 @@
 
 #include "common/commands/command_text.h"
 #include "render_client/link/subscribe/scene_subscriber.h"
+#include "render_client/look/hud/figure_text.h"
 #include "render_client/look/render_scene/render_scene.h"
 
 namespace bonemill {

@@ -15,6 +15,9 @@ constexpr auto kLongTimeout = 300s;  // a large scan on a slow disk
 // A first command can be lost while the two sides discover each other; the server carries a
 // repeated one out once.
 constexpr auto kRepeatAfter = 500ms;
+// Letting go for good is said so often, as one message may be lost.
+constexpr uint32_t kLastWords = 3;
+constexpr auto kBetweenLastWords = 5ms;
 
 }  // namespace
 
@@ -23,9 +26,8 @@ HandSpeaker::HandSpeaker(const Wire& wire, uint32_t session, uint64_t sender, to
     : session_(session), sender_(sender), role_(role), writer_(wire), sequence_(first_wish - 1) {}
 
 uint32_t HandSpeaker::nextWish() {
-    constexpr uint32_t kLastWords = 3;
     const std::lock_guard lock(mutex_);
-    return sequence_ + kLastWords;
+    return sequence_ + kLastWords + 2;  // one may be on its way
 }
 
 HandSpeaker::~HandSpeaker() {
@@ -77,7 +79,10 @@ void HandSpeaker::speak() {
     }
     if (!message_.is_holding()) return;
     message_.set_is_holding(false);
-    write(lock);
+    for (uint32_t word = 0; word < kLastWords; ++word) {
+        if (word > 0) std::this_thread::sleep_for(kBetweenLastWords);
+        write(lock);
+    }
 }
 
 // The lock is open while DDS writes.

@@ -30,6 +30,14 @@ class RealStart : public testing::Test {
                    [&] { return (session = rig_.session()) && session->pids.contains("render_client"); });
         return *session;
     }
+    static bool isScripted(const test::StartRig::Session& session) {
+        return test::readFile("/proc/" + std::to_string(session.pids.at("device_daemon")) + "/cmdline")
+                   .find(std::string("--device") + '\0' + "simulated") != std::string::npos;
+    }
+    void endSession() {
+        test::run(rig_.words({"stop", "all"}));
+        rig_.await("the window again", [&] { return isShown() && !rig_.session(); });
+    }
     bool isShown() {
         return test::run({"/usr/bin/xdotool", "search", "--onlyvisible", "--name", "^bonemill: start$"})
                    .exit_code == 0;
@@ -69,26 +77,26 @@ TEST_F(RealStart, TwoClicksLeadFromTheWindowToMilledBone) {
     RecordProperty("seconds_to_milled_bone", std::to_string(milled_s));
     EXPECT_FALSE(isShown()) << "the session's window is there alone";
 
-    test::run(rig_.words({"stop", "all"}));
-    rig_.await("the window again", [&] { return isShown(); });
+    endSession();
     EXPECT_EQ(kill(rig_.window().pid(), 0), 0);
     EXPECT_FALSE(rig_.session());
 }
 
 TEST_F(RealStart, AnotherCardAndTheScriptedHandAreStartedByKeysAndClicks) {
     rig_.open();
-    rig_.await("a session", [&] {
-        // A busy PC may take the first click for one at a window that is not yet before the others.
-        rig_.click("Scripted: it shows how");
-        rig_.click("Scripted: it shows how");
-        rig_.click("tooth_caries");
-        return test::waitFor([&] { return rig_.session().has_value(); }, std::chrono::seconds(2));
-    });
-    const auto session = awaitSession();
-    EXPECT_NE(test::readFile("/proc/" + std::to_string(session.pids.at("device_daemon")) + "/cmdline")
-                  .find(std::string("--device") + '\0' + "simulated"),
-              std::string::npos);
-    rig_.await("bone that the scripted hand mills", [&] { return removed(session.number).value_or(0) > 0; });
+    std::optional<test::StartRig::Session> session;
+    // The window may hear its first clicks only from some of them on: then it is begun once more.
+    for (int attempt = 0; attempt < 2 && !(session && isScripted(*session)); ++attempt) {
+        if (session) endSession();
+        rig_.await("a session", [&] {
+            rig_.click("Scripted: it shows how");
+            rig_.click("tooth_caries");
+            return test::waitFor([&] { return rig_.session().has_value(); }, std::chrono::seconds(2));
+        });
+        session = awaitSession();
+    }
+    ASSERT_TRUE(isScripted(*session));
+    rig_.await("bone that the scripted hand mills", [&] { return removed(session->number).value_or(0) > 0; });
 }
 
 // The twin asks and starts by the very script.

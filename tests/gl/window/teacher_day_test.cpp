@@ -268,7 +268,8 @@ class TeacherDay : public testing::Test {
         SceneSubscriber observer({.domain = testDomain(), .session = awaitReplay(), .name = "observer"});
         const auto isShown = [&] {
             observer.poll();
-            return observer.status() && observer.status()->replay().is_playing() && observer.isComplete() &&
+            return observer.status() && observer.status()->replay().is_playing() &&
+                   !observer.status()->replay().is_seeking() && observer.isComplete() &&
                    !observer.viewers().empty();
         };
         await("a window on a replay that plays", isShown);

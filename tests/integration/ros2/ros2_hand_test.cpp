@@ -57,7 +57,7 @@ TEST_F(Ros2Bridge, FollowsServoCpAndGivesTheWrenchWithinItsLimits) {
     EXPECT_EQ(host.state().q_DT[0], std::sqrt(0.5));
     EXPECT_EQ(host.state().q_DT[1], std::sqrt(0.5));
     host.want(true, {1, 2, 3, 0.01f, 0.02f, 0.03f});
-    EXPECT_TRUE(host.runUntil([&] { return robot_.wrench()[2] > 2.9999; }));
+    EXPECT_TRUE(host.runUntil([&] { return robot_.wrench()[2] > 3 - 1e-6; }));
     EXPECT_NEAR(robot_.wrench()[0], 1, 1e-6);
     EXPECT_NEAR(robot_.wrench()[1], 2, 1e-6);
     EXPECT_NEAR(robot_.wrench()[3], 0.01, 1e-6);
