@@ -89,8 +89,8 @@ TEST(DensitySource, CountsRevisionsUpWhereIsWritten) {
     EXPECT_FALSE(source.present(17));
 }
 
-// While the tick fills the brick with one density after the other, no copy has two of them. Some of its pauses
-// are long enough for a copy on a slow machine, most are not.
+// While the tick fills the brick with one density after the other, no copy has two of them. Some of its
+// pauses are long enough for a copy on a slow machine, most are not.
 TEST(DensitySource, NeverMixesTwoMoments) {
     constexpr int kCopies = 200, kLongestPause = 64;
     test::ScannedBone scan;
