@@ -121,6 +121,7 @@ class TouchingPoints {
 
 GradientContact::GradientContact(const GradientContactConfig& config, size_t most_candidates)
     : config_(config),
+      near_shell_(2 * most_candidates),
       near_(most_candidates),
       near_distance_(most_candidates),
       candidates_(most_candidates),
@@ -163,6 +164,7 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
     Eigen::AlignedBox3d box = boxInV(tool.box(), X_VT);
     box.min().array() -= reach;
     box.max().array() += reach;
+    near_shell_.begin(bone.shell, bone.level, tool, X_VT, margin_ + patch_reach_);
     BlockBatch blocks;
     const size_t tests_before = point_tests_;
     const auto test = [&] {
@@ -173,12 +175,15 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
         if (bone.shell.pointCount(bone.level, leaf) == 0 || !has_room) return;
         const Sphere around = sphereAround(bone.lattice.cellsOf(leaf), spacing);
         if (tool.distanceBound(X_TV * around.center) > around.radius + reach) return;
-        bone.shell.forEachBlock(bone.level, leaf, [&](const ShellBlock& block, uint32_t count) {
-            blocks.add(block, count, leaf);
-            if (blocks.count == BlockBatch::kCapacity) test();
-        });
+        near_shell_.forEachBlock(leaf, bone.lattice.version(leaf),
+                                 [&](const ShellBlock& block, uint32_t count) {
+                                     blocks.add(block, count, leaf);
+                                     if (blocks.count == BlockBatch::kCapacity) test();
+                                 });
     });
     test();
+    near_shell_.end();
+    point_tests_ += near_shell_.takePointTests();
     return has_room;
 }
 

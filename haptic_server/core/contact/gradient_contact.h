@@ -29,6 +29,7 @@
 
 #include "haptic_server/core/contact/candidates.h"
 #include "haptic_server/core/contact/contact_configs.h"
+#include "haptic_server/core/contact/near_shell.h"
 #include "haptic_server/core/contact/point_shell.h"
 #include "haptic_server/core/contact/surface_pieces.h"
 #include "haptic_server/core/coupling/energy_coupling.h"
@@ -83,8 +84,13 @@ class GradientContact {
     bool hasFewerSamples() const noexcept { return has_fewer_samples_; }
 
     // Forgets of the last gatherings how finely which patch was sampled. This is called when the shell level
-    // or the sampling changes, or the tool is placed anew.
-    void forget() noexcept { patch_memory_.forget(); }
+    // or the sampling changes, or the tool is placed anew or is another one.
+    void forget() noexcept {
+        patch_memory_.forget();
+        near_shell_.forget();
+    }
+    // Forgets only what was near the tool: it has another size.
+    void forgetNear() noexcept { near_shell_.forget(); }
 
     // Returns energy, wrench on the tool and stiffness at this pose, over the gathered points.
     template <class Scalar>
@@ -172,6 +178,7 @@ class GradientContact {
 
     GradientContactConfig config_;
     ContactWeights* weights_ = nullptr;
+    NearShell near_shell_;
     Candidates near_;                   // patches with a place near the tool, as one sample each
     std::vector<float> near_distance_;  // m: of those samples
     Candidates candidates_;             // samples that the tool can reach
