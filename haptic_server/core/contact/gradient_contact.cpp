@@ -175,11 +175,10 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
         if (bone.shell.pointCount(bone.level, leaf) == 0 || !has_room) return;
         const Sphere around = sphereAround(bone.lattice.cellsOf(leaf), spacing);
         if (tool.distanceBound(X_TV * around.center) > around.radius + reach) return;
-        near_shell_.forEachBlock(leaf, bone.lattice.version(leaf),
-                                 [&](const ShellBlock& block, uint32_t count) {
-                                     blocks.add(block, count, leaf);
-                                     if (blocks.count == BlockBatch::kCapacity) test();
-                                 });
+        near_shell_.forEachBlock(leaf, [&](const ShellBlock& block, uint32_t count) {
+            blocks.add(block, count, leaf);
+            if (blocks.count == BlockBatch::kCapacity) test();
+        });
     });
     test();
     near_shell_.end();

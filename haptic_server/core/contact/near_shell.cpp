@@ -48,14 +48,15 @@ void NearShell::end() noexcept {
 }
 
 // Null: there are only the shell's points. Whoever changed since the last gathering may change in each.
-const NearShell::KeptLeaf* NearShell::keep(LeafId leaf, uint32_t version) noexcept {
-    KeptLeaf* kept = find(leaf, version);
+const NearShell::KeptLeaf* NearShell::keep(LeafId leaf) noexcept {
+    const uint32_t revision = shell_->revision(level_, leaf);
+    KeptLeaf* kept = find(leaf);
     if (kept == nullptr) return nullptr;
-    const bool was_known = kept->gathering != 0 && kept->version == version;
+    const bool was_known = kept->gathering != 0 && kept->revision == revision;
     kept->gathering = gathering_;
     if (!was_known) {
         release(*kept);
-        kept->version = version;
+        kept->revision = revision;
         return nullptr;
     }
     if (kept->has_points && travelled_ + reach_ <= kept->good_until) return kept;
@@ -63,13 +64,13 @@ const NearShell::KeptLeaf* NearShell::keep(LeafId leaf, uint32_t version) noexce
 }
 
 // Null: there is no room for one more.
-NearShell::KeptLeaf* NearShell::find(LeafId leaf, uint32_t version) noexcept {
+NearShell::KeptLeaf* NearShell::find(LeafId leaf) noexcept {
     size_t at = next_;
     while (at < leaves_.size() && leaves_[at].leaf != leaf) ++at;
     if (at == leaves_.size()) {
         if (at == kMostLeaves) return nullptr;
         at = next_;
-        leaves_.insert(leaves_.begin() + ptrdiff_t(at), {.leaf = leaf, .version = version, .gathering = 0});
+        leaves_.insert(leaves_.begin() + ptrdiff_t(at), {.leaf = leaf});
     }
     next_ = at + 1;
     return &leaves_[at];

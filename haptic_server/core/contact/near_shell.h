@@ -35,8 +35,8 @@ class NearShell {
     // Calls visit(const ShellBlock&, uint32_t count) for blocks of the leaf in which all these points are,
     // and others. The blocks are good until end().
     template <class Visit>
-    void forEachBlock(LeafId leaf, uint32_t version, Visit&& visit) noexcept {
-        const KeptLeaf* kept = keep(leaf, version);
+    void forEachBlock(LeafId leaf, Visit&& visit) noexcept {
+        const KeptLeaf* kept = keep(leaf);
         if (kept == nullptr) return shell_->forEachBlock(level_, leaf, visit);
         uint32_t left = kept->count;
         for (uint32_t block = kept->first; left > 0; block = blocks_[block].next) {
@@ -55,15 +55,15 @@ class NearShell {
     static constexpr double kSlack = 1e-6;  // m: more than what is rounded off distances and ways
     struct KeptLeaf {
         LeafId leaf;
-        uint32_t version;
-        uint64_t gathering;         // the last that asked for it
-        bool has_points = false;    // else only the version is known
+        uint32_t revision = 0;
+        uint64_t gathering = 0;     // the last that asked for it
+        bool has_points = false;    // else only the revision is known
         double good_until = 0;      // m: of travelled_ + reach_
         uint32_t first = kNoBlock;  // of blocks_
         uint32_t count = 0;         // points
     };
-    const KeptLeaf* keep(LeafId leaf, uint32_t version) noexcept;
-    KeptLeaf* find(LeafId leaf, uint32_t version) noexcept;
+    const KeptLeaf* keep(LeafId leaf) noexcept;
+    KeptLeaf* find(LeafId leaf) noexcept;
     bool copyNear(KeptLeaf& kept) noexcept;
     bool append(KeptLeaf& kept, uint32_t& last, const ShellBlock& from, int point) noexcept;
     void release(KeptLeaf& kept) noexcept;

@@ -87,6 +87,10 @@ class PointShell {
         return levels_[size_t(level)].leaves[leaf].count;
     }
     size_t pointCount(int level) const noexcept { return levels_[size_t(level)].point_count; }
+    // It differs whenever the leaf's points do.
+    uint32_t revision(int level, LeafId leaf) const noexcept {
+        return levels_[size_t(level)].leaves[leaf].revision;
+    }
 
   private:
     static constexpr int kNone = -1;

@@ -62,6 +62,7 @@ void ShellPool::addBlocks(size_t count) {
 
 bool ShellPool::replace(List& list, const IndexBox& keys, std::span<const ShellPoint> fresh) noexcept {
     if (list.count == 0 && fresh.empty()) return true;
+    ++list.revision;
     const Place place = firstAtOrAbove(list, BlockKey::of(keys.min));
     if (hasSameKeys(list, place, keys, fresh)) {
         overwrite(list, place, fresh);

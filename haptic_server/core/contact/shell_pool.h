@@ -28,7 +28,8 @@ class ShellPool {
 
     struct List {
         uint32_t first = kNoBlock;
-        uint32_t count = 0;  // points
+        uint32_t count = 0;     // points
+        uint32_t revision = 0;  // of the points
     };
 
     // A list can have at most `longest_list` points.
