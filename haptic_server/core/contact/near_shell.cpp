@@ -11,7 +11,7 @@ constexpr int kBatch = PointBatch<float>::kCapacity;
 
 }  // namespace
 
-NearShell::NearShell(size_t most_points) : blocks_(most_points / ShellBlock::kCapacity + kMostLeaves) {
+NearShell::NearShell(size_t most_points) : blocks_(most_points / ShellBlock::kCapacity + 1) {
     leaves_.reserve(kMostLeaves);
     for (ShellBlock& block : blocks_) {
         for (float& at : block.center) at = 0;
@@ -31,14 +31,21 @@ void NearShell::begin(const PointShell& shell, int level, const ToolField& tool,
     if (&shell != shell_ || level != level_ || &tool != tool_) forget();
     shell_ = &shell, level_ = level, tool_ = &tool;
     const Vector6d way = between(X_VT_, X_VT);
-    travelled_ += way.head<3>().norm() + way.tail<3>().norm() * tool.reach();
+    const double step = way.head<3>().norm() + way.tail<3>().norm() * tool.reach();
+    travelled_ += step;
+    pays_ = step < kSkin / kFewestUses;
     X_VT_ = X_VT, reach_ = reach;
     ++gathering_;
     next_ = 0;
-    if (leaves_.empty()) return;
-    // One copy is made anew before it must be, so that they are not all due in the same tick.
-    KeptLeaf& oldest = *std::ranges::min_element(leaves_, {}, &KeptLeaf::good_until);
-    if (oldest.good_until < travelled_ + reach_ + kSkin / 2) oldest.good_until = 0;
+    renewOldest();
+}
+
+// One copy is made anew before it must be, so that they are not all due in the same tick.
+void NearShell::renewOldest() noexcept {
+    KeptLeaf* oldest = nullptr;
+    for (KeptLeaf& kept : leaves_)
+        if (kept.has_points && (oldest == nullptr || kept.good_until < oldest->good_until)) oldest = &kept;
+    if (oldest != nullptr && oldest->good_until < travelled_ + reach_ + kSkin / 2) oldest->good_until = 0;
 }
 
 void NearShell::end() noexcept {
@@ -47,7 +54,7 @@ void NearShell::end() noexcept {
     std::erase_if(leaves_, [this](const KeptLeaf& kept) { return kept.gathering != gathering_; });
 }
 
-// Null: there are only the shell's points. Whoever changed since the last gathering may change in each.
+// Null: there is no copy. A leaf that has changed since the last gathering may change before each.
 const NearShell::KeptLeaf* NearShell::keep(LeafId leaf) noexcept {
     const uint32_t revision = shell_->revision(level_, leaf);
     KeptLeaf* kept = find(leaf);
@@ -60,7 +67,7 @@ const NearShell::KeptLeaf* NearShell::keep(LeafId leaf) noexcept {
         return nullptr;
     }
     if (kept->has_points && travelled_ + reach_ <= kept->good_until) return kept;
-    return copyNear(*kept) ? kept : nullptr;
+    return pays_ && copyNear(*kept) ? kept : nullptr;
 }
 
 // Null: there is no room for one more.

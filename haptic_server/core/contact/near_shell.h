@@ -52,6 +52,7 @@ class NearShell {
   private:
     static constexpr uint32_t kNoBlock = ShellPool::kNoBlock;
     static constexpr size_t kMostLeaves = 512;
+    static constexpr int kFewestUses = 4;   // of a copy, or it is not made
     static constexpr double kSlack = 1e-6;  // m: more than what is rounded off distances and ways
     struct KeptLeaf {
         LeafId leaf;
@@ -62,6 +63,7 @@ class NearShell {
         uint32_t first = kNoBlock;  // of blocks_
         uint32_t count = 0;         // points
     };
+    void renewOldest() noexcept;
     const KeptLeaf* keep(LeafId leaf) noexcept;
     KeptLeaf* find(LeafId leaf) noexcept;
     bool copyNear(KeptLeaf& kept) noexcept;
@@ -80,6 +82,7 @@ class NearShell {
     Pose X_VT_;
     double travelled_ = 0;  // m: of any point of the tool at the most, since the first gathering
     double reach_ = 0;      // m
+    bool pays_ = false;     // the tool is slow enough for copies
     size_t point_tests_ = 0;
 };
 
