@@ -153,7 +153,7 @@ SceneSetup wideSetup(double voxel_mm, WideEffects which) {
     scene::Scene scene = test::everyEffectScene(block, test::kByEnergy);
     scene.mutable_tool(0)->set_speed_rpm(kWideSpeedRpm);
     scene::Effects effects = loadScene(shipped("mastoid")).scene.effects();
-    effects.clear_bleeding();  // it names a material that is not here
+    effects.clear_bleeding(), effects.clear_pulse();  // they name materials that are not here
     if (which != WideEffects::kAllOfMastoid) {
         scene.mutable_effects()->Clear();
         *scene.mutable_effects()->mutable_energy_removal() = effects.energy_removal();
