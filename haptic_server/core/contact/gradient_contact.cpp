@@ -164,10 +164,11 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
     Eigen::AlignedBox3d box = boxInV(tool.box(), X_VT);
     box.min().array() -= reach;
     box.max().array() += reach;
-    near_shell_.begin(bone.shell, bone.level, tool, X_VT, margin_ + patch_reach_);
+    near_shell_.begin({bone.shell, bone.level, tool, X_VT, margin_, margin_ + patch_reach_});
     BlockBatch blocks;
     const size_t tests_before = point_tests_;
     const auto test = [&] {
+        point_tests_ += near_shell_.takePointTests();
         has_room = has_room && point_tests_ - tests_before <= most_tests && collectFrom(blocks, tool, X_VT);
         blocks.count = 0;
     };
@@ -182,7 +183,6 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
     });
     test();
     near_shell_.end();
-    point_tests_ += near_shell_.takePointTests();
     return has_room;
 }
 

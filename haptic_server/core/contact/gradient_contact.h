@@ -89,7 +89,9 @@ class GradientContact {
         patch_memory_.forget();
         near_shell_.forget();
     }
-    // Forgets only what was near the tool: it has another size.
+    // The tool has grown by so much all around, m.
+    void noteGrowth(double by) noexcept { near_shell_.comeNearer(by); }
+    // What is found does not depend on it: forgets what was near the tool.
     void forgetNear() noexcept { near_shell_.forget(); }
 
     // Returns energy, wrench on the tool and stiffness at this pose, over the gathered points.

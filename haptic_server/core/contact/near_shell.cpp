@@ -1,15 +1,10 @@
 #include "haptic_server/core/contact/near_shell.h"
 
-#include <algorithm>
+#include <cmath>
 
 #include "haptic_server/core/contact/into_tool.h"
 
 namespace bonemill {
-namespace {
-
-constexpr int kBatch = PointBatch<float>::kCapacity;
-
-}  // namespace
 
 NearShell::NearShell(size_t most_points) : blocks_(most_points / ShellBlock::kCapacity + 1) {
     leaves_.reserve(kMostLeaves);
@@ -24,28 +19,22 @@ void NearShell::forget() noexcept {
     for (KeptLeaf& kept : leaves_) release(kept);
     leaves_.clear();
     next_ = 0;
+    travelled_ = 0;
 }
 
-void NearShell::begin(const PointShell& shell, int level, const ToolField& tool, const Pose& X_VT,
-                      double reach) noexcept {
-    if (&shell != shell_ || level != level_ || &tool != tool_) forget();
-    shell_ = &shell, level_ = level, tool_ = &tool;
-    const Vector6d way = between(X_VT_, X_VT);
-    const double step = way.head<3>().norm() + way.tail<3>().norm() * tool.reach();
-    travelled_ += step;
-    pays_ = step < kSkin / kFewestUses;
-    X_VT_ = X_VT, reach_ = reach;
+// A fast tool, or one that must look far, would use a copy once or twice.
+void NearShell::begin(const Gathering& g) noexcept {
+    const Vector6d way = between(X_VT_, g.X_VT);
+    const double step = way.head<3>().norm() + way.tail<3>().norm() * g.tool.reach();
+    if (&g.shell != shell_ || g.level != level_ || &g.tool != tool_ || !(step < kFar))
+        forget();
+    else
+        travelled_ += step;
+    const bool pays = kFewestUses * step < kSkin && kFewestUses * g.margin < 2 * kSkin;
+    allowance_ = pays ? kMostForCopies : 0;
+    shell_ = &g.shell, level_ = g.level, tool_ = &g.tool, X_VT_ = g.X_VT, reach_ = g.reach;
     ++gathering_;
     next_ = 0;
-    renewOldest();
-}
-
-// One copy is made anew before it must be, so that they are not all due in the same tick.
-void NearShell::renewOldest() noexcept {
-    KeptLeaf* oldest = nullptr;
-    for (KeptLeaf& kept : leaves_)
-        if (kept.has_points && (oldest == nullptr || kept.good_until < oldest->good_until)) oldest = &kept;
-    if (oldest != nullptr && oldest->good_until < travelled_ + reach_ + kSkin / 2) oldest->good_until = 0;
 }
 
 void NearShell::end() noexcept {
@@ -54,7 +43,8 @@ void NearShell::end() noexcept {
     std::erase_if(leaves_, [this](const KeptLeaf& kept) { return kept.gathering != gathering_; });
 }
 
-// Null: there is no copy. A leaf that has changed since the last gathering may change before each.
+// Null: there is no copy. A leaf that has changed since the last gathering may change before each. A copy is
+// made anew before it must be, so that they are not all due in the same tick.
 const NearShell::KeptLeaf* NearShell::keep(LeafId leaf) noexcept {
     const uint32_t revision = shell_->revision(level_, leaf);
     KeptLeaf* kept = find(leaf);
@@ -66,8 +56,11 @@ const NearShell::KeptLeaf* NearShell::keep(LeafId leaf) noexcept {
         kept->revision = revision;
         return nullptr;
     }
-    if (kept->has_points && travelled_ + reach_ <= kept->good_until) return kept;
-    return pays_ && copyNear(*kept) ? kept : nullptr;
+    const double left = kept->has_points ? kept->good_until - travelled_ - reach_ : -1;
+    if (left < kSkin / 2 && allowance_ > 0) return copyNear(*kept) ? kept : nullptr;
+    if (left < 0) return nullptr;
+    point_tests_ += kept->looked_at - kept->count;
+    return kept;
 }
 
 // Null: there is no room for one more.
@@ -86,7 +79,9 @@ NearShell::KeptLeaf* NearShell::find(LeafId leaf) noexcept {
 // False: there is no room for them.
 bool NearShell::copyNear(KeptLeaf& kept) noexcept {
     release(kept);
+    constexpr int kBatch = PointBatch<float>::kCapacity;
     const auto within = float(reach_ + kSkin + 2 * tool_->distanceError());
+    const Pose X_TV = X_VT_.inverse();
     const IntoTool<float> into_tool(X_VT_, Eigen::Vector3d::Zero());
     PointBatch<float> batch;
     alignas(64) float distance[kBatch];
@@ -94,21 +89,23 @@ bool NearShell::copyNear(KeptLeaf& kept) noexcept {
     bool has_room = true;
     shell_->forEachBlock(level_, kept.leaf, [&](const ShellBlock& block, uint32_t count) {
         const Eigen::Vector3f center(block.center[0], block.center[1], block.center[2]);
-        const Eigen::Vector3d center_T = X_VT_.inverse() * center.cast<double>();
-        if (!has_room || tool_->distanceBound(center_T) > double(block.radius + within)) return;
+        if (!has_room || tool_->distanceBound(X_TV * center.cast<double>()) > double(block.radius + within))
+            return;
         into_tool.fill(batch, block.x, block.y, block.z, int(count));
         tool_->distances(batch, distance);
-        point_tests_ += count;
-        for (int i = 0; i < int(count) && has_room; ++i)
+        kept.looked_at += count;
+        for (uint32_t i = 0; i < count && has_room; ++i)
             if (distance[i] < within) has_room = append(kept, last, block, i);
     });
+    point_tests_ += kept.looked_at;
+    allowance_ = has_room ? allowance_ - std::min<size_t>(allowance_, kept.looked_at) : 0;
     if (!has_room) release(kept);
     kept.has_points = has_room;
     kept.good_until = travelled_ + reach_ + kSkin - kSlack;
     return has_room;
 }
 
-bool NearShell::append(KeptLeaf& kept, uint32_t& last, const ShellBlock& from, int point) noexcept {
+bool NearShell::append(KeptLeaf& kept, uint32_t& last, const ShellBlock& from, uint32_t point) noexcept {
     const uint32_t at = kept.count % ShellBlock::kCapacity;
     if (at == 0) {
         if (free_ == kNoBlock) return false;
@@ -129,7 +126,7 @@ void NearShell::release(KeptLeaf& kept) noexcept {
         const uint32_t block = std::exchange(kept.first, blocks_[kept.first].next);
         blocks_[block].next = std::exchange(free_, block);
     }
-    kept.count = 0;
+    kept.count = kept.looked_at = 0;
     kept.has_points = false;
 }
 

@@ -2,6 +2,7 @@
 // many in the blocks that it reaches.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -12,28 +13,40 @@
 
 namespace bonemill {
 
-// Of each leaf of the shell it has a copy of the points that were nearer than the reach and kSkin more, in
-// the shell's order. The copy is good until the tool has moved by the skin, or the leaf was written to; a
-// leaf that is being milled has none. What is found with it is what is found without it.
+// Of each leaf of the shell it has a copy of the points that were nearer than the reach, kSkin and the
+// distances' error, in the shell's order. The copy is good until the tool's motion, or a larger reach, has
+// used up the skin, or the leaf's points change; a leaf that is being milled has none. So all that the tool
+// can touch is found as without it. Points that it cannot may differ: those of which a grid of distances
+// knows only a bound.
 //
 // It is RT-safe but for construction, and for the tick thread only.
 class NearShell {
   public:
     static constexpr double kSkin = 80e-6;  // m
 
+    struct Gathering {
+        const PointShell& shell;
+        int level;
+        const ToolField& tool;
+        const Pose& X_VT;
+        double margin;  // m: as far as the tool may move
+        double reach;   // m: of the points that are asked for, margin included
+    };
+
     // It allocates room for about so many points; of what there is no room for, no copy is kept.
     explicit NearShell(size_t most_points);
+    NearShell(const NearShell&) = delete;
+    NearShell& operator=(const NearShell&) = delete;
 
-    // This is called when the tool has another size, or points change without a write to the bone.
     void forget() noexcept;
+    // Without a motion the tool has come nearer to all bone by so much, m: it has grown.
+    void comeNearer(double by) noexcept { travelled_ += by; }
 
-    // Between these two each leaf is asked for at most once, in the lattice's order: for the points of a
-    // level that are nearer than `reach` (m) to the tool.
-    void begin(const PointShell& shell, int level, const ToolField& tool, const Pose& X_VT,
-               double reach) noexcept;
+    // Between these two each leaf is asked for at most once, in the lattice's order.
+    void begin(const Gathering& gathering) noexcept;
     void end() noexcept;
-    // Calls visit(const ShellBlock&, uint32_t count) for blocks of the leaf in which all these points are,
-    // and others. The blocks are good until end().
+    // Calls visit(const ShellBlock&, uint32_t count) for blocks of the leaf in which all points within the
+    // reach are, and others. The blocks are good until end().
     template <class Visit>
     void forEachBlock(LeafId leaf, Visit&& visit) noexcept {
         const KeptLeaf* kept = keep(leaf);
@@ -46,7 +59,8 @@ class NearShell {
         }
     }
 
-    // Work since the last call, in distances of one point to the tool.
+    // Work since the last call, in distances of one point to the tool, and what was saved: what the tick has
+    // time for must not depend on what happens to be kept.
     size_t takePointTests() noexcept { return std::exchange(point_tests_, 0); }
 
   private:
@@ -54,6 +68,9 @@ class NearShell {
     static constexpr size_t kMostLeaves = 512;
     static constexpr int kFewestUses = 4;   // of a copy, or it is not made
     static constexpr double kSlack = 1e-6;  // m: more than what is rounded off distances and ways
+    static constexpr double kFar = 1e-3;    // m: whoever goes so far in a step is elsewhere
+    // Points that are looked at for copies in a gathering: they are made by and by, not all in one tick.
+    static constexpr size_t kMostForCopies = 2048;
     struct KeptLeaf {
         LeafId leaf;
         uint32_t revision = 0;
@@ -62,12 +79,12 @@ class NearShell {
         double good_until = 0;      // m: of travelled_ + reach_
         uint32_t first = kNoBlock;  // of blocks_
         uint32_t count = 0;         // points
+        uint32_t looked_at = 0;     // points, for the copy
     };
-    void renewOldest() noexcept;
     const KeptLeaf* keep(LeafId leaf) noexcept;
     KeptLeaf* find(LeafId leaf) noexcept;
     bool copyNear(KeptLeaf& kept) noexcept;
-    bool append(KeptLeaf& kept, uint32_t& last, const ShellBlock& from, int point) noexcept;
+    bool append(KeptLeaf& kept, uint32_t& last, const ShellBlock& from, uint32_t point) noexcept;
     void release(KeptLeaf& kept) noexcept;
 
     std::vector<ShellBlock> blocks_;
@@ -80,9 +97,9 @@ class NearShell {
     int level_ = 0;
     const ToolField* tool_ = nullptr;
     Pose X_VT_;
-    double travelled_ = 0;  // m: of any point of the tool at the most, since the first gathering
     double reach_ = 0;      // m
-    bool pays_ = false;     // the tool is slow enough for copies
+    size_t allowance_ = 0;  // points that may still be looked at for copies
+    double travelled_ = 0;  // m: of any point of the tool at the most, since it was forgotten
     size_t point_tests_ = 0;
 };
 

@@ -143,7 +143,7 @@ GradientModel::State GradientModel::begin(const Tick& tick) noexcept {
 void GradientModel::growTool() noexcept {
     if (growing_.offset() == 0 || last_depth_ > kMaxDepthToGrow * growing_.whole().thinnestRadius()) return;
     growing_.setOffset(growing_.offset() - kGrowth * dt_);
-    contact_.forgetNear();
+    contact_.noteGrowth(kGrowth * dt_);
     useTool();
 }
 

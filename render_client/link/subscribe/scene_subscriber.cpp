@@ -140,7 +140,7 @@ uint32_t SceneSubscriber::sendCommand(topics::Command command) {
 void SceneSubscriber::rejoinIfDeaf() {
     if (options_.remote || !ear_.isDeaf()) return;
     ++rejoinings_;
-    if (link_) next_wish_ = link_->hand.nextWish();
+    if (link_) next_wish_ = link_->hand.stop();
     ear_.leave();
     link_.reset();  // before the new one, or Cyclone would go on with what it has of this domain
     try {

@@ -25,19 +25,20 @@ HandSpeaker::HandSpeaker(const Wire& wire, uint32_t session, uint64_t sender, to
                          uint32_t first_wish)
     : session_(session), sender_(sender), role_(role), writer_(wire), sequence_(first_wish - 1) {}
 
-uint32_t HandSpeaker::nextWish() {
-    const std::lock_guard lock(mutex_);
-    return sequence_ + kLastWords + 2;  // one may be on its way
+HandSpeaker::~HandSpeaker() {
+    stop();
 }
 
-HandSpeaker::~HandSpeaker() {
-    if (!thread_.joinable()) return;
-    {
-        const std::lock_guard lock(mutex_);
-        should_stop_ = true;
+uint32_t HandSpeaker::stop() {
+    if (thread_.joinable()) {
+        {
+            const std::lock_guard lock(mutex_);
+            should_stop_ = true;
+        }
+        changed_.notify_one();
+        thread_.join();
     }
-    changed_.notify_one();
-    thread_.join();
+    return sequence_ + 1;
 }
 
 void HandSpeaker::want(const Pose& X_WT, uint32_t buttons, uint32_t placements, uint64_t epoch) {

@@ -91,8 +91,8 @@ class HandSpeaker {
     void want(const Pose& X_WT, uint32_t buttons, uint32_t placements, uint64_t epoch);
     // The tool is held no more.
     void letGo(uint64_t epoch);
-    // Returns a number that no message of this object has reached yet, nor will with its last words.
-    uint32_t nextWish();
+    // Lets go for good, and returns the number of who goes on from here.
+    uint32_t stop();
 
   private:
     using Clock = std::chrono::steady_clock;
