@@ -35,8 +35,7 @@ class NearShell {
 
     // It allocates room for about so many points; of what there is no room for, no copy is kept.
     explicit NearShell(size_t most_points);
-    NearShell(const NearShell&) = delete;
-    NearShell& operator=(const NearShell&) = delete;
+    NearShell(NearShell&&) = default;  // no copy: it would lose its room
 
     void forget() noexcept;
     // Without a motion the tool has come nearer to all bone by so much, m: it has grown.
