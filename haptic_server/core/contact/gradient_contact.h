@@ -87,7 +87,7 @@ class GradientContact {
     // or the sampling changes, or the tool is placed anew or is another one.
     void forget() noexcept {
         patch_memory_.forget();
-        near_shell_.forget();
+        forgetNear();
     }
     // The tool has grown by so much all around, m.
     void noteGrowth(double by) noexcept { near_shell_.comeNearer(by); }

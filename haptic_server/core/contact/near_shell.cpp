@@ -113,10 +113,7 @@ bool NearShell::append(KeptLeaf& kept, uint32_t& last, const ShellBlock& from, u
         (last == kNoBlock ? kept.first : blocks_[last].next) = block;
         blocks_[last = block].next = kNoBlock;
     }
-    ShellBlock& to = blocks_[last];
-    to.x[at] = from.x[point], to.y[at] = from.y[point], to.z[at] = from.z[point];
-    to.nx[at] = from.nx[point], to.ny[at] = from.ny[point], to.nz[at] = from.nz[point];
-    to.area[at] = from.area[point], to.key[at] = from.key[point];
+    copyPoints(from, point, 1, blocks_[last], at);
     ++kept.count;
     return true;
 }

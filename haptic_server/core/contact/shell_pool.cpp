@@ -26,14 +26,6 @@ void put(const ShellPoint& point, ShellBlock& b, uint32_t i) noexcept {
     b.key[i] = point.key;
 }
 
-void copyPoints(const ShellBlock& from, uint32_t first, uint32_t count, ShellBlock& to,
-                uint32_t at) noexcept {
-    using B = ShellBlock;
-    for (const auto values : {&B::x, &B::y, &B::z, &B::nx, &B::ny, &B::nz, &B::area})
-        std::copy_n(from.*values + first, count, to.*values + at);
-    std::copy_n(from.key + first, count, to.key + at);
-}
-
 void setBounds(ShellBlock& b, uint32_t count) noexcept {
     const auto first = [count](const float* values) {
         return Eigen::Map<const Eigen::ArrayXf>(values, count);

@@ -2,6 +2,7 @@
 // Only growing the pool allocates; all else is RT-safe. It is for the tick thread only.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,6 +22,15 @@ struct ShellBlock {
     // A sphere lies around the block's points (V, m).
     float center[3], radius;
 };
+
+// The sphere around `to` stays what it was.
+inline void copyPoints(const ShellBlock& from, uint32_t first, uint32_t count, ShellBlock& to,
+                       uint32_t at) noexcept {
+    using B = ShellBlock;
+    for (const auto values : {&B::x, &B::y, &B::z, &B::nx, &B::ny, &B::nz, &B::area})
+        std::copy_n(from.*values + first, count, to.*values + at);
+    std::copy_n(from.key + first, count, to.key + at);
+}
 
 class ShellPool {
   public:
