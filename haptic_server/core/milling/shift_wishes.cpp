@@ -17,6 +17,11 @@ using Eigen::Vector3i;
 // voxel count as this, so that a surface on a plateau moves on.
 constexpr double kMinSlope = 0.02;
 
+// By a divisor > 0, rounded down.
+Vector3i floorDivided(const Vector3i& of, int by) noexcept {
+    return of.unaryExpr([by](int v) { return v >= 0 ? v / by : -((by - 1 - v) / by); });
+}
+
 }  // namespace
 
 // Lists the shell's points around those with energy.
@@ -34,22 +39,30 @@ void SurfaceShift::findPatches(const BoneModel& bone) noexcept {
                                   (reachable.max.cast<float>().array() + float(block_ + 1)) * step};
     bone.lattice.forEachLeaf(cells, has_surface, [&](LeafId leaf) {
         const Vector3i first = bone.lattice.cellsOf(leaf).min;
+        // Blocks of the leaf, which has them in the order of their keys.
+        const Vector3i low = floorDivided((reachable.min - first).array() + (block_ - 1), block_).cwiseMax(0),
+                       high = floorDivided(reachable.max - first, block_).cwiseMin(BlockKey::kMaxPerAxis - 1);
+        if ((low.array() > high.array()).any()) return;
+        const Vector3i span = high - low;
+        const BlockKey first_key = BlockKey::of(low), last_key = BlockKey::of(high);
         bone.shell.forEachBlock(bone.shell.followed(), leaf, [&](const ShellBlock& b, uint32_t count) {
+            if (b.key[count - 1] < first_key || b.key[0] > last_key) return;
             const Vector3f center(b.center[0], b.center[1], b.center[2]);
             if (box.squaredExteriorDistance(center) > b.radius * b.radius) return;
             for (uint32_t n = 0; n < count && near_count_ < near_.size(); ++n) {
-                const Vector3i cell = first + b.key[n].index() * block_;
-                const bool is_near = (cell.array() >= reachable.min.array()).all() &&
-                                     (cell.array() <= reachable.max.array()).all();
-                if (is_near)
-                    near_[near_count_++] = {Vector3f(b.x[n], b.y[n], b.z[n]), b.area[n],
-                                            uint32_t(index(cell))};
+                const Vector3i from_low = b.key[n].index() - low;
+                const bool is_near = unsigned(from_low.x()) <= unsigned(span.x()) &&
+                                     unsigned(from_low.y()) <= unsigned(span.y()) &&
+                                     unsigned(from_low.z()) <= unsigned(span.z());
+                if (!is_near) continue;
+                const Vector3i cell = first + (low + from_low) * block_;
+                near_[near_count_++] = {Vector3f(b.x[n], b.y[n], b.z[n]), b.area[n], uint32_t(index(cell))};
             }
         });
     });
 }
 
-void SurfaceShift::spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share,
+void SurfaceShift::spreadWishes(const BoneModel& bone, SpecificEnergy& u, double share,
                                 double most) noexcept {
     const Vector3f inverse = bone.volume.spacing().cwiseInverse().cast<float>();
     const int to_iso = std::min(int(bone.volume.iso()), kMaxDensity - bone.volume.iso());
@@ -89,9 +102,14 @@ void SurfaceShift::spread(const VoxelVolume& volume, const SinkingPoints& wishes
 // The surface that is to stay has its say, where the other one has.
 void SurfaceShift::spreadRest(const BoneModel& bone) noexcept {
     const Vector3f inverse = bone.volume.spacing().cwiseInverse().cast<float>();
+    const Eigen::Array3f first = touched_.min.cast<float>(), last = touched_.max.cast<float>();
     for (const NearPatch& patch : std::span(near_).first(near_count_)) {
         if (orders_[patch.node].energy > 0) continue;
-        const VoxelHat hat = hatAround(patch.at.cwiseProduct(inverse));
+        const Vector3f at = patch.at.cwiseProduct(inverse);
+        const bool is_far =
+            (at.array() - float(block_) >= last).any() || (at.array() + float(block_) <= first).any();
+        if (is_far) continue;
+        const VoxelHat hat = hatAround(at);
         if (isAnyTouched(hat))
             kernels().add_hat_where_any(hat, patch.area,
                                         &weights_[index({hat.first[0], hat.first[1], hat.first[2]})]);

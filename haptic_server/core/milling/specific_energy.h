@@ -1,6 +1,6 @@
 // Says how much energy a volume of bone takes to be cut: by the density that it had in the scan, or by its
 // material. u = u_ref (ρ/ρ_ref)^exponent (ALGORITHMS: 1.5 .. 2), ρ above the window's lower end. Construction
-// allocates; ofCell() is RT-safe, for any thread.
+// allocates; ofCell() is RT-safe, for one thread.
 #pragma once
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/math/pinned_math.h"
+#include "haptic_server/core/milling/cell_memory.h"
 #include "haptic_server/core/volume/bone_properties.h"
 
 namespace bonemill {
@@ -37,8 +38,10 @@ class SpecificEnergy {
     }
 
     // The densest of the cell's corners decides; the unit is J/m³.
-    double ofCell(const Eigen::Vector3i& cell) const noexcept {
-        return properties_ ? ofScannedCell(cell) : reference_;
+    double ofCell(const Eigen::Vector3i& cell) noexcept {
+        if (!properties_) return reference_;
+        const double* const known = known_.find(cell);
+        return known ? *known : known_.remember(cell, ofScannedCell(cell));
     }
 
   private:
@@ -66,6 +69,7 @@ class SpecificEnergy {
     Density iso_;
     MaterialTable materials_;
     std::vector<double> of_density_;  // at multiples of kStep
+    CellMemory<double> known_;
 };
 
 }  // namespace bonemill

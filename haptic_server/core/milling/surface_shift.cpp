@@ -62,6 +62,7 @@ SurfaceShift::SurfaceShift(const BoneModel& bone, double largest_reach, size_t m
       cells_(orders_.size()),
       fills_before_(orders_.size()),
       fills_after_(orders_.size()),
+      has_bone_(orders_.size()),
       old_(size_t(size_.x() + VoxelVolume::kReadSlack)),
       fresh_(size_t(size_.x())),
       collector_(bone.lattice, size_, most_cells) {}
@@ -236,6 +237,12 @@ void SurfaceShift::forEachCell(const VoxelVolume& volume, Visit&& visit) const n
 void SurfaceShift::findCells(const VoxelVolume& volume) noexcept {
     cell_count_ = 0;
     forEachCell(volume, [&](const Vector3i& cell) {
+        if (const CellBone* known = known_bone_.find(cell)) {
+            if (!known->at_corners) return;
+            cells_[cell_count_] = cell;
+            fills_before_[cell_count_++] = known->fill;
+            return;
+        }
         const CellCorners corners = readCorners(volume, cell);
         const int inside = corners.inside();
         if (inside == 0) return;
@@ -248,9 +255,13 @@ void SurfaceShift::findCells(const VoxelVolume& volume) noexcept {
 void SurfaceShift::measureAgain(const VoxelVolume& volume) noexcept {
     for (size_t n = 0; n < cell_count_; ++n) {
         const CellCorners corners = readCorners(volume, cells_[n]);
-        measure(n, corners, corners.inside(), fills_after_);
+        const int inside = corners.inside();
+        has_bone_[n] = inside != 0;
+        measure(n, corners, inside, fills_after_);
     }
     finishMeasuring(fills_after_);
+    for (size_t n = 0; n < cell_count_; ++n)
+        known_bone_.remember(cells_[n], {fills_after_[n], has_bone_[n] != 0});
 }
 
 // Those that the surface crosses wait for others.
@@ -269,7 +280,7 @@ void SurfaceShift::finishMeasuring(std::vector<float>& fills) noexcept {
     fills_.take([&](int n, float fill) { fills[crossed_[n]] = fill; });
 }
 
-double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double share, size_t ticks,
+double SurfaceShift::apply(BoneModel& bone, SpecificEnergy& u, double share, size_t ticks,
                            MillingResult& result) noexcept {
     if (patch_count_ == 0 || !(share > 0)) return 0;
     is_too_fast_ = false;
@@ -281,9 +292,11 @@ double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double shar
     spreadRest(bone);
     collect(bone, result);
     if (collector_.isEmpty()) return 0;
+    if (bone.lattice.writeCount() != own_writes_) known_bone_.forgetAll();
     findCells(bone.volume);
     result.shell_is_complete &= collector_.write(bone.volume, bone.lattice, bone.shell, -1);
     measureAgain(bone.volume);
+    own_writes_ = bone.lattice.writeCount();
     double spent = 0;
     for (size_t n = 0; n < cell_count_; ++n)
         if (const double gone = double(fills_before_[n]) - double(fills_after_[n]); gone != 0)

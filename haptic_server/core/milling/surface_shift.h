@@ -20,6 +20,7 @@
 
 #include "haptic_server/core/bone/bone_model.h"
 #include "haptic_server/core/milling/cell_fill.h"
+#include "haptic_server/core/milling/cell_memory.h"
 #include "haptic_server/core/milling/change_collector.h"
 #include "haptic_server/core/milling/specific_energy.h"
 #include "haptic_server/core/tool/burr.h"
@@ -42,7 +43,7 @@ class SurfaceShift {
     // each other.
     void add(const BoneModel& bone, PatchId patch, double energy, double depth) noexcept;
     // Spends `share` of the energies. Returns what was spent, J.
-    double apply(BoneModel& bone, const SpecificEnergy& u, double share, size_t ticks,
+    double apply(BoneModel& bone, SpecificEnergy& u, double share, size_t ticks,
                  MillingResult& result) noexcept;
 
   private:
@@ -73,7 +74,7 @@ class SurfaceShift {
     bool isInScratch(const Eigen::Vector3i& voxel) const noexcept;
 
     void findPatches(const BoneModel& bone) noexcept;
-    void spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share, double most) noexcept;
+    void spreadWishes(const BoneModel& bone, SpecificEnergy& u, double share, double most) noexcept;
     void spread(const VoxelVolume& volume, const SinkingPoints& wishes, const float* areas) noexcept;
     void spreadRest(const BoneModel& bone) noexcept;
     void leaveOutRestInsideBurr(const VoxelVolume& volume) noexcept;
@@ -121,6 +122,13 @@ class SurfaceShift {
     // Cells with a touched voxel and some bone, and the shares of them that are bone; the first cell_count_.
     std::vector<Eigen::Vector3i> cells_;
     std::vector<float> fills_before_, fills_after_;
+    std::vector<uint8_t> has_bone_;  // afterwards, at a corner
+    struct CellBone {
+        float fill;
+        bool at_corners;
+    };
+    CellMemory<CellBone> known_bone_;  // as long as nobody else writes
+    uint64_t own_writes_ = 0;          // the lattice's after the last own one
     size_t cell_count_ = 0;
     std::vector<Density> old_, fresh_;
     ChangeCollector collector_;

@@ -118,6 +118,7 @@ void LeafLattice::refreshRanges(const VoxelVolume& volume, const IndexBox& chang
 }
 
 void LeafLattice::beginWrite(const IndexBox& changed_voxels) noexcept {
+    ++write_count_;
     forEachIndex(leavesOfWrite(changed_voxels), [&](const Eigen::Vector3i& leaf) {
         auto& version = versions_[leafId(leaf)];
         // Relaxed is enough: the voxels' own release stores keep the odd version before them.

@@ -71,6 +71,9 @@ class LeafLattice {
     void beginWrite(const IndexBox& changed_voxels) noexcept;
     void endWrite(const IndexBox& changed_voxels) noexcept;
 
+    // Tick thread only: so many writes were begun.
+    uint64_t writeCount() const noexcept { return write_count_; }
+
     // It is for any thread. acquire: pairs with endWrite's release, so voxels read after it are at
     // least that new.
     uint32_t version(LeafId id) const noexcept { return versions_[id].load(std::memory_order_acquire); }
@@ -124,6 +127,7 @@ class LeafLattice {
     Eigen::Vector3i dims_;
     std::vector<Level> levels_;
     std::vector<std::atomic<uint32_t>> versions_;
+    uint64_t write_count_ = 0;
 };
 
 template <class IsWanted, class Visit>

@@ -38,7 +38,7 @@ class SpecificEnergyTest : public testing::Test {
 };
 
 TEST_F(SpecificEnergyTest, IsAPowerOfTheDensityThatTheDensestCornerHad) {
-    const SpecificEnergy u(config_, properties_, kIso);
+    SpecificEnergy u(config_, properties_, kIso);
     EXPECT_NEAR(u.ofCell({5, 2, 1}) / byDensity(kLoose), 1, 1e-4);
     EXPECT_NEAR(u.ofCell({7, 2, 1}) / byDensity(kDense), 1, 1e-4);
     EXPECT_NEAR(u.ofCell({3, 2, 1}) / byDensity(kLoose), 1, 1e-4);
@@ -46,20 +46,20 @@ TEST_F(SpecificEnergyTest, IsAPowerOfTheDensityThatTheDensestCornerHad) {
 }
 
 TEST_F(SpecificEnergyTest, IsTheMaterialsOwnWhereItHasOne) {
-    const SpecificEnergy u(config_, properties_, kIso);
+    SpecificEnergy u(config_, properties_, kIso);
     EXPECT_EQ(u.ofCell({5, 2, 6}), 3e9);
     EXPECT_EQ(u.ofCell({9, 2, 6}), 3e9);
 }
 
 TEST_F(SpecificEnergyTest, IsTheReferencesWhereThereWasNoBone) {
-    const SpecificEnergy u(config_, properties_, kIso);
+    SpecificEnergy u(config_, properties_, kIso);
     EXPECT_EQ(u.ofCell({1, 2, 1}), 0.4e9);
     EXPECT_EQ(u.ofCell({-9, 2, 100}), 0.4e9);
     EXPECT_EQ(SpecificEnergy(config_, nullptr, kIso).ofCell({9, 2, 1}), 0.4e9);
 }
 
 TEST_F(SpecificEnergyTest, LastsWhenTheBoneGoes) {
-    const SpecificEnergy u(config_, properties_, kIso);
+    SpecificEnergy u(config_, properties_, kIso);
     const double before = u.ofCell({9, 2, 1});
     test::forEachVoxel(test::wholeBox(volume_), [&](int i, int j, int k) { volume_.set(i, j, k, 0); });
     EXPECT_EQ(u.ofCell({9, 2, 1}), before);

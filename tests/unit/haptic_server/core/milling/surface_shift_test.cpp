@@ -54,7 +54,7 @@ bool isOfPlane(const BoneModel& bone, const Vector3d& p) {
 // The surface is lowered everywhere within kReach of the plane's point by this much, in so many ticks.
 double lower(BoneModel& bone, const Plane& plane, double recession, int ticks) {
     SurfaceShift shift(bone, 1.5 * kReach, 65536, kMaxCells);
-    const SpecificEnergy u(uniform(), nullptr, bone.volume.iso());
+    SpecificEnergy u(uniform(), nullptr, bone.volume.iso());
     double spent = 0;
     for (int n = 0; n < ticks; ++n) {
         shift.begin(bone, kNoBurr, {plane.point, Eigen::Quaterniond::Identity()});
@@ -142,7 +142,7 @@ TEST(SurfaceShift, ACrumbInsideTheBurrGoes) {
     const Pose X_VT{spacing.cwiseProduct(crumb.cast<double>()), Eigen::Quaterniond::Identity()};
     const Burr burr{.radius = 0.05e-3};
     SurfaceShift shift(bone, 1.5 * kReach, 65536, kMaxCells);
-    const SpecificEnergy u(uniform(), nullptr, bone.volume.iso());
+    SpecificEnergy u(uniform(), nullptr, bone.volume.iso());
     for (int n = 0; n < 3; ++n) {
         shift.begin(bone, burr, X_VT);
         forEachPoint(bone, [&](const Vector3d& p, double, PatchId patch) {
@@ -158,7 +158,7 @@ TEST(SurfaceShift, LeavesTheRestForTheNextTickWhereTimeIsShort) {
     const Plane plane{.normal = Vector3d::UnitZ()};
     BoneModel bone = halfSpace(plane, Vector3d::Constant(0.125e-3), 1);
     SurfaceShift shift(bone, 1.5 * kReach, 65536, 1);
-    const SpecificEnergy u(uniform(), nullptr, bone.volume.iso());
+    SpecificEnergy u(uniform(), nullptr, bone.volume.iso());
     IndexBox changed;
     int short_ticks = 0;
     for (int n = 0; n < 20; ++n) {
