@@ -16,6 +16,9 @@ constexpr double kRotationLength = 0.03;  // m
 constexpr double kSmallestReach = 1e-9;   // m: a shorter step is no step
 constexpr double kShortestLesson = 1e-7;  // m: over a shorter one the forces change mostly by rounding
 constexpr int kMaxCuts = 4;               // of a step that goes uphill
+// m: a sweep gathers within this at least. Newton's steps, each a small part of the one before, find their
+// candidates there; by themselves they would gather anew for every nanometre.
+constexpr double kLeastOfSweep = 10e-6;
 // Point tests of each candidate: for one more look at the energy where the candidates are others now and at a
 // step with all its cuts, and for the shortest sweep.
 constexpr double kSweepRounding = 1e-6;  // m: more than a sweep allows for
@@ -143,7 +146,7 @@ Vector6d GradientModel::limited(const State& state, const Vector6d& newton, cons
 // needs no sweep.
 Vector6d GradientModel::swept(const State& state, const Vector6d& step, const Tick& tick) noexcept {
     const double reach = reachOf(step), unswept = trustRadius() / 2 - kSweepRounding;
-    gather(state.X_VT, reach * (1 + 1e-9), *tick.out);
+    gather(state.X_VT, std::max(kLeastOfSweep, reach * (1 + 1e-9)), *tick.out);
     if (reach <= unswept) return step;  // no point can come so deep that the sweep would end
     const size_t kept = kTriesKept * contact_.candidateCount(), left = pointTestsLeft();
     if (left < kept + kLeastSweep * contact_.candidateCount()) {
@@ -203,14 +206,14 @@ bool GradientModel::descend(State& state, const Tick& tick) noexcept {
     for (int n = 0; n < settings_.iterations && outOfBalance(state) > kBalance; ++n) {
         const Vector6d newton = newtonStep(state);
         if (newton.isZero(0)) return stacked(state.total.wrench).isZero(0);
-        const uint32_t gatherings = gatherings_;
+        const uint32_t gatherings = tick.out->gatherings;
         const Vector6d step = limited(state, newton, tick);
         if (reachOf(step) < kSmallestReach) {
             if (lambda_ == 0) break;
             lambda_ = 0;  // which may be what made it short
             continue;
         }
-        if (gatherings_ != gatherings)
+        if (tick.out->gatherings != gatherings)
             state = evaluate(state.X_VT, tick);  // the energy is that of other points now
         ++tick.out->iterations;
         const State before = state;

@@ -181,7 +181,7 @@ double GradientModel::reachOf(const Vector6d& step) const noexcept {
 }
 
 void GradientModel::gather(const Pose& X_VT, double margin, SpoStep& out) noexcept {
-    ++gatherings_;
+    ++out.gatherings;
     X_VT_gathered_ = X_VT;
     const ShellView bone{
         world_.volume,          world_.lattice,     world_.shell, level_, settings_.sample_spacing,

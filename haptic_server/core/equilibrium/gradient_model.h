@@ -146,7 +146,6 @@ class GradientModel final : public SpoModel {
     SolveEnergy* effects_ = nullptr;
     Pose X_VT_end_;  // of the last advance()
     Pose X_VT_gathered_;
-    uint32_t gatherings_ = 0;
     size_t affordable_samples_ = SIZE_MAX;
     size_t most_point_tests_ = 0;                        // with this field
     size_t point_tests_ = 0;                             // in this tick

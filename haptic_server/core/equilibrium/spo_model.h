@@ -75,6 +75,7 @@ struct SpoStep {
     uint32_t contacts = 0;
     uint32_t candidates = 0;  // points that were tested in each iteration
     uint32_t iterations = 0;
+    uint32_t gatherings = 0;     // of candidates
     double budget_share = 0;     // of the point tests that a tick may make, or of the room for points
     double max_penetration = 0;  // m
     // False says that no finite equilibrium was found: the tool is at its last good pose, the

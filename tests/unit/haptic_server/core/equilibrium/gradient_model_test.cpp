@@ -282,6 +282,22 @@ TEST(GradientModel, ATickEndsSoonAfterItsBudgetWhateverItMeets) {
     }
 }
 
+// Each Newton step is a small part of the one before: most find their candidates among those of a step
+// before.
+TEST(GradientModel, AHandThatStartsAtOnceIsNotFollowedWithAGatheringForEachStep) {
+    const ContactScene scene = flatScene();
+    const Pose pressed{kAbove - Vector3d(0, 0, 0.5e-3), kUpright};
+    for (const auto& [jump, most] : {std::pair(0.1e-3, 3u), {0.2e-3, 3u}, {0.4e-3, 4u}}) {
+        GradientModel model(GradientConfig{}, scene.world(), toolOf(scene), 1e-3);
+        const SpoStep at_rest = settle(model, {kAbove, kUpright}, pressed);
+        EXPECT_EQ(at_rest.gatherings, 1u);
+        const SpoStep step =
+            model.advance(at_rest.X_VT, {pressed.position + jump * Vector3d(0.6, 0, -0.8), kUpright});
+        EXPECT_GE(step.iterations, 3u);
+        EXPECT_LE(step.gatherings, most) << jump;
+    }
+}
+
 // All points of a flat end round alike, so that the energy rises by its rounding where nothing is left to
 // gain: no part of such a step is worth a try.
 TEST(GradientModel, AFlatEndPressedHardEndsItsSolveWhereTheEnergysRoundingDoes) {

@@ -119,8 +119,9 @@ TEST(SurfaceShift, MovesNoFartherThanAQuarterOfAVoxelOrTheDepth) {
         forEachPoint(bone, [&](const Vector3d& p, double, PatchId patch) {
             if (plane.sideways(p) < kReach && isOfPlane(bone, p)) shift.add(bone, patch, 1, depth);
         });
+        SpecificEnergy u(uniform(), nullptr, bone.volume.iso());
         MillingResult result;
-        shift.apply(bone, SpecificEnergy(uniform(), nullptr, bone.volume.iso()), 1, 1, result);
+        shift.apply(bone, u, 1, 1, result);
         double lowest = 0;
         forEachPoint(bone, [&](const Vector3d& p, double, PatchId) {
             if (plane.sideways(p) < kReach / 2 && isOfPlane(bone, p))
