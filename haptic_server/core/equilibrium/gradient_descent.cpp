@@ -18,7 +18,7 @@ constexpr double kShortestLesson = 1e-7;  // m: over a shorter one the forces ch
 constexpr int kMaxCuts = 4;               // of a step that goes uphill
 // m: a sweep gathers within this at least. Newton's steps, each a small part of the one before, find their
 // candidates there; by themselves they would gather anew for every nanometre.
-constexpr double kLeastOfSweep = 10e-6;
+constexpr double kLeastSweepMargin = 10e-6;
 // Point tests of each candidate: for one more look at the energy where the candidates are others now and at a
 // step with all its cuts, and for the shortest sweep.
 constexpr double kSweepRounding = 1e-6;  // m: more than a sweep allows for
@@ -146,7 +146,7 @@ Vector6d GradientModel::limited(const State& state, const Vector6d& newton, cons
 // needs no sweep.
 Vector6d GradientModel::swept(const State& state, const Vector6d& step, const Tick& tick) noexcept {
     const double reach = reachOf(step), unswept = trustRadius() / 2 - kSweepRounding;
-    gather(state.X_VT, std::max(kLeastOfSweep, reach * (1 + 1e-9)), *tick.out);
+    gather(state.X_VT, std::max(std::min(kLeastSweepMargin, unswept), reach * (1 + 1e-9)), *tick.out);
     if (reach <= unswept) return step;  // no point can come so deep that the sweep would end
     const size_t kept = kTriesKept * contact_.candidateCount(), left = pointTestsLeft();
     if (left < kept + kLeastSweep * contact_.candidateCount()) {

@@ -34,7 +34,7 @@ class CellMemory {
     struct Entry {
         Value value{};
         Eigen::Vector3i cell = Eigen::Vector3i::Zero();
-        uint32_t era = 0;
+        uint64_t era = 0;
     };
     static size_t placeOf(const Eigen::Vector3i& cell) noexcept {
         constexpr int kIn = kEdge - 1;  // cells lie at -1 and beyond
@@ -42,7 +42,7 @@ class CellMemory {
     }
 
     std::vector<Entry> entries_;
-    uint32_t era_ = 1;
+    uint64_t era_ = 1;
 };
 
 }  // namespace bonemill

@@ -292,11 +292,11 @@ double SurfaceShift::apply(BoneModel& bone, SpecificEnergy& u, double share, siz
     spreadRest(bone);
     collect(bone, result);
     if (collector_.isEmpty()) return 0;
-    if (bone.lattice.writeCount() != own_writes_) known_bone_.forgetAll();
+    if (bone.lattice.writeCount() != known_at_write_) known_bone_.forgetAll();
     findCells(bone.volume);
     result.shell_is_complete &= collector_.write(bone.volume, bone.lattice, bone.shell, -1);
     measureAgain(bone.volume);
-    own_writes_ = bone.lattice.writeCount();
+    known_at_write_ = bone.lattice.writeCount();
     double spent = 0;
     for (size_t n = 0; n < cell_count_; ++n)
         if (const double gone = double(fills_before_[n]) - double(fills_after_[n]); gone != 0)

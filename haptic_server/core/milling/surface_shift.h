@@ -128,7 +128,7 @@ class SurfaceShift {
         bool at_corners;
     };
     CellMemory<CellBone> known_bone_;  // as long as nobody else writes
-    uint64_t own_writes_ = 0;          // the lattice's after the last own one
+    uint64_t known_at_write_ = 0;      // the lattice's after the last own one
     size_t cell_count_ = 0;
     std::vector<Density> old_, fresh_;
     ChangeCollector collector_;

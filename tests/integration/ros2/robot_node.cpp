@@ -40,7 +40,6 @@ void RobotNode::goTo(const ServoPose& pose, double speed) {
     const std::lock_guard lock(mutex_);
     goal_ = pose;
     speed_ = speed;
-    has_arrived_ = false;
     is_silent_ = false;
 }
 
@@ -74,8 +73,6 @@ void RobotNode::step() {
     now_ = goal_;
     if (share < 1)
         for (size_t i = 0; i < 3; ++i) now_.p[i] = before[i] + share * way[i];
-    else
-        has_arrived_ = true;
     servo_cp_.write(poseStampedBytes(now_));
 }
 

@@ -30,7 +30,6 @@ class RobotNode {
 
     // From now on it goes there, in a straight line at this speed (m/s) from where it is.
     void goTo(const ServoPose& pose, double speed = 1e9);
-    bool hasArrived() const { return has_arrived_; }
     void beSilent() { is_silent_ = true; }
     void press(const std::vector<int32_t>& buttons);
 
@@ -48,7 +47,7 @@ class RobotNode {
     FastNode::Reader measured_cf_, operating_state_;
     std::array<double, 6> wrench_{};
     std::string state_;
-    std::atomic<bool> is_silent_{true}, has_arrived_{false};
+    std::atomic<bool> is_silent_{true};
     std::mutex mutex_;  // guards what is below
     ServoPose now_, goal_;
     double speed_ = 1;

@@ -208,10 +208,12 @@ class RobotMills : public testing::Test {
 
 TEST_F(RobotMills, ACorridor) {
     beginToMill();
+    if (HasFatalFailure()) return;
     const double wanted = removedNow() + 0.5;
     const auto isMilled = [&] { return removedNow() > wanted; };
     for (int round = 0; round < 4 && !isMilled(); ++round) {
         if (round > 0) beginToMill();  // stopped on its way, for a busy machine's silence
+        if (HasFatalFailure()) return;
         robot_.goTo({.p = {3e-3, -2.3e-3, 0}}, 0.003);
         test::waitFor(isMilled, std::chrono::seconds(15));
     }
@@ -292,6 +294,7 @@ TEST_P(RobotIsStopped, AndMillsNoMore) {
     bool is_stopped = false;
     for (int round = 0; round < 4 && !is_stopped; ++round) {
         beginToMill();
+        if (HasFatalFailure()) return;
         const size_t before = timesSaid(cause);
         GetParam().happen(robot_);
         is_stopped = test::waitFor([&] { return timesSaid(cause) > before; }, std::chrono::seconds(20));

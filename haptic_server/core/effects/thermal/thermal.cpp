@@ -26,7 +26,8 @@ class Thermal final : public HapticEffect {
         if (why == Restart::kScanPutBack) heat_.forget();
     }
     void mill(EffectTick&, BoneModel&, MillingResult& result) noexcept override {
-        heat_.noteChange(result.changed);
+        // A cube is bone or it is not: where no voxel became the other, none did.
+        if (result.removed_voxels > 0 || result.added_voxels > 0) heat_.noteChange(result.changed);
     }
     void finish(EffectTick& tick) noexcept override {
         putIn(tick);

@@ -63,6 +63,7 @@ TEST_F(SpecificEnergyTest, LastsWhenTheBoneGoes) {
     const double before = u.ofCell({9, 2, 1});
     test::forEachVoxel(test::wholeBox(volume_), [&](int i, int j, int k) { volume_.set(i, j, k, 0); });
     EXPECT_EQ(u.ofCell({9, 2, 1}), before);
+    EXPECT_EQ(SpecificEnergy(config_, properties_, kIso).ofCell({9, 2, 1}), before) << "nothing remembered";
 }
 
 }  // namespace
