@@ -131,6 +131,45 @@ TEST(SurfaceShift, MovesNoFartherThanAQuarterOfAVoxelOrTheDepth) {
     }
 }
 
+// One keeps what it knows of cells from tick to tick, the other begins anew in each; in between somebody else
+// puts bone back.
+TEST(SurfaceShift, WhatItRemembersOfCellsChangesNothing) {
+    const Plane plane{.normal = Vector3d(1, 2, 3).normalized()};
+    BoneModel bones[2] = {halfSpace(plane, Vector3d::Constant(0.125e-3), 1),
+                          halfSpace(plane, Vector3d::Constant(0.125e-3), 1)};
+    const BoneModel whole = halfSpace(plane, Vector3d::Constant(0.125e-3), 1);
+    const auto shiftOf = [](const BoneModel& bone) {
+        return SurfaceShift(bone, 1.5 * kReach, 65536, kMaxCells);
+    };
+    SpecificEnergy u(uniform(), nullptr, whole.volume.iso());
+    const auto tick = [&](SurfaceShift& shift, BoneModel& bone) {
+        shift.begin(bone, kNoBurr, {plane.point, Eigen::Quaterniond::Identity()});
+        forEachPoint(bone, [&](const Vector3d& p, double area, PatchId patch) {
+            if (plane.sideways(p) < kReach) shift.add(bone, patch, kEnergy * area * 10e-6, 1e-3);
+        });
+        MillingResult result;
+        return shift.apply(bone, u, 1, 1, result);
+    };
+    SurfaceShift kept = shiftOf(bones[0]);
+    for (int n = 0; n < 12; ++n) {
+        SurfaceShift anew = shiftOf(bones[1]);
+        for (int before = 0; before < n; ++before) anew.begin(bones[1], kNoBurr, {});  // what it rounds by
+        const double spent = tick(kept, bones[0]);
+        EXPECT_GT(spent, 0);
+        EXPECT_EQ(tick(anew, bones[1]), spent) << n;
+        if (n % 4 != 3) continue;
+        const IndexBox part{{18, 18, 0}, {22, 22, 40}};
+        for (BoneModel& bone : bones) {
+            test::writeLikeTick(bone.volume, bone.lattice, part,
+                                [&](int i, int j, int k) { return whole.volume.at(i, j, k); });
+            ASSERT_TRUE(bone.shell.refresh(bone.volume, bone.lattice, {&part, 1}));
+        }
+    }
+    test::forEachVoxel(test::wholeBox(whole.volume), [&](int i, int j, int k) {
+        ASSERT_EQ(bones[0].volume.at(i, j, k), bones[1].volume.at(i, j, k)) << i << ' ' << j << ' ' << k;
+    });
+}
+
 // The face beside it, which nothing touches, has no say in the burr.
 TEST(SurfaceShift, ACrumbInsideTheBurrGoes) {
     const Vector3d spacing = Vector3d::Constant(0.125e-3);
