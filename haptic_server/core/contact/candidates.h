@@ -55,17 +55,25 @@ struct Candidates {
     }
     // Appends those of `from` that `which` lists, for which there must be room.
     void append(const Candidates& from, const uint32_t* which, size_t n) noexcept {
-        const auto copy = [&](auto& to, const auto& values) {
-            for (size_t i = 0; i < n; ++i) to[count + i] = values[which[i]];
-        };
-        copy(x, from.x), copy(y, from.y), copy(z, from.z);
-        copy(nx, from.nx), copy(ny, from.ny), copy(nz, from.nz);
-        copy(weight, from.weight), copy(area, from.area), copy(nearest, from.nearest);
-        copy(patch, from.patch);
+        copy(from.x, which, n, x), copy(from.y, which, n, y), copy(from.z, which, n, z);
+        copy(from.nearest, which, n, nearest);
+        appendPatches(from, which, n);
+    }
+    // The same without places and how near they are: those are there already.
+    void appendPatches(const Candidates& from, const uint32_t* which, size_t n) noexcept {
+        copy(from.nx, which, n, nx), copy(from.ny, which, n, ny), copy(from.nz, which, n, nz);
+        copy(from.weight, which, n, weight), copy(from.area, which, n, area);
+        copy(from.patch, which, n, patch);
         count += n;
     }
     Eigen::Vector3f position(size_t n) const noexcept { return {x[n], y[n], z[n]}; }
     Eigen::Vector3f normal(size_t n) const noexcept { return {nx[n], ny[n], nz[n]}; }
+
+  private:
+    template <class Values>
+    void copy(const Values& from, const uint32_t* which, size_t n, Values& to) noexcept {
+        for (size_t i = 0; i < n; ++i) to[count + i] = from[which[i]];
+    }
 };
 
 // Lets an effect scale the energy of single contact points: softer where a burr cuts, harder in enamel.

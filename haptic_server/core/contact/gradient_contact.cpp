@@ -1,5 +1,7 @@
 #include "haptic_server/core/contact/gradient_contact.h"
 
+#include <numeric>
+
 #include "haptic_server/core/contact/into_tool.h"
 
 namespace bonemill {
@@ -67,15 +69,19 @@ class TouchingPoints {
                    const Vector3d& origin) noexcept
         : c_(candidates),
           tool_(tool),
+          roughly_into_tool_(X_VT, origin),
           into_tool_(X_VT, origin),
           frame_(contactFrame(X_VT, origin, GradientContact::kDepthCap * tool.thinnestRadius())) {}
 
+    // Single precision finds those that may touch.
     void find(size_t first, int count) noexcept {
-        into_tool_.fill(batch_, &c_.x[first], &c_.y[first], &c_.z[first], count);
-        tool_.distances(batch_, distance_);
+        constexpr bool is_exact = sizeof(Scalar) == sizeof(float);
+        const float beside = is_exact ? 0 : float(2 * tool_.distanceError());
+        roughly_into_tool_.fill(rough_batch_, &c_.x[first], &c_.y[first], &c_.z[first], count);
+        tool_.distances(rough_batch_, distance_);
         for (int i = 0; i < count; ++i) {
             touching_[touching_count_] = uint32_t(first) + uint32_t(i);
-            touching_count_ += distance_[i] < 0;
+            touching_count_ += distance_[i] < beside;
         }
         if (touching_count_ >= kBatch) sum(kBatch);
     }
@@ -96,20 +102,25 @@ class TouchingPoints {
         }
         into_tool_.fill(batch_, x_, y_, z_, count);
         tool_.sample(batch_, at_);
+        for (int i = 0; i < count; ++i) {
+            contacts_ += at_.distance[i] < 0;
+            weight_[i] = at_.distance[i] < 0 ? weight_[i] : 0;
+        }
         kernels().points<Scalar>().add_contacts(frame_, x_, y_, z_, weight_, at_.distance, at_.gx, at_.gy,
                                                 at_.gz, count, sums_);
-        contacts_ += uint32_t(count);
         std::copy(touching_ + count, touching_ + touching_count_, touching_);
         touching_count_ -= count;
     }
 
     const Candidates& c_;
     const ToolField& tool_;
+    IntoTool<float> roughly_into_tool_;
+    PointBatch<float> rough_batch_;
+    alignas(64) float distance_[kBatch];
     IntoTool<Scalar> into_tool_;
     ContactFrame frame_;
     PointBatch<Scalar> batch_;
     SampleBatch<Scalar> at_;
-    alignas(64) Scalar distance_[kBatch];
     alignas(64) float x_[kBatch], y_[kBatch], z_[kBatch], weight_[kBatch];
     uint32_t touching_[2 * kBatch];
     int touching_count_ = 0;
@@ -126,9 +137,10 @@ GradientContact::GradientContact(const GradientContactConfig& config, size_t mos
       near_distance_(most_candidates),
       candidates_(most_candidates),
       split_(most_candidates),
+      new_level_(most_candidates),
       next_place_(most_candidates),
       source_(most_candidates),
-      piece_(most_candidates),
+      piece_area_(most_candidates),
       lowest_(most_candidates),
       inverse_rate_(most_candidates) {}
 
@@ -146,9 +158,12 @@ bool GradientContact::gather(const ShellView& bone, const ToolField& tool, const
 }
 
 void GradientContact::sumStiffness() noexcept {
-    most_stiffness_ = 0;
+    constexpr size_t kLanes = 8;  // one sum would wait for itself
+    double sums[kLanes] = {};
+    const float *nearest = candidates_.nearest.data(), *weight = candidates_.weight.data();
     for (size_t i = 0; i < candidates_.count; ++i)
-        most_stiffness_ += shareInContact(double(candidates_.nearest[i])) * double(candidates_.weight[i]);
+        sums[i % kLanes] += shareInContact(double(nearest[i])) * double(weight[i]);
+    most_stiffness_ = std::accumulate(sums, sums + kLanes, 0.0);
 }
 
 bool GradientContact::collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT,
@@ -276,7 +291,7 @@ void GradientContact::capStiffness(const ToolField& tool, const Pose& X_VT) noex
 
 template <class Scalar>
 GradientContactResult GradientContact::evaluate(const ToolField& tool, const Pose& X_VT) const noexcept {
-    constexpr size_t kBatch = PointBatch<Scalar>::kCapacity;
+    constexpr size_t kBatch = PointBatch<float>::kCapacity;
     TouchingPoints<Scalar> touching(candidates_, tool, X_VT, origin_);
     for (size_t first = 0; first < candidates_.count; first += kBatch)
         touching.find(first, int(std::min(kBatch, candidates_.count - first)));

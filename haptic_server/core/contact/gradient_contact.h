@@ -157,16 +157,12 @@ class GradientContact {
                        const NearTest& test) noexcept;
     // The tool seldom moves by more than half of the margin, which is a guess of twice its motion.
     double fineWithin() const noexcept { return std::min(margin_ / 2, kFineWithin); }
-    // Is the whole patch too large for one sample?
-    bool isCoarse(const ToolField& tool, size_t candidate) const noexcept {
-        const float near = near_.nearest[candidate];
-        return near < float(fineWithin()) || SurfacePieces::shortEnough(tool, near) < float(patch_reach_);
-    }
     void refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT, size_t most_tests) noexcept;
     void cutPatches(const ShellView& bone, const ToolField& tool, const Pose& X_VT,
                     size_t most_tests) noexcept;
     void keepNearest(size_t most) noexcept;
-    void cutPatch(const ShellView& bone, uint32_t near) noexcept;
+    void findCoarse(const ToolField& tool) noexcept;
+    size_t giveCells(const ShellView& bone) noexcept;
     void takeWholePatches() noexcept;
     size_t countPieces() noexcept;
     void takePieces() noexcept;
@@ -189,10 +185,11 @@ class GradientContact {
     std::vector<uint32_t>
         split_;  // ascending: the first split_count_ are patches whose pieces take their place
     size_t split_count_ = 0;
+    std::vector<uint8_t*> new_level_;  // of those that were not known, in patch_memory_
     bool has_fewer_samples_ = false;
     std::vector<uint32_t> next_place_;  // per patch that is cut: of its pieces, where the next one goes
     std::vector<uint32_t> source_;      // per candidate: its patch
-    std::vector<uint32_t> piece_;       // per place: which piece goes there
+    std::vector<float> piece_area_;     // m²: per place of a piece
     // A sweep needs how near each candidate may come, in m, and 1/(the most that the whole step can bring
     // it nearer).
     std::vector<float> lowest_, inverse_rate_;

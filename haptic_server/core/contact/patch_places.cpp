@@ -1,5 +1,6 @@
 // Samples the patches near the tool more finely.
 #include <algorithm>
+#include <ranges>
 #include <utility>
 
 #include "haptic_server/core/contact/gradient_contact.h"
@@ -33,8 +34,7 @@ void GradientContact::refine(const ShellView& bone, const ToolField& tool, const
 void GradientContact::cutPatches(const ShellView& bone, const ToolField& tool, const Pose& X_VT,
                                  size_t most_tests) noexcept {
     pieces_.start(tool, X_VT, origin_, margin_, fineWithin(), bone.sample_spacing);
-    for (size_t i = 0; i < near_.count; ++i)
-        if (isCoarse(tool, i)) split_[split_count_++] = uint32_t(i);
+    findCoarse(tool);
     const size_t affordable = std::min(most_tests / kTestsPerSample, bone.affordable_samples);
     const size_t asked_for = size_t(bone.most_samples);
     const size_t most_of_new = std::min(asked_for, affordable),
@@ -43,13 +43,11 @@ void GradientContact::cutPatches(const ShellView& bone, const ToolField& tool, c
     keepNearest(most_pieces / kPiecesPerPatch);
     has_fewer_samples_ = split_count_ < std::min(coarse, piecesBeside(coarse, asked_for) / kPiecesPerPatch);
     if (split_count_ == 0) return;
-    for (size_t n = 0; n < split_count_; ++n) cutPatch(bone, split_[n]);
+    const size_t new_count = giveCells(bone);
     const uint8_t level_of_new = pieces_.cut(bone.volume, most_pieces, most);
     has_fewer_samples_ |= pieces_.isFull() || (pieces_.isCoarse() && affordable < kMaxTimes * asked_for &&
                                                (most_of_new < asked_for || pieces_.count() > most));
-    for (size_t n = 0; n < split_count_; ++n)
-        if (uint8_t& level = patch_memory_.levelOf(near_.patch[split_[n]]); level == PatchMemory::kNew)
-            level = level_of_new;
+    for (size_t n = 0; n < new_count; ++n) *new_level_[n] = level_of_new;
     point_tests_ += pieces_.takePointTests();
 }
 
@@ -60,25 +58,48 @@ void GradientContact::keepNearest(size_t most) noexcept {
         split_count_ = 0;
         return;
     }
-    const auto begin = split_.begin(), end = begin + ptrdiff_t(most);
-    std::nth_element(begin, end, begin + ptrdiff_t(split_count_), [&](uint32_t a, uint32_t b) {
+    const auto isNearer = [&](uint32_t a, uint32_t b) {
         return std::pair(near_.nearest[a], a) < std::pair(near_.nearest[b], b);
-    });
-    std::sort(begin, end);
-    split_count_ = most;
+    };
+    std::copy_n(split_.begin(), split_count_, source_.begin());
+    const auto begin = source_.begin(), first_left_out = begin + ptrdiff_t(most);
+    std::nth_element(begin, first_left_out, begin + ptrdiff_t(split_count_), isNearer);
+    const auto end = std::remove_if(split_.begin(), split_.begin() + ptrdiff_t(split_count_),
+                                    [&](uint32_t n) { return !isNearer(n, *first_left_out); });
+    split_count_ = size_t(end - split_.begin());
 }
 
-// Gives a patch's cells.
-void GradientContact::cutPatch(const ShellView& bone, uint32_t near) noexcept {
-    const PatchId patch = near_.patch[near];
-    const uint8_t level = patch_memory_.levelOf(patch);
-    const IndexBox leaf = bone.lattice.cellsOf(patch.leaf);
+// Lists the patches that are too large for one sample as a whole.
+void GradientContact::findCoarse(const ToolField& tool) noexcept {
+    const float fine_within = float(fineWithin()), thinnest = float(tool.thinnestRadius()),
+                patch_reach = float(patch_reach_);
+    for (size_t i = 0; i < near_.count; ++i) {
+        const float near = near_.nearest[i];
+        const float enough = std::min(SurfacePieces::kLengthPerDistance * near, thinnest);
+        split_[split_count_] = uint32_t(i);
+        split_count_ += int(near < fine_within) | int(enough < patch_reach);
+    }
+}
+
+// Gives the cells of the patches to be cut. Returns how many of those are new.
+size_t GradientContact::giveCells(const ShellView& bone) noexcept {
     const int factor = bone.shell.scalingFactor(bone.level);
-    const Vector3i first = leaf.min + factor * patch.block.index();
-    const Vector3i last = (first.array() + (factor - 1)).min(leaf.max.array());
-    for (int k = first.z(); k <= last.z(); ++k)
-        for (int j = first.y(); j <= last.y(); ++j)
-            for (int i = first.x(); i <= last.x(); ++i) pieces_.add(bone.volume, {i, j, k}, near, level);
+    LeafId leaf = ~LeafId(0);  // of the patch before
+    IndexBox cells;
+    size_t new_count = 0;
+    for (size_t n = 0; n < split_count_; ++n) {
+        const PatchId patch = near_.patch[split_[n]];
+        if (patch.leaf != leaf) cells = bone.lattice.cellsOf(leaf = patch.leaf);
+        uint8_t& level = patch_memory_.levelOf(patch);
+        if (level == PatchMemory::kNew) new_level_[new_count++] = &level;
+        const Vector3i first = cells.min + factor * patch.block.index();
+        const Vector3i last = (first.array() + (factor - 1)).min(cells.max.array());
+        for (int k = first.z(); k <= last.z(); ++k)
+            for (int j = first.y(); j <= last.y(); ++j)
+                for (int i = first.x(); i <= last.x(); ++i)
+                    pieces_.add(bone.volume, {i, j, k}, split_[n], level);
+    }
+    return new_count;
 }
 
 // The patches that are not cut are one sample each; what the tool cannot reach is left out.
@@ -97,7 +118,7 @@ void GradientContact::takeWholePatches() noexcept {
 // Counts each patch's pieces, so that takePieces() puts them side by side. Returns how many there are.
 size_t GradientContact::countPieces() noexcept {
     for (size_t n = 0; n < split_count_; ++n) next_place_[split_[n]] = 0;
-    pieces_.forEach([&](uint32_t, uint32_t patch) { ++next_place_[patch]; });
+    for (const SurfacePiece& piece : pieces_.finished()) ++next_place_[piece.patch];
     uint32_t count = 0;
     for (size_t n = 0; n < split_count_; ++n) count += std::exchange(next_place_[split_[n]], count);
     return count;
@@ -107,18 +128,18 @@ size_t GradientContact::countPieces() noexcept {
 void GradientContact::takePieces() noexcept {
     Candidates& c = candidates_;
     const size_t first = c.count, count = std::min(countPieces(), c.capacity() - first);
-    pieces_.forEach([&](uint32_t piece, uint32_t patch) {
-        const size_t place = next_place_[patch]++;
-        if (place < count) piece_[place] = piece, source_[place] = patch;
-    });
-    c.append(near_, source_.data(), count);
-    for (size_t n = 0; n < count; ++n) {
-        const SurfacePiece piece = pieces_.piece(piece_[n]);
-        const size_t to = first + n;
-        c.x[to] = piece.centroid.x(), c.y[to] = piece.centroid.y(), c.z[to] = piece.centroid.z();
-        c.nearest[to] = piece.nearest;
-        c.weight[to] *= piece.area / c.area[to];
+    float *x = &c.x[first], *y = &c.y[first], *z = &c.z[first], *nearest = &c.nearest[first];
+    uint32_t *next = next_place_.data(), *source = source_.data();
+    for (const SurfacePiece& piece : std::views::reverse(pieces_.finished())) {
+        const size_t place = next[piece.patch]++;
+        if (place >= count) continue;
+        x[place] = piece.centroid.x(), y[place] = piece.centroid.y(), z[place] = piece.centroid.z();
+        nearest[place] = piece.nearest;
+        piece_area_[place] = piece.area;
+        source[place] = piece.patch;
     }
+    c.appendPatches(near_, source_.data(), count);
+    for (size_t n = 0; n < count; ++n) c.weight[first + n] *= piece_area_[n] / c.area[first + n];
 }
 
 void GradientContact::movePlacesOntoSurface(const VoxelVolume& volume, size_t from) noexcept {

@@ -11,6 +11,7 @@ SurfacePieces::SurfacePieces(size_t room)
     for (auto& values : corner_) values.resize(room + kCellLanes);
     for (auto* values : {&cell_, &finest_, &edge_, &triangle_, &next_}) values->resize(room + kCellLanes);
     patch_.resize(room);
+    finished_.resize(room);
     first_.fill(kNone);
 }
 
@@ -45,7 +46,7 @@ void SurfacePieces::start(const ToolField& tool, const Pose& X_VT, const Eigen::
               .longest_enough = float(tool.thinnestRadius()),
               .per_spacing_squared = float(1 / (spacing * spacing))};
     first_.fill(kNone);
-    used_ = finished_count_ = count_ = triangle_count_ = 0;
+    used_ = listed_count_ = finished_count_ = count_ = triangle_count_ = 0;
     cells_.take();
     is_full_ = false;
 }
@@ -105,14 +106,40 @@ void SurfacePieces::sort(int first, int count, int gap, int behind_gap) noexcept
     tool_->nearest(batch, centroids, nearest);
     point_tests_ += size_t(count);
     kernels().level_pieces(rules_, &longest_[size_t(first)], measured, centroids, count, nearest, level);
+    if (gap != kNone)
+        for (int i = gap; i < behind_gap; ++i) level[i] = kPieceDropped;
+    // Which it is cannot be foreseen: branches would be dear.
+    int waiting[kBatch], finished[kBatch], waiting_count = 0, done_count = 0, dropped_count = 0;
     for (int i = 0; i < count; ++i) {
-        if (i == gap) i = behind_gap;
-        const auto piece = size_t(first + i);
-        nearest_[piece] = nearest[i];
-        next_[piece] = std::exchange(first_[size_t(level[i])], int(piece));
-        finished_count_ += size_t(level[i] == kPieceFinished || level[i] == kPieceFar);
-        count_ += size_t(level[i] != kPieceDropped);
+        waiting[waiting_count] = finished[done_count] = i;
+        waiting_count += level[i] < kPieceLevels;
+        done_count += level[i] == kPieceFinished;
+        dropped_count += level[i] == kPieceDropped;
     }
+    count_ += size_t(count - dropped_count);
+    finished_count_ += size_t(count - dropped_count - waiting_count);
+    for (int n = 0; n < waiting_count; ++n) {
+        const int i = waiting[n];
+        nearest_[size_t(first + i)] = nearest[i];
+        next_[size_t(first + i)] = std::exchange(first_[size_t(level[i])], first + i);
+    }
+    SurfacePiece* out = &finished_[listed_count_];
+    for (int n = 0; n < done_count; ++n) {
+        const int i = finished[n];
+        const auto piece = size_t(first + i);
+        *out++ = {{x[i], y[i], z[i]}, area_[piece], nearest[i], patchOf(piece)};
+    }
+    listed_count_ += size_t(done_count);
+}
+
+// It is cut no further.
+void SurfacePieces::finish(int piece) noexcept {
+    const auto n = size_t(piece);
+    const auto middle = [&](size_t axis) {
+        return (corner_[axis][n] + corner_[axis + 3][n] + corner_[axis + 6][n]) / 3;
+    };
+    finished_[listed_count_++] = {{middle(0), middle(1), middle(2)}, area_[n], nearest_[n], patchOf(n)};
+    ++finished_count_;
 }
 
 // Takes pieces of this level off the list; those of new patches, for which there is no room, stay as they

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -67,6 +68,7 @@ struct SurfacePiece {
     Eigen::Vector3f centroid;  // m
     float area;                // m²
     float nearest;             // m: no place of it is nearer to the tool
+    uint32_t patch;
 };
 
 // Cuts triangles of iso-surface near the tool into pieces that are small against the contact, however large
@@ -82,12 +84,9 @@ struct SurfacePiece {
 // origin.
 class SurfacePieces {
   public:
-    // A piece at this distance (m) needs to be no shorter: a few times as long as it is far from the tool,
-    // but not so long that a thin tool finds its way between two samples.
+    // A piece needs to be no shorter than a few times as long as it is far from the tool, but not so long
+    // that a thin tool finds its way between two samples.
     static constexpr float kLengthPerDistance = 4;
-    static float shortEnough(const ToolField& tool, float nearest) noexcept {
-        return std::min(kLengthPerDistance * nearest, float(tool.thinnestRadius()));
-    }
 
     // The trilinear surface is taken to be no farther off a triangle, in voxels.
     static constexpr double kMostSag = 0.5;
@@ -111,19 +110,8 @@ class SurfacePieces {
     // There was no room for all: some surface may be missing.
     bool isFull() const noexcept { return is_full_; }
 
-    // Calls visit(piece, patch) for those whose samples the tool can reach, and for those that there was no
-    // time or room to cut.
-    template <class Visit>
-    void forEach(Visit&& visit) const noexcept {
-        for (int next = first_[kPieceFinished]; next != kNone; next = next_[size_t(next)])
-            visit(uint32_t(next), patch_[size_t(triangle_[size_t(next)])]);
-    }
-    SurfacePiece piece(size_t n) const noexcept {
-        const auto middle = [&](size_t axis) {
-            return (corner_[axis][n] + corner_[axis + 3][n] + corner_[axis + 6][n]) / 3;
-        };
-        return {{middle(0), middle(1), middle(2)}, area_[n], nearest_[n]};
-    }
+    // Those whose samples the tool can reach, and those that there was no time or room to cut.
+    std::span<const SurfacePiece> finished() const noexcept { return {finished_.data(), listed_count_}; }
     // Work since the last call, in distances of one point to the tool.
     size_t takePointTests() noexcept { return std::exchange(point_tests_, 0); }
 
@@ -136,11 +124,9 @@ class SurfacePieces {
     void sort(int first, int count, int gap = kNone, int behind_gap = kNone) noexcept;
     void cutAll(int level, bool has_room) noexcept;
     int takeSome(int level, bool has_room, int (&which)[kBatch / 2]) noexcept;
-    void finish(int piece) noexcept {
-        next_[size_t(piece)] = std::exchange(first_[kPieceFinished], piece);
-        ++finished_count_;
-    }
+    void finish(int piece) noexcept;
     void finishAll(int level) noexcept;
+    uint32_t patchOf(size_t piece) const noexcept { return patch_[size_t(triangle_[piece])]; }
     bool hasRoomFor(size_t more) const noexcept { return used_ + more + kBatch <= room_; }
     PieceArrays pieces() noexcept;
     SurfaceTriangles triangles(size_t from = 0) noexcept;
@@ -166,10 +152,12 @@ class SurfacePieces {
     std::vector<float> corner_[9], area_, longest_, nearest_;
     std::vector<int> edge_, triangle_;
     size_t used_ = 0;
-    // Linked lists of those that wait to be cut, by level, of those finished, and of others.
+    // Linked lists of those that wait to be cut, by level.
     std::vector<int> next_;
-    std::array<int, size_t(kPieceDropped) + 1> first_;
-    size_t finished_count_ = 0;
+    std::array<int, size_t(kPieceLevels)> first_;
+    std::vector<SurfacePiece> finished_;  // the first listed_count_
+    size_t listed_count_ = 0;
+    size_t finished_count_ = 0;  // those out of the tool's reach are not listed
     size_t count_ = 0;  // finished or waiting
     bool is_coarse_ = false, is_full_ = false;
     size_t point_tests_ = 0;

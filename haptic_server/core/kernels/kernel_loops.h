@@ -58,9 +58,15 @@ inline void countLanes(Ints& lane) {
     for (int l = 0; l < kWidth; ++l) lane[l] = l;
 }
 inline bool isAny(const Ints& mask) {
+#if defined(__AVX512F__)
+    return _mm512_test_epi32_mask(__m512i(mask), __m512i(mask)) != 0;
+#elif defined(__AVX2__)
+    return _mm256_testz_si256(__m256i(mask), __m256i(mask)) == 0;
+#else
     int any = 0;
     for (int l = 0; l < kWidth; ++l) any |= mask[l];
     return any != 0;
+#endif
 }
 inline void rootOf(const Floats& v, Floats& out) {
     alignas(64) float in[kWidth], result[kWidth];

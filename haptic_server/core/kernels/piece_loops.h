@@ -52,16 +52,32 @@ struct TriangleLanes {
     alignas(64) int is_one[kCellLanes];
 };
 
-int appendTriangles(const TriangleLanes& lanes, int first_cell, int count, const SurfaceTriangles& out) {
+// Writes the lanes that are wanted side by side to out, which has room for all kCellLanes. Returns how many.
+#if defined(__AVX512F__)
+inline int packLanes(const float* lanes, const int* is_wanted, float* out) {
+    const __mmask16 mask = _mm512_test_epi32_mask(_mm512_load_si512(is_wanted), _mm512_load_si512(is_wanted));
+    _mm512_storeu_ps(out, _mm512_maskz_compress_ps(mask, _mm512_load_ps(lanes)));
+    return __builtin_popcount(mask);
+}
+#else
+inline int packLanes(const float* lanes, const int* is_wanted, float* out) {
+    int count = 0;
     for (int l = 0; l < kCellLanes; ++l) {
-        if (!lanes.is_one[l]) continue;
-        for (int v = 0; v < 9; ++v) out.corner[v][count] = lanes.value[v][l];
-        out.area[count] = lanes.value[9][l];
-        out.nx[count] = lanes.value[10][l], out.ny[count] = lanes.value[11][l],
-        out.nz[count] = lanes.value[12][l];
-        out.sag[count] = lanes.value[13][l];
-        out.bend[count] = lanes.value[14][l];
-        out.cell[count++] = first_cell + l;
+        out[count] = lanes[l];
+        count -= is_wanted[l];  // a true comparison is -1
+    }
+    return count;
+}
+#endif
+
+int appendTriangles(const TriangleLanes& lanes, int first_cell, int count, const SurfaceTriangles& out) {
+    float* const to[] = {out.corner[0], out.corner[1], out.corner[2], out.corner[3], out.corner[4],
+                         out.corner[5], out.corner[6], out.corner[7], out.corner[8], out.area,
+                         out.nx,        out.ny,        out.nz,        out.sag,       out.bend};
+    for (int v = 0; v < TriangleLanes::kValues; ++v) packLanes(lanes.value[v], lanes.is_one, to[v] + count);
+    for (int l = 0; l < kCellLanes; ++l) {
+        out.cell[count] = first_cell + l;
+        count -= lanes.is_one[l];
     }
     return count;
 }
@@ -106,7 +122,7 @@ void triangleOf(const CellArrays& cells, const CellPlaces& places, int first, co
 int cellTriangles(const CellArrays& cells, const int* triangles, const CellPlaces& places,
                   const SurfaceTriangles& out) {
     constexpr int kParts = kCellLanes / kWidth;
-    TriangleLanes lanes;
+    TriangleLanes lanes{};
     int count = 0;
     for (int block = 0; block < cells.count; block += kCellLanes) {
         CrossedLanes crossed[kParts];

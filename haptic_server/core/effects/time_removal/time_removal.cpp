@@ -16,14 +16,18 @@
 namespace bonemill {
 namespace {
 
-void squaredDistances(const Candidates& candidates, size_t first, size_t count, const Eigen::Vector3f& from,
-                      float* out) noexcept {
-    const float *x = &candidates.x[first], *y = &candidates.y[first], *z = &candidates.z[first];
+void squaredDistances(const float* x, const float* y, const float* z, size_t count,
+                      const Eigen::Vector3f& from, float* out) noexcept {
     const float from_x = from.x(), from_y = from.y(), from_z = from.z();
     for (size_t i = 0; i < count; ++i) {
         const float dx = x[i] - from_x, dy = y[i] - from_y, dz = z[i] - from_z;
         out[i] = dx * dx + dy * dy + dz * dz;
     }
+}
+
+// Moves each place away from `from` by a share of its distance, on one axis.
+void goOn(float* at, float from, const float* share, size_t count) noexcept {
+    for (size_t i = 0; i < count; ++i) at[i] += share[i] * (at[i] - from);
 }
 
 class TimeRemoval final : public HapticEffect {
@@ -52,24 +56,25 @@ class TimeRemoval final : public HapticEffect {
         const Eigen::Vector3f p_OB = (X_VT.position - origin_V).cast<float>();
         const Eigen::Vector3f axis = (X_VT.rotation * Eigen::Vector3d::UnitY()).cast<float>();
         constexpr size_t kBatch = 64;
-        float squared[kBatch];
+        float distance[kBatch], share[kBatch];
         for (size_t first = 0; first < candidates.count; first += kBatch) {
             const size_t count = std::min(kBatch, candidates.count - first);
-            squaredDistances(candidates, first, count, p_OB, squared);
-            for (size_t n = first; n < first + count; ++n) {
-                if (!(squared[n - first] < reach_squared && squared[n - first] > 0)) continue;
-                const Eigen::Vector3f r = candidates.position(n) - p_OB;
-                const float distance = std::sqrt(squared[n - first]);
-                // Outside of the burr, on the hand's side, the shaft may be nearer.
-                if (distance > radius && r.dot(axis) > 0) {
-                    const Eigen::Vector3d p_V = origin_V + candidates.position(n).cast<double>();
-                    if (distance - radius > float(tool.sample(X_VT.inverse() * p_V).distance)) continue;
-                }
-                const float share = recession / distance;
-                candidates.x[n] += share * r.x();
-                candidates.y[n] += share * r.y();
-                candidates.z[n] += share * r.z();
+            float *x = &candidates.x[first], *y = &candidates.y[first], *z = &candidates.z[first];
+            squaredDistances(x, y, z, count, p_OB, distance);
+            for (size_t i = 0; i < count; ++i) {
+                const bool is_reached = distance[i] < reach_squared && distance[i] > 0;
+                distance[i] = std::sqrt(distance[i]);
+                share[i] = is_reached ? recession / distance[i] : 0;
             }
+            for (size_t i = 0; i < count; ++i) {
+                // Outside of the burr, on the hand's side, the shaft may be nearer.
+                if (!(share[i] > 0 && distance[i] > radius)) continue;
+                const Eigen::Vector3f at(x[i], y[i], z[i]);
+                if (!((at - p_OB).dot(axis) > 0)) continue;
+                const Eigen::Vector3d p_V = origin_V + at.cast<double>();
+                if (distance[i] - radius > float(tool.sample(X_VT.inverse() * p_V).distance)) share[i] = 0;
+            }
+            goOn(x, p_OB.x(), share, count), goOn(y, p_OB.y(), share, count), goOn(z, p_OB.z(), share, count);
         }
         return 1;
     }

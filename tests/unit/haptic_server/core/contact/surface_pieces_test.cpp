@@ -52,11 +52,11 @@ TEST_F(Pieces, TileTheSurface) {
     ASSERT_FALSE(pieces_.isCoarse());
     double area = 0;
     size_t count = 0;
-    pieces_.forEach([&](uint32_t n, uint32_t patch) {
-        ASSERT_LT(patch, kPatches);
-        area += double(pieces_.piece(n).area);
+    for (const SurfacePiece& piece : pieces_.finished()) {
+        ASSERT_LT(piece.patch, kPatches);
+        area += double(piece.area);
         ++count;
-    });
+    }
     EXPECT_EQ(count, pieces_.count());
     EXPECT_GT(count, 1000u);
     EXPECT_NEAR(area / areaOfCells(), 1, 1e-5);
@@ -69,10 +69,8 @@ TEST_F(Pieces, ThoseInReachAreVisited) {
     all.cut(volume_, 60000, 60000);
     const auto areaWithin = [](const SurfacePieces& pieces, double distance) {
         double area = 0;
-        pieces.forEach([&](uint32_t n, uint32_t) {
-            const SurfacePiece piece = pieces.piece(n);
+        for (const SurfacePiece& piece : pieces.finished())
             if (double(piece.centroid.norm()) - 1e-3 < distance) area += double(piece.area);
-        });
         return area;
     };
     start(pieces_, 30e-6);
@@ -80,15 +78,14 @@ TEST_F(Pieces, ThoseInReachAreVisited) {
     const double wanted = areaWithin(all, 0);
     ASSERT_GT(wanted, 0);
     EXPECT_NEAR(areaWithin(pieces_, 0) / wanted, 1, 1e-5);
-    float farthest = 0;
-    pieces_.forEach(
-        [&](uint32_t n, uint32_t) { farthest = std::max(farthest, pieces_.piece(n).centroid.norm()); });
-    EXPECT_LT(double(farthest) - 1e-3, 30e-6 + 2 * SurfacePieces::kMostSag * 0.3e-3);
-    float farthest_of_all = 0;
-    all.forEach([&](uint32_t n, uint32_t) {
-        farthest_of_all = std::max(farthest_of_all, all.piece(n).centroid.norm());
-    });
-    EXPECT_GT(double(farthest_of_all) - 1e-3, 1e-3);
+    const auto farthestOf = [](const SurfacePieces& pieces) {
+        float farthest = 0;
+        for (const SurfacePiece& piece : pieces.finished())
+            farthest = std::max(farthest, piece.centroid.norm());
+        return double(farthest) - 1e-3;
+    };
+    EXPECT_LT(farthestOf(pieces_), 30e-6 + 2 * SurfacePieces::kMostSag * 0.3e-3);
+    EXPECT_GT(farthestOf(all), 1e-3);
 }
 
 TEST_F(Pieces, AreCoarserWhenThereAreTooMany) {
