@@ -42,7 +42,7 @@ std::vector<Eigen::AlignedBox3f> sliced(const Eigen::AlignedBox3f& box, int coun
 // It is a part of a picture of any shape, as square tiles: what is added takes all tiles that it touches.
 class PixelTiles {
   public:
-    static constexpr int kTile = 32;  // pixels, each side
+    static constexpr int kTile = 16;  // pixels, each side
 
     // A picture of this size, and nothing of it.
     PixelTiles(int width, int height);

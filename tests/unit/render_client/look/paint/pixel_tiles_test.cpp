@@ -50,9 +50,9 @@ TEST(PixelTiles, AreBoundedAndGrow) {
     EXPECT_TRUE(tiles.isEmpty());
     EXPECT_TRUE(tiles.bounds().isEmpty());
     tiles.add(PixelBox{40, 40, 41, 41});
-    EXPECT_EQ(tiles.bounds(), (PixelBox{32, 32, 64, 64}));
-    EXPECT_EQ(tiles.grown(1).bounds(), (PixelBox{0, 0, 96, 96}));
-    EXPECT_EQ(tiles.grown(33).bounds(), (PixelBox{0, 0, 128, 128}));
+    EXPECT_EQ(tiles.bounds(), (PixelBox{32, 32, 48, 48}));
+    EXPECT_EQ(tiles.grown(1).bounds(), (PixelBox{16, 16, 64, 64}));
+    EXPECT_EQ(tiles.grown(33).bounds(), (PixelBox{0, 0, 96, 96}));
     EXPECT_EQ(PixelTiles::whole(kTilesWidth, kTilesHeight).boxes(),
               std::vector<PixelBox>{PixelBox::whole(kTilesWidth, kTilesHeight)});
 }
