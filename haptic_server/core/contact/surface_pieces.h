@@ -158,7 +158,7 @@ class SurfacePieces {
     std::vector<SurfacePiece> finished_;  // the first listed_count_
     size_t listed_count_ = 0;
     size_t finished_count_ = 0;  // those out of the tool's reach are not listed
-    size_t count_ = 0;  // finished or waiting
+    size_t count_ = 0;           // finished or waiting
     bool is_coarse_ = false, is_full_ = false;
     size_t point_tests_ = 0;
 };

@@ -94,6 +94,7 @@ inline void loadWords(const uint16_t* p, W& words) {
 #include "haptic_server/core/kernels/piece_loops.h"
 #include "haptic_server/core/kernels/point_loops.h"
 #include "haptic_server/core/kernels/row_loops.h"
+#include "haptic_server/core/kernels/rubbing_loops.h"
 #include "haptic_server/core/kernels/shift_loops.h"
 
 namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE {
@@ -103,6 +104,7 @@ const Kernels kTable = {.single = {intoFrame<float>, nearerRound<float>, sampleN
                                    nearerCone<float>, sampleNearerCone<float>, addContacts<float>},
                         .twice = {intoFrame<double>, nearerRound<double>, sampleNearerRound<double>,
                                   nearerCone<double>, sampleNearerCone<double>, addContacts<double>},
+                        .add_rubbing = addRubbing,
                         .select_near = selectNear,
                         .remove_plane = millPlane<-1>,
                         .add_plane = millPlane<+1>,

@@ -64,6 +64,33 @@ struct ContactSums {
 };
 inline constexpr int kContactBatch = 64;
 
+// How a burr turns and moves that rubs on bone: SI, V, about the tool point.
+struct RubbingMotion {
+    double axis[3] = {};  // unit
+    double spin = 0;      // rad/s about it
+    double velocity[3] = {}, angular_velocity[3] = {};
+    double friction = 0;         // tangential per normal force of what slides
+    double slow_squared = 0;     // m²/s²: what slides slower than its root pulls less
+    double held_per_moment = 0;  // N·m that the bone holds of a spindle that stalls, per N·m of force times ρ
+};
+// At most kContactBatch contacts on the burr.
+struct RubbingPoints {
+    const float *rx, *ry, *rz;  // from the tool point, m
+    const float *nx, *ny, *nz;  // unit: where the bone pushes the tool
+    const float* force;         // N along that
+    const double* spread;       // m²: what the patch adds to the square of its distance from the axis
+    const double* rho;          // m: that distance with it
+    int count;
+};
+// These are sums over contacts: the pull of the spin, and of dampers d against the tool's own motion, that of
+// d, of d r, and the upper triangles of those of d r rᵀ and of d w wᵀ, w = (n, r × n).
+struct RubbingSums {
+    double force[3] = {};   // N
+    double torque[3] = {};  // N·m
+    double per_speed = 0;   // N·s/m
+    double of_r[3] = {}, of_rr[6] = {}, of_ww[21] = {};
+};
+
 // It says what makes a contact point worth a closer look. A place of its patch is nearer to the tool
 // than the point by what lies in the patch's plane of the way to the tool, and by what the bone bends
 // towards the tool.
@@ -244,6 +271,7 @@ struct VoxelHat {
 struct Kernels {
     PointKernels<float> single;
     PointKernels<double> twice;
+    void (*add_rubbing)(const RubbingMotion& motion, const RubbingPoints& points, RubbingSums& sums);
     // Selects the near ones of at most kContactBatch points: writes their indices, and of all points how
     // near a place of its patch comes. Distances and gradients (T) and normals (V); the arrays go on to a
     // multiple of kCellLanes.

@@ -16,6 +16,7 @@
 #include "haptic_server/core/effects/effect_configs.h"
 #include "haptic_server/core/effects/haptic_effect.h"
 #include "haptic_server/core/effects/increment.h"
+#include "haptic_server/core/kernels/kernels.h"
 
 namespace bonemill {
 
@@ -26,32 +27,53 @@ namespace {
 
 // It is the sum of dampers, each of which is a force −d (I − n nᵀ) v at r from the tool point against the
 // motion v there. With w = (n, r × n) the twist's matrix is Σ d ([I, −r×; r×, −r×r×] − w wᵀ).
-class TangentialDampers {
+Matrix6d dampingOf(const RubbingSums& sums) noexcept {
+    Matrix6d all;
+    const Matrix3d r_skew = skew(Vector3d(sums.of_r));
+    const double* s = sums.of_rr;
+    const Matrix3d of_rr{{s[0], s[1], s[2]}, {s[1], s[3], s[4]}, {s[2], s[4], s[5]}};
+    all.topLeftCorner<3, 3>() = sums.per_speed * Matrix3d::Identity();
+    all.topRightCorner<3, 3>() = -r_skew;
+    all.bottomLeftCorner<3, 3>() = r_skew;
+    all.bottomRightCorner<3, 3>() = of_rr.trace() * Matrix3d::Identity() - of_rr;
+    s = sums.of_ww;
+    for (int row = 0; row < 6; ++row)
+        for (int column = row; column < 6; ++column, ++s) {
+            all(row, column) -= *s;
+            if (column > row) all(column, row) -= *s;
+        }
+    return all;
+}
+
+// Contacts on the burr on their way into the sums.
+class RubbingContacts {
   public:
-    void add(double d, const Vector3d& r, const Vector3d& n) noexcept {
-        sum_ += d;
-        of_r_ += d * r;
-        of_rr_ += (d * r) * r.transpose();
-        Vector6d w;
-        w << n, r.cross(n);
-        for (int column = 0; column < 6; ++column)
-            of_w_.col(column).head(column + 1) += d * w[column] * w.head(column + 1);
+    explicit RubbingContacts(const RubbingMotion& motion) noexcept : motion_(motion) {}
+
+    // spread, m², and rho, m: see burr_speed.h.
+    void add(const SurfaceContact& contact, double spread, double rho) noexcept {
+        const int n = points_.count++;
+        for (int axis = 0; axis < 3; ++axis)
+            r_[axis][n] = contact.r_V[axis], normal_[axis][n] = contact.push_V[axis];
+        force_[n] = contact.force, spread_[n] = spread, rho_[n] = rho;
+        if (points_.count == kContactBatch) sum();
     }
-    Matrix6d damping() const noexcept {
-        Matrix6d all;
-        const Matrix3d r_skew = skew(of_r_);
-        all.topLeftCorner<3, 3>() = sum_ * Matrix3d::Identity();
-        all.topRightCorner<3, 3>() = -r_skew;
-        all.bottomLeftCorner<3, 3>() = r_skew;
-        all.bottomRightCorner<3, 3>() = of_rr_.trace() * Matrix3d::Identity() - of_rr_;
-        return all - Matrix6d(of_w_.selfadjointView<Eigen::Upper>());
+    const RubbingSums& sums() noexcept {
+        sum();
+        return sums_;
     }
 
   private:
-    double sum_ = 0;
-    Vector3d of_r_ = Vector3d::Zero();
-    Matrix3d of_rr_ = Matrix3d::Zero();
-    Matrix6d of_w_ = Matrix6d::Zero();  // the upper half
+    void sum() noexcept {
+        kernels().add_rubbing(motion_, points_, sums_);
+        points_.count = 0;
+    }
+
+    RubbingMotion motion_;
+    alignas(64) float r_[3][kContactBatch], normal_[3][kContactBatch], force_[kContactBatch];
+    alignas(64) double spread_[kContactBatch], rho_[kContactBatch];
+    RubbingPoints points_{r_[0], r_[1], r_[2], normal_[0], normal_[1], normal_[2], force_, spread_, rho_, 0};
+    RubbingSums sums_;
 };
 
 class CuttingForce final : public HapticEffect {
@@ -97,25 +119,23 @@ class CuttingForce final : public HapticEffect {
         const double moment = tick.burr_load.moment;
         const double held_per_moment = moment > 0 ? (1 - share) * tick.axis_load / moment : 0;
         if (share == 0 && held_per_moment == 0) return pull;
-        const Vector3d axis = tick.axis();
-        const double friction = frictionOf(tick);
-        TangentialDampers dampers;
-        forEachBurrContact(tick, [&](const SurfaceContact& contact, const Vector3d& r, double rho) {
-            const double spread = patchSpread(double(tick.place_area[contact.candidate]));
-            const Vector3d n = contact.push_V.cast<double>();
-            const Matrix3d tangential = Matrix3d::Identity() - n * n.transpose();
-            const Vector3d by_turn = tangential * axis.cross(r), v_spin = spin * by_turn;
-            const Vector3d v_tool = tangential * (tick.velocity_V + tick.angular_velocity_V.cross(r));
-            const double mean_square = (v_spin + v_tool).squaredNorm() + spin * spin * spread;
-            const double per_speed = share * friction * double(contact.force) /
-                                     std::sqrt(mean_square + config_.slow_speed * config_.slow_speed);
-            const double per_turn = per_speed * spin + held_per_moment * double(contact.force) / rho;
-            const Vector3d force = -per_turn * by_turn;
-            pull.of_spin.force += force;
-            pull.of_spin.torque += r.cross(force) - per_turn * spread * axis;
-            dampers.add(per_speed, r, n);
+        RubbingMotion motion{.spin = spin,
+                             .friction = share * frictionOf(tick),
+                             .slow_squared = config_.slow_speed * config_.slow_speed,
+                             .held_per_moment = held_per_moment};
+        const Vector3d axis_V = tick.axis();
+        for (int axis = 0; axis < 3; ++axis) {
+            motion.axis[axis] = axis_V[axis];
+            motion.velocity[axis] = tick.velocity_V[axis];
+            motion.angular_velocity[axis] = tick.angular_velocity_V[axis];
+        }
+        RubbingContacts contacts(motion);
+        forEachBurrContact(tick, [&](const SurfaceContact& contact, const Vector3d&, double rho) {
+            contacts.add(contact, patchSpread(double(tick.place_area[contact.candidate])), rho);
         });
-        pull.damping = dampers.damping();
+        const RubbingSums& sums = contacts.sums();
+        pull.of_spin = {Vector3d(sums.force), Vector3d(sums.torque)};
+        pull.damping = dampingOf(sums);
         return pull;
     }
 

@@ -89,26 +89,17 @@ class EnergyRemoval final : public HapticEffect {
         if (!is_cutting_ || candidates.count == 0) return 1;
         rubs_ = config_.rubbingPressure(tick.tool->burr, tick.tool->burr.radius) > 0;
         if (rubs_) std::fill_n(rubbing_.begin(), candidates.count, 0.f);
-        constexpr int kBatch = PointBatch<float>::kCapacity;
-        const double slack = burrSlack(tool);
         const IntoTool<float> into_tool(X_VT, origin_V);
-        PointBatch<float> batch;
-        float distance[kBatch];
+        Places places;
         double largest = 0;
         for (size_t first = 0; first < candidates.count; first += kBatch) {
-            const int count = int(std::min(size_t(kBatch), candidates.count - first));
-            into_tool.fill(batch, &candidates.x[first], &candidates.y[first], &candidates.z[first], count);
-            tool.distances(batch, distance);
-            for (int i = 0; i < count; ++i) {
-                const size_t n = first + size_t(i);
-                const Eigen::Vector3d p_T(batch.x[i], batch.y[i], batch.z[i]);
-                // The burr is what it touches or is nearest to.
-                const bool is_on_burr =
-                    tick.tool->burr.signedDistance(p_T) <= std::max(0.0, double(distance[i])) + slack;
-                const double factor = is_on_burr ? softness(tick, candidates, n, origin_V, p_T) : 1;
-                candidates.weight[n] *= float(factor);
-                largest = std::max(largest, factor);
-            }
+            const size_t count = std::min(kBatch, candidates.count - first);
+            into_tool.fill(places.at_T, &candidates.x[first], &candidates.y[first], &candidates.z[first],
+                           int(count));
+            tool.distances(places.at_T, places.tool_distance);
+            measure(tick, candidates, first, origin_V, burrSlack(tool), places);
+            soften(tick, &candidates.weight[first], first, places);
+            for (size_t i = 0; i < count; ++i) largest = std::max(largest, places.factor[i]);
         }
         return largest;
     }
@@ -135,18 +126,54 @@ class EnergyRemoval final : public HapticEffect {
     }
 
   private:
-    // This is 1/(1 + κ c dt) of a candidate on the burr, whose p_e it notes.
-    double softness(const EffectTick& tick, const Candidates& candidates, size_t n,
-                    const Eigen::Vector3d& origin_V, const Eigen::Vector3d& p_T) noexcept {
+    static constexpr size_t kBatch = PointBatch<float>::kCapacity;
+    // Candidates that are looked at together.
+    struct Places {
+        PointBatch<float> at_T;
+        float tool_distance[kBatch];   // m
+        double burr_distance[kBatch];  // m
+        double rho[kBatch];            // m: of the place from the axis, the mean over it
+        double of_bone[kBatch];        // J/m³; 0: it is not the burr's
+        double factor[kBatch];         // of its weight
+    };
+    // The burr's is what it touches or is nearest to.
+    void measure(const EffectTick& tick, const Candidates& candidates, size_t first,
+                 const Eigen::Vector3d& origin_V, double slack, Places& at) noexcept {
         const Burr& burr = tick.tool->burr;
-        const double area = double(tick.place_area[n]), stiffness = double(candidates.weight[n]) / area;
-        const double rho = std::sqrt(p_T.x() * p_T.x() + p_T.z() * p_T.z() + patchSpread(area));
-        const double of_bone = specificEnergyAt(origin_V + candidates.position(n).cast<double>());
-        if (rubs_)
-            rubbing_[n] = float(config_.rubbingPressure(burr, rho) * (of_bone / config_.specific_energy));
-        const double c =
-            burr.friction * std::abs(tick.spin_speed) * rho / (config_.energyFactor(burr) * of_bone);
-        return 1 / (1 + stiffness * c * tick.milled_dt * double(turns_));
+        const float *x = at.at_T.x, *y = at.at_T.y, *z = at.at_T.z, *area = &tick.place_area[first];
+        const auto count = size_t(at.at_T.count);
+        for (size_t i = 0; i < count; ++i) {
+            const double off = double(x[i]) * double(x[i]) + double(z[i]) * double(z[i]);
+            at.rho[i] = std::sqrt(off + patchSpread(double(area[i])));
+            at.burr_distance[i] = std::sqrt(off + double(y[i]) * double(y[i])) - burr.radius;  // of a ball
+        }
+        if (burr.kind != BurrKind::kBall)
+            for (size_t i = 0; i < count; ++i)
+                at.burr_distance[i] = burr.signedDistance(Eigen::Vector3f(x[i], y[i], z[i]).cast<double>());
+        for (size_t i = 0; i < count; ++i) {
+            const bool is_on_burr = at.burr_distance[i] <= std::max(0.0, double(at.tool_distance[i])) + slack;
+            at.of_bone[i] =
+                is_on_burr ? specificEnergyAt(origin_V + candidates.position(first + i).cast<double>()) : 0;
+        }
+    }
+    // Multiplies each weight by 1/(1 + κ c dt), and notes p_e.
+    void soften(const EffectTick& tick, float* weight, size_t first, Places& at) noexcept {
+        const Burr& burr = tick.tool->burr;
+        const auto count = size_t(at.at_T.count);
+        // u c dt per ρ: κ is the weight per area.
+        const double wear = burr.friction * std::abs(tick.spin_speed) / config_.energyFactor(burr) *
+                            tick.milled_dt * double(turns_);
+        const float* area = &tick.place_area[first];
+        for (size_t i = 0; i < count; ++i) {
+            const double bone = at.of_bone[i] * double(area[i]);
+            at.factor[i] = bone > 0 ? bone / (bone + double(weight[i]) * wear * at.rho[i]) : 1;
+            weight[i] *= float(at.factor[i]);
+        }
+        if (!rubs_) return;
+        for (size_t i = 0; i < count; ++i)
+            if (at.of_bone[i] > 0)
+                rubbing_[first + i] = float(config_.rubbingPressure(burr, at.rho[i]) *
+                                            (at.of_bone[i] / config_.specific_energy));
     }
     struct Region {
         double force = 0, rubbing = 0;  // N: of its patches that touch, and what they carry without cutting

@@ -22,17 +22,27 @@ class MaterialStiffness final : public HapticEffect {
                  const Pose&) noexcept override {
         const Eigen::Vector3f origin = origin_V.cast<float>();
         float largest = 1;
-        for (size_t n = 0; n < candidates.count; ++n) {
-            const Eigen::Vector3i voxel =
-                voxelInside(origin + candidates.position(n), candidates.normal(n), spacing_);
-            const float factor = factor_[properties_->material(voxel)];
-            candidates.weight[n] *= factor;
-            largest = std::max(largest, factor);
+        for (size_t first = 0; first < candidates.count; first += kBatch) {
+            const size_t count = std::min(kBatch, candidates.count - first);
+            int voxel[3][kBatch];
+            const std::vector<float>* const places[3] = {&candidates.x, &candidates.y, &candidates.z};
+            const std::vector<float>* const normals[3] = {&candidates.nx, &candidates.ny, &candidates.nz};
+            for (int axis = 0; axis < 3; ++axis)
+                for (size_t i = 0; i < count; ++i)
+                    voxel[axis][i] = voxelInside(origin[axis] + (*places[axis])[first + i],
+                                                 (*normals[axis])[first + i], spacing_[axis]);
+            for (size_t i = 0; i < count; ++i) {
+                const float factor = factor_[properties_->material({voxel[0][i], voxel[1][i], voxel[2][i]})];
+                candidates.weight[first + i] *= factor;
+                largest = std::max(largest, factor);
+            }
         }
         return double(largest);
     }
 
   private:
+    static constexpr size_t kBatch = 64;
+
     std::shared_ptr<const BoneProperties> properties_;
     std::vector<float> factor_;  // by MaterialId
     Eigen::Vector3f spacing_;

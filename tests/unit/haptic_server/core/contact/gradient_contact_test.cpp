@@ -197,6 +197,34 @@ TEST(GradientContact, SamplesLessFinelyWhenThereIsNoTime) {
     EXPECT_EQ(contact.candidateCount(), all);
 }
 
+// Patches keep the fineness that they had when they came near, and have more and more pieces in reach as the
+// tool sinks in. There are soon no more than asked for, and the force hardly shows how they become fewer.
+TEST(GradientContact, ManyKnownPatchesAreCutLessFinelyAFewAtATime) {
+    const ContactScene scene(
+        cubeGeometry(33, 0.25e-3), [](const Vector3d& p) { return p.z() - 4e-3; }, kBurrAndShaft);
+    const AccuracySettings settings{.most_samples = 200};
+    const ToolField& tool = scene.tool.field(settings);
+    GradientContact contact({});
+    constexpr double kMargin = 20e-6;
+    Pose X_VT{{4e-3, 4e-3, 4.995e-3}};
+    ASSERT_TRUE(contact.gather(scene.view(settings), tool, X_VT, kMargin));
+    X_VT.position.z() -= 60e-6;
+    ASSERT_TRUE(contact.gather(scene.view(settings), tool, X_VT, kMargin));
+    EXPECT_GT(contact.candidateCount(), 250u);
+    const auto force = [&] { return contact.evaluate<double>(tool, X_VT).term.wrench.force.z(); };
+    double before = force();
+    ASSERT_GT(before, 0.5);
+    for (int n = 0; n < 100; ++n) {
+        ASSERT_TRUE(contact.gather(scene.view(settings), tool, X_VT, kMargin));
+        EXPECT_FALSE(contact.hasFewerSamples());  // than asked for
+        const double now = force();
+        EXPECT_NEAR(now / before, 1, 5e-3);
+        before = now;
+    }
+    EXPECT_LE(contact.candidateCount(), 220u);
+    EXPECT_GT(contact.candidateCount(), 100u);
+}
+
 // The wall is thinner than the burr, and its far side lies inside the burr: the far side must not pull.
 TEST(GradientContact, TheFarSideOfAThinWallDoesNotPull) {
     const double top = 4.3e-3, thickness = 0.3e-3;

@@ -84,7 +84,9 @@ TEST(GradientModel, SaysSoWhenItFindsNoWayToBalance) {
             stalled += step.has_stalled;
             spo = step.X_VT;
         }
-        EXPECT_EQ(stalled, is_hard ? 40 : 0);
+        // The energy is another one where crowded patches are cut less finely: then there may be a way.
+        EXPECT_GE(stalled, is_hard ? 35 : 0);
+        EXPECT_LE(stalled, is_hard ? 40 : 0);
     }
 }
 
@@ -260,7 +262,7 @@ TEST(GradientModel, ATickEndsSoonAfterItsBudgetWhateverItMeets) {
     const ContactScene scene = flatScene();
     std::mt19937 random(4);
     std::uniform_real_distribution<double> uniform(-1, 1);
-    for (const size_t most_point_tests : {2'000u, 200'000u}) {
+    for (const size_t most_point_tests : {1'000u, 200'000u}) {
         GradientConfig config;
         config.most_point_tests = most_point_tests;
         GradientModel model(config, scene.world(), toolOf(scene), 1e-3);
@@ -277,7 +279,7 @@ TEST(GradientModel, ATickEndsSoonAfterItsBudgetWhateverItMeets) {
         }
         EXPECT_LT(most * double(most_point_tests),
                   1.5 * double(most_point_tests) + 64 * 64 + 4 * AccuracySettings{}.most_samples);
-        EXPECT_EQ(overflows > 0, most_point_tests == 2'000);
+        EXPECT_EQ(overflows > 0, most_point_tests == 1'000);
         EXPECT_GT(most, 0.02);
     }
 }

@@ -79,6 +79,57 @@ TEST_P(VoxelKernels, ContactSumsAreThoseOfPlainLoops) {
     }
 }
 
+// The sums are compared with those by Eigen, contact by contact.
+TEST_P(VoxelKernels, RubbingSumsAreThoseOfPlainLoops) {
+    using Eigen::Vector3d;
+    const RubbingMotion m{{0.48, 0.6, 0.64}, -3000, {0.02, -0.05, 0.03}, {1, 2, -3}, 0.5, 1e-4, 20};
+    const Vector3d axis(m.axis), v(m.velocity), omega(m.angular_velocity);
+    for (int round = 0; round < 100; ++round) {
+        const int n = 1 + below(kContactBatch);
+        const auto rx = randoms<float>(n, -1e-3, 1e-3), ry = randoms<float>(n, -1e-3, 1e-3),
+                   rz = randoms<float>(n, -1e-3, 1e-3), force = randoms<float>(n, 0, 0.3);
+        auto nx = randoms<float>(n, -1, 1), ny = randoms<float>(n, -1, 1), nz = randoms<float>(n, -1, 1);
+        const auto spread = randoms<double>(n, 0, 1e-9), rho = randoms<double>(n, 1e-4, 1e-3);
+        Vector3d pull = Vector3d::Zero(), torque = pull;
+        double per_speed = 0;
+        Eigen::Matrix3d of_rr = Eigen::Matrix3d::Zero();
+        Eigen::Matrix<double, 6, 6> of_ww = Eigen::Matrix<double, 6, 6>::Zero();
+        for (size_t i = 0; i < size_t(n); ++i) {
+            const Eigen::Vector3f unit = Eigen::Vector3f(nx[i], ny[i], nz[i]).normalized();
+            nx[i] = unit.x(), ny[i] = unit.y(), nz[i] = unit.z();
+            const Vector3d r(rx[i], ry[i], rz[i]), normal = unit.cast<double>();
+            const Eigen::Matrix3d beside = Eigen::Matrix3d::Identity() - normal * normal.transpose();
+            const Vector3d turn = beside * axis.cross(r),
+                           slip = m.spin * turn + beside * (v + omega.cross(r));
+            const double d = m.friction * double(force[i]) /
+                             std::sqrt(slip.squaredNorm() + m.spin * m.spin * spread[i] + m.slow_squared);
+            const double per_turn = d * m.spin + m.held_per_moment * double(force[i]) / rho[i];
+            pull -= per_turn * turn;
+            torque -= per_turn * (r.cross(turn) + spread[i] * axis);
+            per_speed += d;
+            of_rr += d * r * r.transpose();
+            Eigen::Matrix<double, 6, 1> w;
+            w << normal, r.cross(normal);
+            of_ww += d * w * w.transpose();
+        }
+        RubbingSums sums[2];
+        for (const int which : {0, 1})
+            (which ? ours() : oracle())
+                .add_rubbing(m,
+                             {rx.data(), ry.data(), rz.data(), nx.data(), ny.data(), nz.data(), force.data(),
+                              spread.data(), rho.data(), n},
+                             sums[which]);
+        EXPECT_EQ(std::memcmp(&sums[0], &sums[1], sizeof sums[0]), 0);
+        EXPECT_LT((Vector3d(sums[0].force) - pull).norm(), 1e-9);
+        EXPECT_LT((Vector3d(sums[0].torque) - torque).norm(), 1e-12);
+        EXPECT_NEAR(sums[0].per_speed, per_speed, 1e-12);
+        EXPECT_NEAR(sums[0].of_rr[1], of_rr(0, 1), 1e-15);
+        EXPECT_NEAR(sums[0].of_rr[5], of_rr(2, 2), 1e-15);
+        EXPECT_NEAR(sums[0].of_ww[4], of_ww(0, 4), 1e-12);
+        EXPECT_NEAR(sums[0].of_ww[20], of_ww(5, 5), 1e-15);
+    }
+}
+
 // The place is x, y from where the burr sets out.
 double squaredFromWay(const BurrPlane& burr, double x, double y) {
     const double along = x * double(burr.way_x) + y * double(burr.way_y) + double(burr.off_plane_along);
