@@ -78,11 +78,14 @@ class TouchingPoints {
         constexpr bool is_exact = sizeof(Scalar) == sizeof(float);
         const float beside = is_exact ? 0 : float(2 * tool_.distanceError());
         roughly_into_tool_.fill(rough_batch_, &c_.x[first], &c_.y[first], &c_.z[first], count);
-        tool_.distances(rough_batch_, distance_);
+        tool_.distances(rough_batch_, rough_distance_);
+        uint32_t* const found = touching_ + touching_count_;
+        int found_count = 0;
         for (int i = 0; i < count; ++i) {
-            touching_[touching_count_] = uint32_t(first) + uint32_t(i);
-            touching_count_ += distance_[i] < beside;
+            found[found_count] = uint32_t(first) + uint32_t(i);
+            found_count += rough_distance_[i] < beside;
         }
+        touching_count_ += is_exact ? found_count : keepTouching(found, found_count);
         if (touching_count_ >= kBatch) sum(kBatch);
     }
     GradientContactResult result() noexcept {
@@ -94,20 +97,32 @@ class TouchingPoints {
     static constexpr int kBatch = PointBatch<Scalar>::kCapacity;
     static_assert(kBatch == kContactBatch);
 
-    // Returns the first `count` of the points found.
-    void sum(int count) noexcept {
+    // Returns how many of these touch, which it moves to the front.
+    int keepTouching(uint32_t* found, int count) noexcept {
+        if (count == 0) return 0;
+        fill(found, count);
+        tool_.distances(batch_, distance_);
+        int kept = 0;
         for (int i = 0; i < count; ++i) {
-            const size_t n = touching_[i];
+            found[kept] = found[i];
+            kept += distance_[i] < 0;
+        }
+        return kept;
+    }
+    void fill(const uint32_t* points, int count) noexcept {
+        for (int i = 0; i < count; ++i) {
+            const size_t n = points[i];
             x_[i] = c_.x[n], y_[i] = c_.y[n], z_[i] = c_.z[n], weight_[i] = c_.weight[n];
         }
         into_tool_.fill(batch_, x_, y_, z_, count);
+    }
+    // Sums the first `count` of the points found.
+    void sum(int count) noexcept {
+        fill(touching_, count);
         tool_.sample(batch_, at_);
-        for (int i = 0; i < count; ++i) {
-            contacts_ += at_.distance[i] < 0;
-            weight_[i] = at_.distance[i] < 0 ? weight_[i] : 0;
-        }
         kernels().points<Scalar>().add_contacts(frame_, x_, y_, z_, weight_, at_.distance, at_.gx, at_.gy,
                                                 at_.gz, count, sums_);
+        contacts_ += uint32_t(count);
         std::copy(touching_ + count, touching_ + touching_count_, touching_);
         touching_count_ -= count;
     }
@@ -116,11 +131,12 @@ class TouchingPoints {
     const ToolField& tool_;
     IntoTool<float> roughly_into_tool_;
     PointBatch<float> rough_batch_;
-    alignas(64) float distance_[kBatch];
+    alignas(64) float rough_distance_[kBatch];
     IntoTool<Scalar> into_tool_;
     ContactFrame frame_;
     PointBatch<Scalar> batch_;
     SampleBatch<Scalar> at_;
+    alignas(64) Scalar distance_[kBatch];
     alignas(64) float x_[kBatch], y_[kBatch], z_[kBatch], weight_[kBatch];
     uint32_t touching_[2 * kBatch];
     int touching_count_ = 0;

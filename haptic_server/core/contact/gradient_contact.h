@@ -46,6 +46,7 @@ struct ShellView {
     double sample_spacing;                 // m, near the tool; 0: one sample per point
     int most_samples;                      // about as many near the tool; the spacing gives way
     size_t affordable_samples = SIZE_MAX;  // how many there is time for
+    bool may_coarsen = true;               // patches that are known, if there are too many samples
 };
 
 struct GradientContactResult {
@@ -87,7 +88,7 @@ class GradientContact {
     // or the sampling changes, or the tool is placed anew or is another one.
     void forget() noexcept {
         patch_memory_.forget();
-        crowded_level_ = 0;
+        crowd_ = {};
         forgetNear();
     }
     // The tool has grown by so much all around, m.
@@ -124,8 +125,8 @@ class GradientContact {
     static constexpr size_t kMaxPieces = 4 * 65536;
     // What was sampled as finely as asked for may come to N times most_samples.
     static constexpr size_t kMaxTimes = 2;
-    // Beyond most_samples known patches are cut less finely, by one level and so many at a gathering, which
-    // changes the force by less than is felt.
+    // Beyond most_samples known patches are cut less finely, by one level and so many at a gathering, the
+    // finest first, which changes the force by less than is felt.
     static constexpr size_t kMostCoarsened = 2;
     // Where many patches are near, each is small against the contact, and half as many of them as there may
     // be pieces are samples enough. From half of that on there are fewer pieces the more patches there are,
@@ -190,7 +191,13 @@ class GradientContact {
         split_;  // ascending: the first split_count_ are patches whose pieces take their place
     size_t split_count_ = 0;
     std::vector<uint8_t*> new_level_;  // of those that were not known, in patch_memory_
-    uint8_t crowded_level_ = 0;        // there were too many pieces, but not if all were of this level
+    // The last gathering that might make patches coarser had too many samples, but not if all patches were of
+    // the coarsest level; its finest was the other one.
+    struct Crowd {
+        uint8_t finest = PatchMemory::kNew, coarsest = 0;
+        bool makesCoarser(uint8_t level) const noexcept { return level <= finest && level < coarsest; }
+    };
+    Crowd crowd_;
     bool has_fewer_samples_ = false;
     std::vector<uint32_t> next_place_;  // per patch that is cut: of its pieces, where the next one goes
     std::vector<uint32_t> source_;      // per candidate: its patch

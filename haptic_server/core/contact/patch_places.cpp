@@ -45,12 +45,12 @@ void GradientContact::cutPatches(const ShellView& bone, const ToolField& tool, c
     if (split_count_ == 0) return;
     const size_t new_count = giveCells(bone);
     const uint8_t level_of_new = pieces_.cut(bone.volume, most_pieces, most);
-    const bool is_crowded = pieces_.count() > most_pieces;
-    has_fewer_samples_ |= (is_crowded && most_of_new < asked_for) || pieces_.isFull() ||
-                          (pieces_.isCoarse() && affordable < kMaxTimes * asked_for &&
-                           (most_of_new < asked_for || pieces_.count() > most));
+    has_fewer_samples_ |= pieces_.isFull() || (pieces_.isCoarse() && affordable < kMaxTimes * asked_for &&
+                                               (most_of_new < asked_for || pieces_.count() > most));
     for (size_t n = 0; n < new_count; ++n) *new_level_[n] = level_of_new;
-    crowded_level_ = is_crowded ? level_of_new : uint8_t(0);
+    // For want of time nothing is made coarser for good.
+    const bool is_crowded = most_of_new == asked_for && pieces_.finished().size() > most_pieces;
+    if (bone.may_coarsen) crowd_.coarsest = is_crowded ? level_of_new : uint8_t(0);
     point_tests_ += pieces_.takePointTests();
 }
 
@@ -84,21 +84,22 @@ void GradientContact::findCoarse(const ToolField& tool) noexcept {
     }
 }
 
-// Gives the cells of the patches to be cut. Returns how many of those are new. If the last gathering had too
-// many pieces, some of those that it knew are cut less finely.
+// Gives the cells of the patches to be cut. Returns how many of those are new.
 size_t GradientContact::giveCells(const ShellView& bone) noexcept {
     const int factor = bone.shell.scalingFactor(bone.level);
     LeafId leaf = ~LeafId(0);  // of the patch before
     IndexBox cells;
-    size_t new_count = 0, coarsened = 0;
+    size_t new_count = 0, may_coarsen = bone.may_coarsen ? kMostCoarsened : 0;
+    uint8_t finest = PatchMemory::kNew;
     for (size_t n = 0; n < split_count_; ++n) {
         const PatchId patch = near_.patch[split_[n]];
         if (patch.leaf != leaf) cells = bone.lattice.cellsOf(leaf = patch.leaf);
         uint8_t& level = patch_memory_.levelOf(patch);
         if (level == PatchMemory::kNew)
             new_level_[new_count++] = &level;
-        else if (level < crowded_level_ && coarsened < kMostCoarsened)
-            ++level, ++coarsened;
+        else if (may_coarsen > 0 && crowd_.makesCoarser(level))
+            ++level, --may_coarsen;
+        finest = std::min(finest, level);
         const Vector3i first = cells.min + factor * patch.block.index();
         const Vector3i last = (first.array() + (factor - 1)).min(cells.max.array());
         for (int k = first.z(); k <= last.z(); ++k)
@@ -106,6 +107,7 @@ size_t GradientContact::giveCells(const ShellView& bone) noexcept {
                 for (int i = first.x(); i <= last.x(); ++i)
                     pieces_.add(bone.volume, {i, j, k}, split_[n], level);
     }
+    if (bone.may_coarsen) crowd_.finest = finest;
     return new_count;
 }
 

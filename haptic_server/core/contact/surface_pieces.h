@@ -17,7 +17,7 @@
 namespace bonemill {
 
 // It remembers how finely each patch near the tool is sampled. A patch that changed it while in contact would
-// change the energy, so it keeps it until it is no longer near.
+// change the energy, so it keeps it until it is no longer near, unless there are too many samples.
 //
 // It is a table of fixed size, searched in a few slots per patch; a patch that finds no slot is new every
 // time. It is RT-safe but for construction.

@@ -183,9 +183,12 @@ double GradientModel::reachOf(const Vector6d& step) const noexcept {
 void GradientModel::gather(const Pose& X_VT, double margin, SpoStep& out) noexcept {
     ++out.gatherings;
     X_VT_gathered_ = X_VT;
+    // Further gatherings of a tick look farther, and have more samples for once; a quick tool soon has other
+    // patches near.
+    const bool may_coarsen = out.gatherings == 1 && margin <= 2 * GradientContact::kFineWithin;
     const ShellView bone{
-        world_.volume,          world_.lattice,     world_.shell, level_, settings_.sample_spacing,
-        settings_.most_samples, affordable_samples_};
+        world_.volume,          world_.lattice,      world_.shell, level_, settings_.sample_spacing,
+        settings_.most_samples, affordable_samples_, may_coarsen};
     out.has_contact_overflow |= !contact_.gather(bone, *field_, X_VT, margin, pointTestsLeft());
     out.has_fewer_samples |= contact_.hasFewerSamples();
     out.candidates = uint32_t(contact_.candidateCount());

@@ -310,8 +310,8 @@ struct Kernels {
     void (*add_hat)(const VoxelHat& hat, float area, float drop, float* drops, float* weights);
     // The same for weights alone, where there are any.
     void (*add_hat_where_any)(const VoxelHat& hat, float area, float* weights);
-    // Appends the triangles in these cells; all but `finest` is written.
-    // Returns how many there are.
+    // Appends the triangles in these cells; all but `finest` is written, and up to kCellLanes behind the
+    // last. Returns how many there are.
     int (*cell_triangles)(const CellArrays& cells, const int* triangles, const CellPlaces& places,
                           const SurfaceTriangles& out);
     // Writes the halves of these pieces: the first ones from `to` on, the others so much farther as it

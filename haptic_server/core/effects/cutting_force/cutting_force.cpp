@@ -49,6 +49,8 @@ Matrix6d dampingOf(const RubbingSums& sums) noexcept {
 class RubbingContacts {
   public:
     explicit RubbingContacts(const RubbingMotion& motion) noexcept : motion_(motion) {}
+    RubbingContacts(const RubbingContacts&) = delete;  // points into itself
+    RubbingContacts& operator=(const RubbingContacts&) = delete;
 
     // spread, m², and rho, m: see burr_speed.h.
     void add(const SurfaceContact& contact, double spread, double rho) noexcept {

@@ -195,6 +195,12 @@ TEST(GradientContact, SamplesLessFinelyWhenThereIsNoTime) {
     ASSERT_TRUE(contact.gather(view, tool, X_VT, kMargin));
     EXPECT_FALSE(contact.hasFewerSamples());
     EXPECT_EQ(contact.candidateCount(), all);
+    // Also those that were near all the while.
+    for (int n = 0; n < 50; ++n) ASSERT_TRUE(contact.gather(view, tool, X_VT, kMargin, kFew));
+    EXPECT_TRUE(contact.hasFewerSamples());
+    ASSERT_TRUE(contact.gather(view, tool, X_VT, kMargin));
+    EXPECT_FALSE(contact.hasFewerSamples());
+    EXPECT_EQ(contact.candidateCount(), all);
 }
 
 // Patches keep the fineness that they had when they came near, and have more and more pieces in reach as the
@@ -210,7 +216,13 @@ TEST(GradientContact, ManyKnownPatchesAreCutLessFinelyAFewAtATime) {
     ASSERT_TRUE(contact.gather(scene.view(settings), tool, X_VT, kMargin));
     X_VT.position.z() -= 60e-6;
     ASSERT_TRUE(contact.gather(scene.view(settings), tool, X_VT, kMargin));
-    EXPECT_GT(contact.candidateCount(), 250u);
+    const size_t at_first = contact.candidateCount();
+    EXPECT_GT(at_first, 250u);
+    // Not in a gathering for once.
+    ShellView for_once = scene.view(settings);
+    for_once.may_coarsen = false;
+    for (int n = 0; n < 10; ++n) ASSERT_TRUE(contact.gather(for_once, tool, X_VT, kMargin));
+    EXPECT_EQ(contact.candidateCount(), at_first);
     const auto force = [&] { return contact.evaluate<double>(tool, X_VT).term.wrench.force.z(); };
     double before = force();
     ASSERT_GT(before, 0.5);

@@ -84,9 +84,7 @@ TEST(GradientModel, SaysSoWhenItFindsNoWayToBalance) {
             stalled += step.has_stalled;
             spo = step.X_VT;
         }
-        // The energy is another one where crowded patches are cut less finely: then there may be a way.
-        EXPECT_GE(stalled, is_hard ? 35 : 0);
-        EXPECT_LE(stalled, is_hard ? 40 : 0);
+        EXPECT_EQ(stalled, is_hard ? 40 : 0);
     }
 }
 
