@@ -75,8 +75,8 @@ class TouchingPoints {
 
     // Single precision finds those that may touch.
     void find(size_t first, int count) noexcept {
-        constexpr bool is_exact = sizeof(Scalar) == sizeof(float);
-        const float beside = is_exact ? 0 : float(2 * tool_.distanceError());
+        constexpr bool kIsExact = sizeof(Scalar) == sizeof(float);
+        const float beside = kIsExact ? 0 : float(2 * tool_.distanceError());
         roughly_into_tool_.fill(rough_batch_, &c_.x[first], &c_.y[first], &c_.z[first], count);
         tool_.distances(rough_batch_, rough_distance_);
         uint32_t* const found = touching_ + touching_count_;
@@ -85,7 +85,7 @@ class TouchingPoints {
             found[found_count] = uint32_t(first) + uint32_t(i);
             found_count += rough_distance_[i] < beside;
         }
-        touching_count_ += is_exact ? found_count : keepTouching(found, found_count);
+        touching_count_ += kIsExact ? found_count : keepTouching(found, found_count);
         if (touching_count_ >= kBatch) sum(kBatch);
     }
     GradientContactResult result() noexcept {

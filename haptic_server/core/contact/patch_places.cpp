@@ -1,6 +1,5 @@
 // Samples the patches near the tool more finely.
 #include <algorithm>
-#include <ranges>
 #include <utility>
 
 #include "haptic_server/core/contact/gradient_contact.h"
@@ -139,7 +138,9 @@ void GradientContact::takePieces() noexcept {
     const size_t first = c.count, count = std::min(countPieces(), c.capacity() - first);
     float *x = &c.x[first], *y = &c.y[first], *z = &c.z[first], *nearest = &c.nearest[first];
     uint32_t *next = next_place_.data(), *source = source_.data();
-    for (const SurfacePiece& piece : std::views::reverse(pieces_.finished())) {
+    const auto pieces = pieces_.finished();
+    for (size_t n = pieces.size(); n-- > 0;) {
+        const SurfacePiece& piece = pieces[n];
         const size_t place = next[piece.patch]++;
         if (place >= count) continue;
         x[place] = piece.centroid.x(), y[place] = piece.centroid.y(), z[place] = piece.centroid.z();
