@@ -40,17 +40,6 @@ void expectBalance(const MillingRig& rig, double specific_energy, double toleran
     EXPECT_NEAR(rig.removedVolume() * specific_energy / work, 1, tolerance);
 }
 
-// Returns by how much Σ u ΔV is ahead of ∫ P dt, as a share of that in the end: the mean of the last ticks.
-double meanLead(const MillingRig& rig, size_t ticks) {
-    double lead = 0, sum = 0;
-    for (size_t n = 0; n < rig.records.size(); ++n) {
-        const auto& of_tick = rig.records[n].effects;
-        lead += double(of_tick.removed_energy) - double(of_tick.removal_power) / rig.config.rate;
-        if (n + ticks >= rig.records.size()) sum += lead;
-    }
-    return sum / double(ticks) / rig.work();
-}
-
 TEST(EnergyRemoval, SpendsTheWorkOfFrictionOnTheBone) {
     struct Case {
         Vector3d spacing_mm;
@@ -369,7 +358,7 @@ TEST(EnergyRemoval, LeavesTakeTurnsUnderABurrWithTooManyContacts) {
     // ms.
     const size_t turns = turning.records.back().contacts / kFewContacts + 1;
     EXPECT_GT(turns, 3u);
-    EXPECT_NEAR(meanLead(turning, turns), 0, 5e-3 / 0.2);
+    EXPECT_NEAR(turning.meanLead(turns), 0, 5e-3 / 0.2);
     EXPECT_NEAR(turning.removedVolume() * config.removal.specific_energy / turning.removedEnergy(), 1, 0.01);
     for (size_t n = 100; n < turning.records.size(); ++n)
         EXPECT_NEAR(turning.records[n].f_hand_W[2], kPress, 0.02 * kPress) << n;
