@@ -142,18 +142,6 @@ class MillingRig final : private TickIo {
         for (const TickRecord& r : records) sum += double(r.effects.removed_energy);
         return sum;
     }
-    // By how much removedEnergy() is ahead of work(), as a share of that in the end: the mean of the last
-    // ticks.
-    double meanLead(size_t ticks) const {
-        double lead = 0, sum = 0;
-        for (size_t n = 0; n < records.size(); ++n) {
-            const auto& effects = records[n].effects;
-            lead +=
-                double(effects.removed_energy) - double(effects.removal_power) * config.periods / config.rate;
-            if (n + ticks >= records.size()) sum += lead;
-        }
-        return sum / double(ticks) / work();
-    }
     Eigen::Vector3d position() const { return spo_; }
     // Returns how far the simulated tool was from the hand at most, from this tick on, m.
     double largestLag(size_t from = 0) const {
