@@ -148,11 +148,14 @@ RealtimeReport makeThreadRealtime(const RealtimeRequest& request) {
     return report;
 }
 
-RealtimeReport lockMemory() {
-    RealtimeReport report;
-    // The heap must not give pages back, or the next allocation faults them in again.
+void keepFreedHeap() noexcept {
     mallopt(M_TRIM_THRESHOLD, -1);
     mallopt(M_MMAP_MAX, 0);
+}
+
+RealtimeReport lockMemory() {
+    RealtimeReport report;
+    keepFreedHeap();
     std::string reason;
     if (!mayLockAnything()) {
         reason = "the limit is not 'unlimited'";

@@ -36,6 +36,9 @@ struct RealtimeReport {
 // Gives the calling thread SCHED_FIFO, pins it and prefaults its stack.
 RealtimeReport makeThreadRealtime(const RealtimeRequest& request);
 
+// From now on freed heap stays with the process: given back, its pages would be faulted in again by whoever
+// asks for memory next. It is for programs that take and free megabytes again and again.
+void keepFreedHeap() noexcept;
 // Keeps all present and future pages of the process in memory, and freed heap with the process.
 RealtimeReport lockMemory();
 

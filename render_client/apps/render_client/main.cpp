@@ -1,5 +1,4 @@
 // render_client shows a session (docs/reference/viewer.md), or does here what needs no picture.
-#include <malloc.h>
 #include <spdlog/spdlog.h>
 
 #include <fstream>
@@ -15,6 +14,7 @@
 #include "common/process/run_program.h"
 #include "common/process/standard_output.h"
 #include "common/process/supervisor.h"
+#include "common/rt/realtime.h"
 #include "common/secrets/secrets.h"
 #include "common/tcp/listen.h"
 #include "render_client/apps/render_client/scene_feed.h"
@@ -193,12 +193,6 @@ int runSendCommand(const ClientOptions& options) {
 // Mesa crashes where it gets no memory to draw and to compile shaders in.
 constexpr size_t kPictureBytes = size_t(1) << 30;
 
-// Every picture takes and frees some MB: given back, their pages would be faulted in again for the next one.
-void keepFreedHeap() {
-    mallopt(M_TRIM_THRESHOLD, -1);
-    mallopt(M_MMAP_MAX, 0);
-}
-
 int view(int argc, char** argv) {
     auto options = parseOptions(argc, argv);
     hideTokens(argc, argv);
@@ -215,7 +209,7 @@ int view(int argc, char** argv) {
     if (options->serve) return runGateway(*options);
     if (options->command) return runSendCommand(*options);
     requireMemory(kPictureBytes, "the pictures");
-    keepFreedHeap();
+    keepFreedHeap();  // every picture takes and frees some MB
     if (options->measure) {
         runMeasurement(*options);
     } else if (options->offscreen && options->offscreen->video) {
