@@ -2,19 +2,17 @@
 
 #include <algorithm>
 
-#include "haptic_server/core/contact/cell_corners.h"
+#include "haptic_server/core/volume/density_view.h"
 #include "haptic_server/core/volume/marching_cubes_table.h"
 
 namespace bonemill {
 SurfaceCells::SurfaceCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_cells)
-    : triangles_(packedCubeTriangles()), crossed_(leaf_cells) {
+    : triangles_(packedCubeTriangles()), crossed_(leaf_cells), cells_(size_t(leaf_cells.prod())) {
     const double unit = volume.spacing().maxCoeff();
     steps_ = (volume.spacing() / unit).cast<float>();
     unit_area_ = float(unit * unit);
     const size_t most = size_t(leaf_cells.prod()) + kCellLanes;
-    cell_.resize(most);
-    inside_.resize(most);
-    is_found_.resize(most);
+    for (auto* values : {&inside_, &all_inside_, &place_, &is_found_}) values->resize(most);
     for (auto& values : excess_) values.resize(most);
     for (auto* values : {&area_, &x_, &y_, &z_, &to_x_, &to_y_, &to_z_, &normal_x_, &normal_y_, &normal_z_})
         values->resize(most);
@@ -24,7 +22,7 @@ CellArrays SurfaceCells::arrays() const noexcept {
     CellArrays arrays;
     for (int corner = 0; corner < 8; ++corner) arrays.excess[corner] = excess_[corner].data();
     arrays.inside = inside_.data();
-    arrays.count = int(count_);
+    arrays.count = int(cells_.count());
     return arrays;
 }
 
@@ -36,7 +34,7 @@ void SurfaceCells::collect(const VoxelVolume& volume, const Eigen::Vector3i& lea
 }
 
 void SurfaceCells::project(const ShellProjection& projection) noexcept {
-    const size_t padded = (count_ + kCellLanes - 1) / kCellLanes * kCellLanes;
+    const size_t padded = (cells_.count() + kCellLanes - 1) / kCellLanes * kCellLanes;
     std::copy_n(x_.begin(), padded, to_x_.begin());
     std::copy_n(y_.begin(), padded, to_y_.begin());
     std::copy_n(z_.begin(), padded, to_z_.begin());
@@ -48,7 +46,7 @@ void SurfaceCells::project(const ShellProjection& projection) noexcept {
 
 void SurfaceCells::findCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
                              const IndexBox& cells) noexcept {
-    count_ = 0;
+    cells_.clear();
     const Eigen::Vector3i size = cells.max - cells.min + Eigen::Vector3i::Ones();
     crossed_.find(
         size,
@@ -64,18 +62,12 @@ void SurfaceCells::findCells(const VoxelVolume& volume, const Eigen::Vector3i& l
                     sides + row_size * size_t(at.y()) + at.x());
             });
         },
-        [&](int i, int j, int k, int inside) {
-            addCell(volume, leaf_first, cells.min + Eigen::Vector3i(i, j, k), inside);
+        [&](int i, int j, int k, int /*inside*/) {
+            cells_.add(cells.min - leaf_first + Eigen::Vector3i(i, j, k));
         });
-}
-
-void SurfaceCells::addCell(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
-                           const Eigen::Vector3i& cell, int corners_inside) noexcept {
-    const CellCorners corners = readCorners(volume, cell);
-    for (size_t c = 0; c < 8; ++c) excess_[c][count_] = corners.excess[c];
-    const Eigen::Vector3i local = cell - leaf_first;
-    cell_[count_] = {uint16_t(local.x()), uint16_t(local.y()), uint16_t(local.z())};
-    inside_[count_++] = corners_inside;
+    ReadCells read{all_inside_.data(), {}, inside_.data(), place_.data()};
+    for (size_t c = 0; c < 8; ++c) read.excess[c] = excess_[c].data();
+    kernels().read_cells(densityView(volume), cells_.list(leaf_first), read);
 }
 
 }  // namespace bonemill

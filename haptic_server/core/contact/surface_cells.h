@@ -2,10 +2,9 @@
 // but for the construction, and for the tick thread only.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <vector>
 
+#include "haptic_server/core/contact/cell_indices.h"
 #include "haptic_server/core/contact/shell_point.h"
 #include "haptic_server/core/kernels/kernels.h"
 #include "haptic_server/core/volume/crossed_cells.h"
@@ -22,10 +21,10 @@ class SurfaceCells {
     // patches. `leaf_first` is the first cell of the leaf that holds them all.
     void collect(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
                  const IndexBox& cells) noexcept;
-    size_t count() const noexcept { return count_; }
+    size_t count() const noexcept { return cells_.count(); }
 
     // The cell is counted from the leaf's first one.
-    Eigen::Vector3i cell(size_t n) const noexcept { return {cell_[n][0], cell_[n][1], cell_[n][2]}; }
+    Eigen::Vector3i cell(size_t n) const noexcept { return cells_[n]; }
     // The area is in m², and zero where the surface only touches a voxel.
     float area(size_t n) const noexcept { return area_[n] * unit_area_; }
     // They are cell steps from the cell's first corner, of patches with an area.
@@ -43,8 +42,6 @@ class SurfaceCells {
   private:
     void findCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
                    const IndexBox& cells) noexcept;
-    void addCell(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first, const Eigen::Vector3i& cell,
-                 int corners_inside) noexcept;
     CellArrays arrays() const noexcept;
 
     std::vector<int> triangles_;  // of each set of inside corners
@@ -52,9 +49,8 @@ class SurfaceCells {
     float unit_area_;             // m²
     CrossedCells crossed_;
 
-    size_t count_ = 0;
-    std::vector<std::array<uint16_t, 3>> cell_;
-    std::vector<int> inside_;       // which corners are inside the bone
+    CellIndices cells_;
+    std::vector<int> inside_, all_inside_, place_;  // which corners are inside the bone; the others repeat that
     std::vector<float> excess_[8];  // density minus iso at the corners, counts
     std::vector<float> area_, x_, y_, z_;
     std::vector<float> to_x_, to_y_, to_z_, normal_x_, normal_y_, normal_z_;

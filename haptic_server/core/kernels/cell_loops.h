@@ -31,6 +31,27 @@ inline void gather(const T* table, const Ints& index, Vector& out) {
 }
 #endif
 
+// Writes the lanes that are wanted, of kCellLanes, side by side to out, which has room for all. Returns how many.
+#if defined(__AVX512F__)
+template <class T>
+inline int packLanes(const T* lanes, const int* is_wanted, T* out) {
+    const __m512i wanted = _mm512_load_si512(is_wanted);
+    const __mmask16 mask = _mm512_test_epi32_mask(wanted, wanted);
+    _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(mask, _mm512_load_si512(lanes)));
+    return __builtin_popcount(mask);
+}
+#else
+template <class T>
+inline int packLanes(const T* lanes, const int* is_wanted, T* out) {
+    int count = 0;
+    for (int l = 0; l < kCellLanes; ++l) {
+        out[count] = lanes[l];
+        count -= is_wanted[l];  // a true comparison is -1
+    }
+    return count;
+}
+#endif
+
 // Finds where the density, linear along each edge, equals iso, for kWidth cells: [edge][lane], as a share of
 // the edge. Edges that are not crossed hold anything.
 void crossings(const CellArrays& cells, int first, float (&at)[12 * kWidth]) {
@@ -259,6 +280,48 @@ void readCells(const DensityView& d, const Ints& i, const Ints& j, const Ints& k
         e[2 * n] = __builtin_convertvector(pair & 0xffff, Floats) - iso;
         e[2 * n + 1] = __builtin_convertvector(pair >> 16 & 0xffff, Floats) - iso;
     }
+}
+
+// kCellLanes cells on their way into the arrays.
+struct CellLanes {
+    alignas(64) float excess[8][kCellLanes];
+    alignas(64) int inside[kCellLanes], place[kCellLanes], is_crossed[kCellLanes];
+};
+
+// Reads kWidth cells from `first` of the list on.
+inline void readLanes(const DensityView& density, const CellList& cells, int first, CellLanes& out) {
+    const int to = first % kCellLanes;
+    Ints lane, i, j, k, inside{};
+    countLanes(lane);
+    lane += first;
+    load(cells.i + first, i), load(cells.j + first, j), load(cells.k + first, k);
+    const Ints is_one = lane < cells.count;
+    const Ints anywhere = Ints{} - 1;
+    i = is_one ? i + cells.first[0] : anywhere;
+    j = is_one ? j + cells.first[1] : anywhere;
+    k = is_one ? k + cells.first[2] : anywhere;
+    Floats e[8];
+    readCells(density, i, j, k, e);
+    for (int c = 0; c < 8; ++c) {
+        inside |= (e[c] >= 0) & 1 << c;
+        store(e[c], out.excess[c] + to);
+    }
+    store(inside, out.inside + to), store(lane, out.place + to);
+    store(is_one & (inside != 0) & (inside != 255), out.is_crossed + to);
+}
+
+int readListedCells(const DensityView& density, const CellList& cells, const ReadCells& out) {
+    const DensityView d = density;
+    int crossed = 0;
+    for (int first = 0; first < cells.count; first += kCellLanes) {
+        CellLanes lanes;
+        for (int part = 0; part < kCellLanes; part += kWidth) readLanes(d, cells, first + part, lanes);
+        __builtin_memcpy(out.inside + first, lanes.inside, sizeof lanes.inside);
+        for (int c = 0; c < 8; ++c) packLanes(lanes.excess[c], lanes.is_crossed, out.excess[c] + crossed);
+        packLanes(lanes.inside, lanes.is_crossed, out.crossed_inside + crossed);
+        crossed += packLanes(lanes.place, lanes.is_crossed, out.place + crossed);
+    }
+    return crossed;
 }
 
 void moveOntoSurface(const DensityView& density, int steps, const SurfacePoints& points) {

@@ -170,6 +170,21 @@ struct CellPatches {
     float* area;  // in squares of the unit of `steps`
     float *x, *y, *z;
 };
+// Cells of a volume by their indices, -1 .. dims-1, which count from `first`; the arrays go on to the next multiple
+// of kCellLanes.
+struct CellList {
+    const int *i, *j, *k;
+    int first[3];
+    int count;
+};
+// What densities make of a list of cells; the arrays have room for kCellLanes more.
+struct ReadCells {
+    int* inside;  // of each: which corners are inside, bit by corner
+    // Those that the surface crosses, side by side in the list's order, and their places in it.
+    float* excess[8];  // density minus iso at the corners
+    int* crossed_inside;
+    int* place;
+};
 // Projects a point of each cell onto its trilinear iso-surface.
 struct CellProjections {
     float *x, *y, *z;  // in: where it starts; out: where it ended
@@ -268,6 +283,15 @@ struct VoxelHat {
     size_t stride_y, stride_z;
 };
 
+// The voxels with a weight around places, from low to high at most: the first and how many on each axis, none
+// or fewer where there is none. The arrays go on to the next multiple of kCellLanes.
+struct HatBoxes {
+    const float* at[3];  // voxel steps
+    float width;
+    int low[3], high[3];  // voxels
+    int *first[3], *count[3];
+};
+
 struct Kernels {
     PointKernels<float> single;
     PointKernels<double> twice;
@@ -289,6 +313,8 @@ struct Kernels {
     // all in the core of `place`. Both planes' rows are kBrickStrideY apart.
     LaidPlane (*lay_plane)(const BurrPlane& place, const uint16_t* shall, const uint16_t* first, int count,
                            int rows, uint16_t* out);
+    // Returns how many of these cells the surface crosses.
+    int (*read_cells)(const DensityView& density, const CellList& cells, const ReadCells& out);
     // triangles[kTrianglesPerCell * inside + triangle] has the crossed edges a + 16 b + 256 c of the cell,
     // not all zero; it is zero beyond the last triangle.
     void (*cell_patches)(const CellArrays& cells, const int* triangles, const float steps[3],
@@ -305,6 +331,7 @@ struct Kernels {
     // Takes a step down into the bone from each place. By its drop all corners of the cell there must fall,
     // so that the surface comes to it; those that come to rest at zero leave the rest to the others.
     void (*sink_surface)(const DensityView& density, const SinkingPoints& points);
+    void (*hat_boxes)(const HatBoxes& boxes, int count);
     // Adds the hat's weights times the area, and those times the drop, to sums whose first ones are those of
     // the hat's first voxel. Rows may be read and written up to kCellLanes - 1 beyond their ends.
     void (*add_hat)(const VoxelHat& hat, float area, float drop, float* drops, float* weights);

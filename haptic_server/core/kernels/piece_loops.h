@@ -52,24 +52,6 @@ struct TriangleLanes {
     alignas(64) int is_one[kCellLanes];
 };
 
-// Writes the lanes that are wanted side by side to out, which has room for all kCellLanes. Returns how many.
-#if defined(__AVX512F__)
-inline int packLanes(const float* lanes, const int* is_wanted, float* out) {
-    const __mmask16 mask = _mm512_test_epi32_mask(_mm512_load_si512(is_wanted), _mm512_load_si512(is_wanted));
-    _mm512_storeu_ps(out, _mm512_maskz_compress_ps(mask, _mm512_load_ps(lanes)));
-    return __builtin_popcount(mask);
-}
-#else
-inline int packLanes(const float* lanes, const int* is_wanted, float* out) {
-    int count = 0;
-    for (int l = 0; l < kCellLanes; ++l) {
-        out[count] = lanes[l];
-        count -= is_wanted[l];  // a true comparison is -1
-    }
-    return count;
-}
-#endif
-
 int appendTriangles(const TriangleLanes& lanes, int first_cell, int count, const SurfaceTriangles& out) {
     float* const to[] = {out.corner[0], out.corner[1], out.corner[2], out.corner[3], out.corner[4],
                          out.corner[5], out.corner[6], out.corner[7], out.corner[8], out.area,

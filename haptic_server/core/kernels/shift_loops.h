@@ -68,6 +68,28 @@ void sinkSurface(const DensityView& density, const SinkingPoints& points) {
     }
 }
 
+inline void floorOf(const Floats& v, Ints& out) {
+    const Ints towards_zero = __builtin_convertvector(v, Ints);
+    out = towards_zero + (v < __builtin_convertvector(towards_zero, Floats));  // a true comparison is -1
+}
+
+void hatBoxes(const HatBoxes& boxes, int count) {
+    const HatBoxes b = boxes;
+    for (int axis = 0; axis < 3; ++axis)
+        for (int first = 0; first < count; first += kWidth) {
+            Floats at;
+            load(b.at[axis] + first, at);
+            Ints low, high;
+            floorOf(at - b.width, low);
+            floorOf(-(at + b.width), high);
+            low += 1, high = -high - 1;
+            low = low < b.low[axis] ? Ints{} + b.low[axis] : low;
+            high = high > b.high[axis] ? Ints{} + b.high[axis] : high;
+            store(low, b.first[axis] + first);
+            store(high - low + 1, b.count[axis] + first);
+        }
+}
+
 // Calls take(offset of the row, kWidth weights by area) for the hat's rows, with zero beyond their ends.
 template <class Take>
 inline void forEachHatPart(const VoxelHat& hat, float area, Take&& take) {

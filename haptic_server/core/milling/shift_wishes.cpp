@@ -90,8 +90,13 @@ void SurfaceShift::spreadWishes(const BoneModel& bone, SpecificEnergy& u, double
 void SurfaceShift::spread(const VoxelVolume& volume, const SinkingPoints& wishes,
                           const float* areas) noexcept {
     kernels().sink_surface(densityView(volume), wishes);
+    Hats hats;
+    std::copy_n(wishes.x, wishes.count, hats.x);
+    std::copy_n(wishes.y, wishes.count, hats.y);
+    std::copy_n(wishes.z, wishes.count, hats.z);
+    findBoxes(hats, wishes.count);
     for (int n = 0; n < wishes.count; ++n) {
-        const VoxelHat hat = hatAround({wishes.x[n], wishes.y[n], wishes.z[n]});
+        const VoxelHat hat = hatOf(hats, n);
         if (hat.count[0] == 0) continue;
         touch(hat);
         const size_t at = index({hat.first[0], hat.first[1], hat.first[2]});
@@ -103,15 +108,30 @@ void SurfaceShift::spread(const VoxelVolume& volume, const SinkingPoints& wishes
 void SurfaceShift::spreadRest(const BoneModel& bone) noexcept {
     const Vector3f inverse = bone.volume.spacing().cwiseInverse().cast<float>();
     const Eigen::Array3f first = touched_.min.cast<float>(), last = touched_.max.cast<float>();
+    Hats hats;
+    float areas[kSinkBatch];
+    int count = 0;
     for (const NearPatch& patch : std::span(near_).first(near_count_)) {
         if (orders_[patch.node].energy > 0) continue;
         const Vector3f at = patch.at.cwiseProduct(inverse);
         const bool is_far =
             (at.array() - float(block_) >= last).any() || (at.array() + float(block_) <= first).any();
         if (is_far) continue;
-        const VoxelHat hat = hatAround(at);
+        hats.x[count] = at.x(), hats.y[count] = at.y(), hats.z[count] = at.z();
+        areas[count++] = patch.area;
+        if (count < kSinkBatch) continue;
+        addRest(hats, areas, count);
+        count = 0;
+    }
+    addRest(hats, areas, count);
+}
+
+void SurfaceShift::addRest(Hats& hats, const float* areas, int count) noexcept {
+    findBoxes(hats, count);
+    for (int n = 0; n < count; ++n) {
+        const VoxelHat hat = hatOf(hats, n);
         if (isAnyTouched(hat))
-            kernels().add_hat_where_any(hat, patch.area,
+            kernels().add_hat_where_any(hat, areas[n],
                                         &weights_[index({hat.first[0], hat.first[1], hat.first[2]})]);
     }
 }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "haptic_server/core/contact/cell_corners.h"
 #include "haptic_server/core/volume/floor_index.h"
 
 namespace bonemill {
@@ -60,9 +59,11 @@ SurfaceShift::SurfaceShift(const BoneModel& bone, double largest_reach, size_t m
       patches_(most_contacts),
       near_(orders_.size()),
       cells_(orders_.size()),
-      fills_before_(orders_.size()),
-      fills_after_(orders_.size()),
-      has_bone_(orders_.size()),
+      fills_before_(orders_.size() + kCellLanes),
+      fills_after_(fills_before_.size()),
+      inside_(fills_before_.size()),
+      unknown_(orders_.size()),
+      unknown_at_(orders_.size()),
       old_(size_t(size_.x() + VoxelVolume::kReadSlack)),
       fresh_(size_t(size_.x())),
       collector_(bone.lattice, size_, most_cells) {}
@@ -120,19 +121,24 @@ void SurfaceShift::add(const BoneModel& bone, PatchId patch, double energy, doub
     order.depth = std::max(order.depth, float(depth));
 }
 
-// It has the voxels that can be written; `at` in voxel steps.
-VoxelHat SurfaceShift::hatAround(const Vector3f& at) const noexcept {
-    const Vector3f width = Vector3f::Constant(float(block_));
-    const Vector3i low = (floorIndices(at - width).array() + 1).max(room_.min.array());
-    const Vector3i high = (ceilIndices(at + width).array() - 1).min(room_.max.array());
-    VoxelHat hat{.at = {at.x(), at.y(), at.z()},
-                 .width = width.x(),
-                 .first = {low.x(), low.y(), low.z()},
-                 .count = {},
+void SurfaceShift::findBoxes(Hats& hats, int count) const noexcept {
+    HatBoxes boxes{{hats.x, hats.y, hats.z}, float(block_), {}, {}, {}, {}};
+    for (int axis = 0; axis < 3; ++axis) {
+        boxes.low[axis] = room_.min[axis], boxes.high[axis] = room_.max[axis];
+        boxes.first[axis] = hats.first[axis], boxes.count[axis] = hats.count[axis];
+    }
+    kernels().hat_boxes(boxes, count);
+}
+
+// It has the voxels that can be written; none on any axis, none at all.
+VoxelHat SurfaceShift::hatOf(const Hats& hats, int n) const noexcept {
+    VoxelHat hat{.at = {hats.x[n], hats.y[n], hats.z[n]},
+                 .width = float(block_),
+                 .first = {hats.first[0][n], hats.first[1][n], hats.first[2][n]},
+                 .count = {hats.count[0][n], hats.count[1][n], hats.count[2][n]},
                  .stride_y = size_t(size_.x()),
                  .stride_z = size_t(size_.x()) * size_t(size_.y())};
-    const bool is_empty = (low.array() > high.array()).any();
-    for (int axis = 0; axis < 3; ++axis) hat.count[axis] = is_empty ? 0 : high[axis] - low[axis] + 1;
+    if (std::min({hat.count[0], hat.count[1], hat.count[2]}) <= 0) hat.count[0] = hat.count[1] = hat.count[2] = 0;
     return hat;
 }
 
@@ -235,49 +241,26 @@ void SurfaceShift::forEachCell(const VoxelVolume& volume, Visit&& visit) const n
 
 // Lists the cells that may lose bone, and measures how much they have.
 void SurfaceShift::findCells(const VoxelVolume& volume) noexcept {
-    cell_count_ = 0;
+    cells_.clear(), unknown_.clear();
     forEachCell(volume, [&](const Vector3i& cell) {
-        if (const CellBone* known = known_bone_.find(cell)) {
-            if (!known->at_corners) return;
-            cells_[cell_count_] = cell;
-            fills_before_[cell_count_++] = known->fill;
-            return;
+        const CellBone* known = known_bone_.find(cell);
+        if (known && !known->at_corners) return;
+        if (known) {
+            fills_before_[cells_.count()] = known->fill;
+        } else {
+            unknown_at_[unknown_.count()] = cells_.count();
+            unknown_.add(cell);
         }
-        const CellCorners corners = readCorners(volume, cell);
-        const int inside = corners.inside();
-        if (inside == 0) return;
-        cells_[cell_count_] = cell;
-        measure(cell_count_++, corners, inside, fills_before_);
+        cells_.add(cell);
     });
-    finishMeasuring(fills_before_);
+    fills_.measure(volume, unknown_.list(), fills_after_.data(), inside_.data());
+    for (size_t n = 0; n < unknown_.count(); ++n) fills_before_[unknown_at_[n]] = fills_after_[n];
 }
 
 void SurfaceShift::measureAgain(const VoxelVolume& volume) noexcept {
-    for (size_t n = 0; n < cell_count_; ++n) {
-        const CellCorners corners = readCorners(volume, cells_[n]);
-        const int inside = corners.inside();
-        has_bone_[n] = inside != 0;
-        measure(n, corners, inside, fills_after_);
-    }
-    finishMeasuring(fills_after_);
-    for (size_t n = 0; n < cell_count_; ++n)
-        known_bone_.remember(cells_[n], {fills_after_[n], has_bone_[n] != 0});
-}
-
-// Those that the surface crosses wait for others.
-void SurfaceShift::measure(size_t cell, const CellCorners& corners, int inside,
-                           std::vector<float>& fills) noexcept {
-    if (inside == 0 || inside == 255) {
-        fills[cell] = inside == 0 ? 0 : 1;
-        return;
-    }
-    crossed_[fills_.count()] = cell;
-    fills_.add(corners, inside);
-    if (fills_.isFull()) finishMeasuring(fills);
-}
-
-void SurfaceShift::finishMeasuring(std::vector<float>& fills) noexcept {
-    fills_.take([&](int n, float fill) { fills[crossed_[n]] = fill; });
+    fills_.measure(volume, cells_.list(), fills_after_.data(), inside_.data());
+    for (size_t n = 0; n < cells_.count(); ++n)
+        known_bone_.remember(cells_[n], {fills_after_[n], inside_[n] != 0});
 }
 
 double SurfaceShift::apply(BoneModel& bone, SpecificEnergy& u, double share, size_t ticks,
@@ -298,7 +281,7 @@ double SurfaceShift::apply(BoneModel& bone, SpecificEnergy& u, double share, siz
     measureAgain(bone.volume);
     known_at_write_ = bone.lattice.writeCount();
     double spent = 0;
-    for (size_t n = 0; n < cell_count_; ++n)
+    for (size_t n = 0; n < cells_.count(); ++n)
         if (const double gone = double(fills_before_[n]) - double(fills_after_[n]); gone != 0)
             spent += u.ofCell(cells_[n]) * gone;
     return spent * bone.volume.voxelVolume();

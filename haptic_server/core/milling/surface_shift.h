@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "haptic_server/core/bone/bone_model.h"
+#include "haptic_server/core/contact/cell_indices.h"
 #include "haptic_server/core/milling/cell_fill.h"
 #include "haptic_server/core/milling/cell_memory.h"
 #include "haptic_server/core/milling/change_collector.h"
@@ -78,15 +79,20 @@ class SurfaceShift {
     void spread(const VoxelVolume& volume, const SinkingPoints& wishes, const float* areas) noexcept;
     void spreadRest(const BoneModel& bone) noexcept;
     void leaveOutRestInsideBurr(const VoxelVolume& volume) noexcept;
-    VoxelHat hatAround(const Eigen::Vector3f& at) const noexcept;
+    // Places whose hats are looked at together, in voxel steps.
+    struct Hats {
+        alignas(64) float x[kSinkBatch], y[kSinkBatch], z[kSinkBatch];
+        alignas(64) int first[3][kSinkBatch], count[3][kSinkBatch];
+    };
+    void findBoxes(Hats& hats, int count) const noexcept;
+    VoxelHat hatOf(const Hats& hats, int n) const noexcept;
+    void addRest(Hats& hats, const float* areas, int count) noexcept;
     template <class Visit>
     bool forEachRow(const VoxelHat& hat, Visit&& visit) const noexcept;
     template <class Visit>
     void forEachCell(const VoxelVolume& volume, Visit&& visit) const noexcept;
     void findCells(const VoxelVolume& volume) noexcept;
     void measureAgain(const VoxelVolume& volume) noexcept;
-    void measure(size_t cell, const CellCorners& corners, int inside, std::vector<float>& fills) noexcept;
-    void finishMeasuring(std::vector<float>& fills) noexcept;
     void touch(const VoxelHat& hat) noexcept;
     void forgetVoxel(const Eigen::Vector3i& voxel) noexcept;
     bool isAnyTouched(const VoxelHat& hat) const noexcept;
@@ -98,7 +104,6 @@ class SurfaceShift {
     void forget() noexcept;
 
     CellFills fills_;
-    size_t crossed_[CellFills::kMost];                 // those that wait there
     Eigen::Vector3i size_;                             // of the scratch box
     Eigen::Vector3i first_ = Eigen::Vector3i::Zero();  // its first voxel
     IndexBox room_;                                    // of voxels that can be written
@@ -119,17 +124,18 @@ class SurfaceShift {
     std::vector<NearPatch> near_;  // the first near_count_
     size_t near_count_ = 0;
     IndexBox patch_cells_;  // blocks of those begin in it
-    // Cells with a touched voxel and some bone, and the shares of them that are bone; the first cell_count_.
-    std::vector<Eigen::Vector3i> cells_;
+    // Cells with a touched voxel that may have some bone, and the shares of them that are bone.
+    CellIndices cells_;
     std::vector<float> fills_before_, fills_after_;
-    std::vector<uint8_t> has_bone_;  // afterwards, at a corner
+    std::vector<int> inside_;  // which corners are, bit by corner
+    CellIndices unknown_;      // of these cells, and their places among them
+    std::vector<size_t> unknown_at_;
     struct CellBone {
         float fill;
         bool at_corners;
     };
     CellMemory<CellBone> known_bone_;  // as long as nobody else writes
     uint64_t known_at_write_ = 0;      // the lattice's after the last own one
-    size_t cell_count_ = 0;
     std::vector<Density> old_, fresh_;
     ChangeCollector collector_;
     bool is_too_fast_ = false;

@@ -43,6 +43,92 @@ struct Sinking {
     }
 };
 
+// Cells of every kind, in any order, at the volume's border too.
+TEST_P(ShiftKernels, ReadCellsAreTheVolumes) {
+    const VoxelVolume volume = volumeOf(
+        [&](const Vector3i& v) { return v.x() < 8 ? 0.0 : v.x() > 15 ? 6e4 : double(below(kMaxDensity)); });
+    for (int round = 0; round < 40; ++round) {
+        const int count = below(90);
+        const auto room = size_t(count) + kCellLanes;
+        std::vector<int> at[3], inside[2], crossed_inside[2], place[2];
+        for (auto& indices : at)
+            for (size_t n = 0; n < room; ++n) indices.push_back(below(kEdge + 1) - 1 + round);
+        const CellList cells{at[0].data(), at[1].data(), at[2].data(), {-round, -round, -round}, count};
+        std::vector<float> excess[2][8];
+        int crossed[2];
+        for (const int which : {0, 1}) {
+            for (auto* values : {&inside[which], &crossed_inside[which], &place[which]}) values->resize(room);
+            ReadCells out{inside[which].data(), {}, crossed_inside[which].data(), place[which].data()};
+            for (int c = 0; c < 8; ++c) {
+                excess[which][c].resize(room);
+                out.excess[c] = excess[which][c].data();
+            }
+            crossed[which] = (which ? ours() : oracle()).read_cells(densityView(volume), cells, out);
+        }
+        ASSERT_EQ(crossed[0], crossed[1]);
+        expectSameBits(inside[0], inside[1], count);
+        expectSameBits(crossed_inside[0], crossed_inside[1], crossed[0]);
+        expectSameBits(place[0], place[1], crossed[0]);
+        for (int c = 0; c < 8; ++c) expectSameBits(excess[0][c], excess[1][c], crossed[0]);
+        int next = 0;
+        for (size_t n = 0; n < size_t(count); ++n) {
+            const auto densityOf = [&](int c) {
+                return volume.at(at[0][n] - round + (c & 1), at[1][n] - round + (c >> 1 & 1),
+                                 at[2][n] - round + (c >> 2 & 1));
+            };
+            int corners = 0;
+            for (int c = 0; c < 8; ++c) corners |= int(densityOf(c) >= kIso) << c;
+            ASSERT_EQ(inside[1][n], corners);
+            if (corners == 0 || corners == 255) continue;
+            ASSERT_LT(next, crossed[1]);
+            ASSERT_EQ(place[1][size_t(next)], int(n));
+            ASSERT_EQ(crossed_inside[1][size_t(next)], corners);
+            for (int c = 0; c < 8; ++c)
+                ASSERT_EQ(excess[1][c][size_t(next)], float(int(densityOf(c)) - int(kIso)));
+            ++next;
+        }
+        EXPECT_EQ(next, crossed[1]);
+    }
+}
+
+// Also around whole numbers, and where the room for writing ends.
+TEST_P(ShiftKernels, HatBoxesAreTheVoxelsWithAWeight) {
+    constexpr int kLow[3] = {-1, 2, 0}, kHigh[3] = {9, 7, 11};
+    for (int round = 0; round < 40; ++round) {
+        const int count = 1 + below(70), width = 1 + below(3);
+        std::vector<float> at[3];
+        std::vector<int> first[2][3], counts[2][3];
+        HatBoxes boxes[2];
+        for (int axis = 0; axis < 3; ++axis) {
+            at[axis] = randoms<float>(count, -4, 14);
+            for (size_t n = 0; n < size_t(count); n += 3) at[axis][n] = std::round(at[axis][n]);
+            for (const int which : {0, 1}) {
+                first[which][axis].resize(at[axis].size()), counts[which][axis].resize(at[axis].size());
+                boxes[which].at[axis] = at[axis].data();
+                boxes[which].low[axis] = kLow[axis], boxes[which].high[axis] = kHigh[axis];
+                boxes[which].first[axis] = first[which][axis].data();
+                boxes[which].count[axis] = counts[which][axis].data();
+            }
+        }
+        boxes[0].width = boxes[1].width = float(width);
+        oracle().hat_boxes(boxes[0], count);
+        ours().hat_boxes(boxes[1], count);
+        for (int axis = 0; axis < 3; ++axis) {
+            expectSameBits(first[0][axis], first[1][axis], count);
+            expectSameBits(counts[0][axis], counts[1][axis], count);
+            for (size_t n = 0; n < size_t(count); ++n) {
+                int voxels = 0, least = kHigh[axis] + 1;
+                for (int v = kHigh[axis]; v >= kLow[axis]; --v)
+                    if (std::abs(float(v) - at[axis][n]) < float(width)) ++voxels, least = v;
+                EXPECT_EQ(std::max(counts[1][axis][n], 0), voxels);
+                if (voxels > 0) {
+                    EXPECT_EQ(first[1][axis][n], least);
+                }
+            }
+        }
+    }
+}
+
 // In a ramp of densities places sink straight down, and the densities fall by what they rise on the way.
 TEST_P(ShiftKernels, ARampFallsByWhatItRisesOverTheRecession) {
     const Vector3d slope(900, 500, 700);  // counts per voxel

@@ -2,32 +2,43 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
+#include "haptic_server/core/contact/cell_corners.h"
+#include "haptic_server/core/contact/cell_indices.h"
 #include "haptic_server/surface/mesh/mesh_check.h"
 #include "tests/support/voxel_fields.h"
 
 namespace bonemill {
 namespace {
 
-double fillOf(const CellCorners& corners) {
-    CellFills fills;
-    fills.add(corners, corners.inside());
-    double result = 0;
-    fills.take([&](int, float fill) { result = double(fill); });
-    return result;
+double filled(const VoxelVolume& volume) {
+    CellIndices cells(size_t((volume.dims().array() + 1).prod()));
+    forEachIndex({Eigen::Vector3i::Constant(-1), volume.dims().array() - 1},
+                 [&](const Eigen::Vector3i& cell) { cells.add(cell); });
+    std::vector<float> shares(cells.count() + kCellLanes);
+    std::vector<int> inside(shares.size());
+    CellFills().measure(volume, cells.list(), shares.data(), inside.data());
+    double sum = 0;
+    for (size_t n = 0; n < cells.count(); ++n) {
+        sum += double(shares[n]);
+        EXPECT_EQ(inside[n], readCorners(volume, cells[n]).inside());
+    }
+    return sum * volume.voxelVolume();
 }
 
-double filled(const VoxelVolume& volume) {
-    CellFills fills;
-    double sum = 0;
-    const auto take = [&] { fills.take([&](int, float fill) { sum += double(fill); }); };
-    forEachIndex({Eigen::Vector3i::Constant(-1), volume.dims().array() - 1},
-                 [&](const Eigen::Vector3i& cell) {
-                     const CellCorners corners = readCorners(volume, cell);
-                     fills.add(corners, corners.inside());
-                     if (fills.isFull()) take();
-                 });
-    take();
-    return sum * volume.voxelVolume();
+// Of the cell whose corners have these densities above iso.
+double fillOf(const std::function<double(const Eigen::Vector3d&)>& excess) {
+    VoxelVolume volume(test::boxGeometry({2, 2, 2}), 32768);
+    test::forEachVoxel(test::wholeBox(volume), [&](int i, int j, int k) {
+        volume.set(i, j, k, Density(volume.iso() + excess({double(i), double(j), double(k)})));
+    });
+    CellIndices cells(1);
+    cells.add({0, 0, 0});
+    float share[1 + kCellLanes];
+    int inside[1 + kCellLanes];
+    CellFills().measure(volume, cells.list(), share, inside);
+    return double(share[0]);
 }
 
 // This holds whatever the densities: all 256 kinds of cells occur, with every kind of neighbour.
@@ -48,15 +59,12 @@ TEST(CellFill, AddsUpToTheVolumeOfTheDrawnSurface) {
 
 TEST(CellFill, IsTheShareBelowAPlane) {
     for (const double height : {0.0625, 0.25, 0.5, 0.875}) {
-        CellCorners flat, slanted;
-        for (unsigned c = 0; c < 8; ++c) {
-            const double x = c & 1, z = c >> 2 & 1;
-            flat.excess[c] = float(1000 * (height - z));
-            slanted.excess[c] = float(1000 * (height - (x + z) / 2));
-        }
-        EXPECT_NEAR(fillOf(flat), height, 1e-6);
+        const double flat = fillOf([&](const Eigen::Vector3d& at) { return 16000 * (height - at.z()); });
+        EXPECT_NEAR(flat, height, 1e-6);
+        const double slanted =
+            fillOf([&](const Eigen::Vector3d& at) { return 16000 * (height - (at.x() + at.z()) / 2); });
         const double corner = height <= 0.5 ? 2 * height * height : 1 - 2 * (1 - height) * (1 - height);
-        EXPECT_NEAR(fillOf(slanted), corner, 1e-6);
+        EXPECT_NEAR(slanted, corner, 1e-6);
     }
 }
 
