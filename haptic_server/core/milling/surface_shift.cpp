@@ -105,7 +105,8 @@ bool SurfaceShift::isInScratch(const Vector3i& voxel) const noexcept {
 
 void SurfaceShift::add(const BoneModel& bone, PatchId patch, double energy, double depth) noexcept {
     if (last_node_ == kNoNode || patch != last_patch_) {
-        const Vector3i cell = bone.lattice.cellsOf(patch.leaf).min + patch.block.index() * block_;
+        if (patch.leaf != leaf_) leaf_first_ = bone.lattice.cellsOf(leaf_ = patch.leaf).min;
+        const Vector3i cell = leaf_first_ + patch.block.index() * block_;
         if (!isInScratch(cell)) return;
         const size_t at = index(cell);
         if (orders_[at].depth == 0) {
@@ -138,7 +139,8 @@ VoxelHat SurfaceShift::hatOf(const Hats& hats, int n) const noexcept {
                  .count = {hats.count[0][n], hats.count[1][n], hats.count[2][n]},
                  .stride_y = size_t(size_.x()),
                  .stride_z = size_t(size_.x()) * size_t(size_.y())};
-    if (std::min({hat.count[0], hat.count[1], hat.count[2]}) <= 0) hat.count[0] = hat.count[1] = hat.count[2] = 0;
+    if (std::min({hat.count[0], hat.count[1], hat.count[2]}) <= 0)
+        hat.count[0] = hat.count[1] = hat.count[2] = 0;
     return hat;
 }
 

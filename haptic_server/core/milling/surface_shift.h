@@ -121,6 +121,8 @@ class SurfaceShift {
     size_t patch_count_ = 0;
     PatchId last_patch_;  // of add(), and its node; kNoNode: none yet
     size_t last_node_ = kNoNode;
+    LeafId leaf_ = ~LeafId(0);  // and its leaf, with the leaf's first cell
+    Eigen::Vector3i leaf_first_ = Eigen::Vector3i::Zero();
     std::vector<NearPatch> near_;  // the first near_count_
     size_t near_count_ = 0;
     IndexBox patch_cells_;  // blocks of those begin in it

@@ -15,6 +15,10 @@ constexpr int kFilterReach = 8;             // pixels that the composite's filte
 
 static_assert(kMaxBlur < kOcclusionPicture, "or the blur would reach further than reach() says");
 
+std::string finishedVertex() {
+    return std::string("#define UPSIDE_DOWN\n") + shaders::kFullScreenVertex;
+}
+
 }  // namespace
 
 Anaglyph::Anaglyph(const GlApi& gl)
@@ -65,10 +69,10 @@ FramePasses::FramePasses(const GlApi& gl)
     : gl_(gl),
       background_(gl, "background", shaders::kFullScreenVertex, shaders::kBackgroundFragment),
       occlusion_(gl, "occlusion", shaders::kFullScreenVertex, shaders::kOcclusionFragment),
-      composite_(gl, "composite", shaders::kFullScreenVertex, shaders::kCompositeFragment),
-      instrument_(gl, "composite of an instrument", shaders::kFullScreenVertex,
+      composite_(gl, "composite", finishedVertex(), shaders::kCompositeFragment),
+      instrument_(gl, "composite of an instrument", finishedVertex(),
                   std::string("#define INSTRUMENT\n") + shaders::kCompositeFragment),
-      tool_shadow_(gl, "shadow of the tool", shaders::kFullScreenVertex, shaders::kToolShadowFragment),
+      tool_shadow_(gl, "shadow of the tool", finishedVertex(), shaders::kToolShadowFragment),
       no_attributes_(gl) {}
 
 int FramePasses::reach(int height) {
@@ -131,7 +135,7 @@ void FramePasses::compose(const Frame& frame, const RenderTargets& targets, cons
         composite.set("blur_per_m", frame.blur_per_m);
         composite.set("most_blur", kMaxBlur);
     }
-    drawParts(gl_, parts, [&] { drawFullScreen(); });
+    drawFinished(targets, parts);
     gl_.ActiveTexture(GL_TEXTURE0);
 }
 
@@ -152,8 +156,15 @@ void FramePasses::drawToolShadow(const Frame& frame, const RenderTargets& target
     tool_shadow_.set("reach", shadow.reach);
     gl_.Enable(GL_BLEND);
     gl_.BlendFunc(GL_DST_COLOR, GL_ZERO);
-    drawParts(gl_, parts, [&] { drawFullScreen(); });
+    drawFinished(targets, parts);
     gl_.Disable(GL_BLEND);
+}
+
+void FramePasses::drawFinished(const RenderTargets& targets, const Parts& parts) const {
+    for (const PixelBox& part : parts) {
+        setScissor(gl_, part.upsideDown(targets.height()));
+        drawFullScreen();
+    }
 }
 
 void FramePasses::drawFullScreen() const {

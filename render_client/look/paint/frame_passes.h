@@ -40,6 +40,7 @@ class FramePasses {
 
   private:
     void drawFullScreen() const;
+    void drawFinished(const RenderTargets& targets, const Parts& parts) const;
 
     const GlApi& gl_;
     Program background_, occlusion_, composite_, instrument_, tool_shadow_;

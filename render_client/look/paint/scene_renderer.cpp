@@ -233,7 +233,7 @@ void SceneRenderer::finish(const Frame& frame, const PixelTiles& parts) {
 void SceneRenderer::showFinished(const PictureArea& area, GLuint target) const {
     gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, targets_->finished());
     gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
-    gl_.BlitFramebuffer(0, 0, area.width, area.height, area.x, 0, area.x + area.width, area.height,
+    gl_.BlitFramebuffer(0, 0, area.width, area.height, area.x, area.height, area.x + area.width, 0,
                         GL_COLOR_BUFFER_BIT, GL_NEAREST);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
     gl_.Viewport(area.x, 0, area.width, area.height);

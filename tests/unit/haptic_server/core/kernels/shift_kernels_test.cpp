@@ -45,8 +45,9 @@ struct Sinking {
 
 // Cells of every kind, in any order, at the volume's border too.
 TEST_P(ShiftKernels, ReadCellsAreTheVolumes) {
-    const VoxelVolume volume = volumeOf(
-        [&](const Vector3i& v) { return v.x() < 8 ? 0.0 : v.x() > 15 ? 6e4 : double(below(kMaxDensity)); });
+    const VoxelVolume volume = volumeOf([&](const Vector3i& v) {
+        return v.x() < 8 ? 0.0 : v.x() > 15 ? 6e4 : double(below(kMaxDensity));
+    });
     for (int round = 0; round < 40; ++round) {
         const int count = below(90);
         const auto room = size_t(count) + kCellLanes;
