@@ -31,7 +31,8 @@ inline void gather(const T* table, const Ints& index, Vector& out) {
 }
 #endif
 
-// Writes the lanes that are wanted, of kCellLanes, side by side to out, which has room for all. Returns how many.
+// Writes the lanes that are wanted, of kCellLanes, side by side to out, which has room for all. Returns how
+// many.
 #if defined(__AVX512F__)
 template <class T>
 inline int packLanes(const T* lanes, const int* is_wanted, T* out) {

@@ -170,8 +170,8 @@ struct CellPatches {
     float* area;  // in squares of the unit of `steps`
     float *x, *y, *z;
 };
-// Cells of a volume by their indices, -1 .. dims-1, which count from `first`; the arrays go on to the next multiple
-// of kCellLanes.
+// Cells of a volume by their indices, -1 .. dims-1, which count from `first`; the arrays go on to the next
+// multiple of kCellLanes.
 struct CellList {
     const int *i, *j, *k;
     int first[3];
