@@ -15,6 +15,7 @@
 #include "common/log/log.h"
 #include "common/process/run_program.h"
 #include "common/process/standard_output.h"
+#include "common/rt/realtime.h"
 #include "haptic_server/cases/casework/case_request.h"
 #include "haptic_server/lab/accuracy_report/accuracy_report.h"
 #include "haptic_server/lab/assess/assess_journal.h"
@@ -179,6 +180,7 @@ void addFileCommands(CLI::App& app, Options& options, Run& chosen) {
         add(app, "accuracy-report",
             "measure errors and tick times of the accuracy settings in a scene, on this machine", chosen,
             [&] {
+                keepFreedHeap();  // each stroke of its hand has a tick of its own
                 std::cout << accuracyReport(options.report, std::cerr) << std::flush;
                 return 0;
             }),

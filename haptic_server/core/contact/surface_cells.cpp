@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/base/assert.h"
 #include "haptic_server/core/volume/density_view.h"
 #include "haptic_server/core/volume/marching_cubes_table.h"
 
@@ -67,7 +68,9 @@ void SurfaceCells::findCells(const VoxelVolume& volume, const Eigen::Vector3i& l
         });
     ReadCells read{all_inside_.data(), {}, inside_.data(), place_.data()};
     for (size_t c = 0; c < 8; ++c) read.excess[c] = excess_[c].data();
-    kernels().read_cells(densityView(volume), cells_.list(leaf_first), read);
+    [[maybe_unused]] const int crossed =
+        kernels().read_cells(densityView(volume), cells_.list(leaf_first), read);
+    BONEMILL_ASSERT(crossed == int(cells_.count()));
 }
 
 }  // namespace bonemill

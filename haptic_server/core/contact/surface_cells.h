@@ -50,9 +50,9 @@ class SurfaceCells {
     CrossedCells crossed_;
 
     CellIndices cells_;
-    std::vector<int> inside_, all_inside_,
-        place_;                     // which corners are inside the bone; the others repeat that
-    std::vector<float> excess_[8];  // density minus iso at the corners, counts
+    std::vector<int> inside_;              // which corners are inside the bone
+    std::vector<int> all_inside_, place_;  // scratch: the kernel tells of cells that are not crossed, too
+    std::vector<float> excess_[8];         // density minus iso at the corners, counts
     std::vector<float> area_, x_, y_, z_;
     std::vector<float> to_x_, to_y_, to_z_, normal_x_, normal_y_, normal_z_;
     std::vector<int> is_found_;

@@ -170,8 +170,8 @@ struct CellPatches {
     float* area;  // in squares of the unit of `steps`
     float *x, *y, *z;
 };
-// Cells of a volume by their indices, -1 .. dims-1, which count from `first`; the arrays go on to the next
-// multiple of kCellLanes.
+// Cells of a volume by their indices, which count from `first`: together they are -1 .. dims-1. The arrays go
+// on to the next multiple of kCellLanes.
 struct CellList {
     const int *i, *j, *k;
     int first[3];
@@ -283,8 +283,8 @@ struct VoxelHat {
     size_t stride_y, stride_z;
 };
 
-// The voxels with a weight around places, from low to high at most: the first and how many on each axis, none
-// or fewer where there is none. The arrays go on to the next multiple of kCellLanes.
+// The voxels with a weight around places, from low to high at most: the first and how many on each axis, 0
+// or less where there is none. The arrays go on to the next multiple of kCellLanes.
 struct HatBoxes {
     const float* at[3];  // voxel steps
     float width;

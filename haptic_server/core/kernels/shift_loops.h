@@ -77,12 +77,14 @@ void hatBoxes(const HatBoxes& boxes, int count) {
     const HatBoxes b = boxes;
     for (int axis = 0; axis < 3; ++axis)
         for (int first = 0; first < count; first += kWidth) {
+            Ints lane, low, high;
+            countLanes(lane);
             Floats at;
             load(b.at[axis] + first, at);
-            Ints low, high;
+            at = first + lane < count ? at : Floats{};
             floorOf(at - b.width, low);
             floorOf(-(at + b.width), high);
-            low += 1, high = -high - 1;
+            low += 1, high = -1 - high;
             low = low < b.low[axis] ? Ints{} + b.low[axis] : low;
             high = high > b.high[axis] ? Ints{} + b.high[axis] : high;
             store(low, b.first[axis] + first);

@@ -255,6 +255,7 @@ void SurfaceShift::findCells(const VoxelVolume& volume) noexcept {
         }
         cells_.add(cell);
     });
+    // fills_after_ and inside_ are free until measureAgain().
     fills_.measure(volume, unknown_.list(), fills_after_.data(), inside_.data());
     for (size_t n = 0; n < unknown_.count(); ++n) fills_before_[unknown_at_[n]] = fills_after_[n];
 }

@@ -121,7 +121,7 @@ class SurfaceShift {
     size_t patch_count_ = 0;
     PatchId last_patch_;  // of add(), and its node; kNoNode: none yet
     size_t last_node_ = kNoNode;
-    LeafId leaf_ = ~LeafId(0);  // and its leaf, with the leaf's first cell
+    LeafId leaf_ = ~LeafId(0);  // of the last patch with one, and its first cell
     Eigen::Vector3i leaf_first_ = Eigen::Vector3i::Zero();
     std::vector<NearPatch> near_;  // the first near_count_
     size_t near_count_ = 0;
@@ -129,8 +129,8 @@ class SurfaceShift {
     // Cells with a touched voxel that may have some bone, and the shares of them that are bone.
     CellIndices cells_;
     std::vector<float> fills_before_, fills_after_;
-    std::vector<int> inside_;  // which corners are, bit by corner
-    CellIndices unknown_;      // of these cells, and their places among them
+    std::vector<int> inside_;  // their corners inside the bone, bit by corner
+    CellIndices unknown_;      // those of cells_ that known_bone_ does not know, and their places there
     std::vector<size_t> unknown_at_;
     struct CellBone {
         float fill;

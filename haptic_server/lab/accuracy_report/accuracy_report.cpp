@@ -12,7 +12,6 @@
 #include "common/base/user_error.h"
 #include "common/config/scene_tools.h"
 #include "common/process/gnuplot.h"
-#include "common/rt/realtime.h"
 #include "haptic_server/lab/accuracy_report/report_files.h"
 #include "haptic_server/lab/accuracy_report/sweep.h"
 #include "haptic_server/scene/setup/scene_setup.h"
@@ -181,7 +180,6 @@ ReportData measureAll(const LoadedScene& loaded, SceneSetup& simulation, const A
 
 std::string accuracyReport(const AccuracyReportOptions& options, std::ostream& progress) {
     const auto start = SteadyClock::now();
-    keepFreedHeap();  // each stroke has a tick of its own
     const LoadedScene loaded = loadScene(options.scene);
     const std::filesystem::path out(options.out);
     makeFolder(out);

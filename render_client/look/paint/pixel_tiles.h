@@ -23,9 +23,9 @@ struct PixelBox {
     // many pixels on each side.
     PixelBox joined(const PixelBox& other) const;
     PixelBox within(const PixelBox& other) const;
-    // upsideDown() is where it lies in a picture of this height that stands on its head.
-    PixelBox upsideDown(int height) const { return {x0, height - y1, x1, height - y0}; }
     PixelBox grown(int pixels) const { return {x0 - pixels, y0 - pixels, x1 + pixels, y1 + pixels}; }
+    // Returns where it lies in a picture of this height that stands on its head.
+    PixelBox upsideDown(int height) const { return {x0, height - y1, x1, height - y0}; }
 
     // Returns every pixel that the box (in the frame that clip_from_model takes) may touch in a picture of
     // this size; this is the whole picture when part of the box is at or behind the eye.

@@ -43,7 +43,8 @@ class RenderTargets {
     BoneLayer keptLayer() const { return {bone_.name(), bone_surface_.name(), *maps_}; }
     GLuint boneDepthTexture() const { return bone_depth_.name(); }  // in quick quality only
     // It stands on its head, as Mesa keeps what is shown: it is copied there row by row, at least off screen.
-    // To turn it took its renderer in software a seventh of a picture's time.
+    // To turn it took its renderer in software a seventh of a picture's time; the eyes of an anaglyph pay
+    // that.
     GLuint finished() const { return finished_.name(); }
 
     // Resolves those parts of the scene into colourTexture() and depthTexture().
