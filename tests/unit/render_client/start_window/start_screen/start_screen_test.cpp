@@ -23,6 +23,8 @@ class StartScreenTest : public testing::Test {
     }
     test::ClickedStart& show(int width = kWidth, int height = kHeight, float desktop_scale = 1) {
         start_.emplace(launcher_.file(), width, height, desktop_scale);
+        // Its line moves those below it, which a click would miss.
+        start_->await([&] { return !start_->desk.found().empty(); });
         return *start_;
     }
     // Takes the words that bonemill was told last, and lets what it began come to its end.
