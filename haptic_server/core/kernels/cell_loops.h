@@ -251,10 +251,14 @@ void projectIntoCells(const CellArrays& cells, const float steepness[3], const f
     }
 }
 
+inline void floorOf(const Floats& v, Ints& out) {
+    const Ints truncated = __builtin_convertvector(v, Ints);
+    out = truncated + (v < __builtin_convertvector(truncated, Floats));  // a true comparison is -1
+}
+
 inline void cellUnder(const Floats& u, int dim, Ints& cell, Floats& in_cell) {
-    const Ints truncated = __builtin_convertvector(u, Ints);
-    const Ints below =
-        truncated + (u < __builtin_convertvector(truncated, Floats));  // a true comparison is -1
+    Ints below;
+    floorOf(u, below);
     const Ints high = below > dim - 1 ? Ints{} + (dim - 1) : below;
     cell = high < -1 ? Ints{} - 1 : high;
     in_cell = u - __builtin_convertvector(cell, Floats);

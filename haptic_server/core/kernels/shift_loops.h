@@ -68,11 +68,6 @@ void sinkSurface(const DensityView& density, const SinkingPoints& points) {
     }
 }
 
-inline void floorOf(const Floats& v, Ints& out) {
-    const Ints towards_zero = __builtin_convertvector(v, Ints);
-    out = towards_zero + (v < __builtin_convertvector(towards_zero, Floats));  // a true comparison is -1
-}
-
 void hatBoxes(const HatBoxes& boxes, int count) {
     const HatBoxes b = boxes;
     for (int axis = 0; axis < 3; ++axis)

@@ -5,13 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include "haptic_server/core/volume/floor_index.h"
-
 namespace bonemill {
 namespace {
 
 using Eigen::Vector3d;
-using Eigen::Vector3f;
 using Eigen::Vector3i;
 
 constexpr double kGoldenRatio = 0.6180339887498949;  // spreads the roundings evenly

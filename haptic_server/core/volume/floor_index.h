@@ -1,5 +1,5 @@
-// Rounds places down or up to indices, as std::floor and std::ceil do where the result fits an int. It is
-// quicker: the baseline of x86-64 has no instruction for these. RT-safe.
+// Rounds places down to indices, as std::floor does where the result fits an int. It is quicker: the baseline
+// of x86-64 has no instruction for that. RT-safe.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,10 +14,6 @@ int floorIndex(Scalar place) noexcept {
 template <class Derived>
 Eigen::Vector3i floorIndices(const Eigen::MatrixBase<Derived>& place) noexcept {
     return {floorIndex(place.x()), floorIndex(place.y()), floorIndex(place.z())};
-}
-template <class Derived>
-Eigen::Vector3i ceilIndices(const Eigen::MatrixBase<Derived>& place) noexcept {
-    return {-floorIndex(-place.x()), -floorIndex(-place.y()), -floorIndex(-place.z())};
 }
 
 }  // namespace bonemill
