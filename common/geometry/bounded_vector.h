@@ -8,17 +8,9 @@
 namespace bonemill {
 
 // Scales `v` down to the length `longest`, and tells whether that was needed.
-inline bool limitLength(Eigen::Vector3d& v, double longest) noexcept {
-    const double length = v.stableNorm();
-    if (length <= longest) return false;
-    v *= longest / length;
-    return true;
-}
+bool limitLength(Eigen::Vector3d& v, double longest) noexcept;
 
-inline Eigen::Vector3d bounded(Eigen::Vector3d v, double longest) noexcept {
-    limitLength(v, longest);
-    return v;
-}
+Eigen::Vector3d bounded(Eigen::Vector3d v, double longest) noexcept;
 
 // What a device can give.
 struct WrenchNorms {
@@ -28,8 +20,6 @@ struct WrenchNorms {
 
 // Force and torque are bounded each by its own norm, so that a torque that a device cannot give takes nothing
 // of the force.
-inline Wrench bounded(const Wrench& wrench, const WrenchNorms& norms) noexcept {
-    return {bounded(wrench.force, norms.max_force), bounded(wrench.torque, norms.max_torque)};
-}
+Wrench bounded(const Wrench& wrench, const WrenchNorms& norms) noexcept;
 
 }  // namespace bonemill

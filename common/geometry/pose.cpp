@@ -47,4 +47,51 @@ Eigen::Quaterniond rotationBetween(const Eigen::Vector3d& from, const Eigen::Vec
     return Eigen::Quaterniond(length < kOpposite ? 0 : a.dot(half), v.x(), v.y(), v.z()).normalized();
 }
 
+Pose Pose::operator*(const Pose& other) const noexcept {
+    return {rotation * other.position + position, (rotation * other.rotation).normalized()};
+}
+
+Pose Pose::inverse() const noexcept {
+    const Eigen::Quaterniond inverse_rotation = rotation.conjugate();
+    return {-(inverse_rotation * position), inverse_rotation};
+}
+
+Pose Pose::incremented(const Eigen::Vector3d& translation,
+                       const Eigen::Vector3d& rotation_vector) const noexcept {
+    return {position + translation, (expRotation(rotation_vector) * rotation).normalized()};
+}
+
+bool Pose::isFinite() const noexcept {
+    return position.allFinite() && rotation.coeffs().allFinite();
+}
+
+Wrench Wrench::operator+(const Wrench& other) const noexcept {
+    return {force + other.force, torque + other.torque};
+}
+
+Wrench Wrench::operator-() const noexcept {
+    return {-force, -torque};
+}
+
+Wrench Wrench::rotatedBy(const Eigen::Quaterniond& R_AB) const noexcept {
+    return {R_AB * force, R_AB * torque};
+}
+
+bool Wrench::isFinite() const noexcept {
+    return force.allFinite() && torque.allFinite();
+}
+
+Vector6d between(const Pose& X_VT_from, const Pose& X_VT_to) noexcept {
+    Vector6d step;
+    step << X_VT_to.position - X_VT_from.position,
+        logRotation(X_VT_to.rotation * X_VT_from.rotation.conjugate());
+    return step;
+}
+
+Vector6d stacked(const Wrench& wrench) noexcept {
+    Vector6d w;
+    w << wrench.force, wrench.torque;
+    return w;
+}
+
 }  // namespace bonemill

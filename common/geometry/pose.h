@@ -3,6 +3,9 @@
 // The conventions are those of docs/reference/frames.md: X_AB maps coordinates in frame B to frame A, and
 // increments in the world are p+ = p + x, R+ = exp(omega~) R. Units are m, rad, N, N·m. Every function is
 // RT-safe and thread-safe, and none throws.
+//
+// Only what loops over points call is inline: every source that reads an expression of Eigen compiles it
+// anew.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,19 +38,12 @@ struct Pose {
     Eigen::Vector3d operator*(const Eigen::Vector3d& point) const noexcept {
         return rotation * point + position;
     }
-    Pose operator*(const Pose& other) const noexcept {
-        return {rotation * other.position + position, (rotation * other.rotation).normalized()};
-    }
-    Pose inverse() const noexcept {
-        const Eigen::Quaterniond inverse_rotation = rotation.conjugate();
-        return {-(inverse_rotation * position), inverse_rotation};
-    }
+    Pose operator*(const Pose& other) const noexcept;
+    Pose inverse() const noexcept;
     // The increments are in the outer frame: p+ = p + translation, q+ = exp(rotation_vector / 2) q.
     Pose incremented(const Eigen::Vector3d& translation,
-                     const Eigen::Vector3d& rotation_vector) const noexcept {
-        return {position + translation, (expRotation(rotation_vector) * rotation).normalized()};
-    }
-    bool isFinite() const noexcept { return position.allFinite() && rotation.coeffs().allFinite(); }
+                     const Eigen::Vector3d& rotation_vector) const noexcept;
+    bool isFinite() const noexcept;
 };
 
 // A wrench is a force (N) and a torque (N·m) about a stated point, in a stated frame.
@@ -55,28 +51,17 @@ struct Wrench {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     Eigen::Vector3d torque = Eigen::Vector3d::Zero();
 
-    Wrench operator+(const Wrench& other) const noexcept {
-        return {force + other.force, torque + other.torque};
-    }
-    Wrench operator-() const noexcept { return {-force, -torque}; }
+    Wrench operator+(const Wrench& other) const noexcept;
+    Wrench operator-() const noexcept;
     // Expresses this wrench of frame B in frame A; the reference point stays.
-    Wrench rotatedBy(const Eigen::Quaterniond& R_AB) const noexcept { return {R_AB * force, R_AB * torque}; }
-    bool isFinite() const noexcept { return force.allFinite() && torque.allFinite(); }
+    Wrench rotatedBy(const Eigen::Quaterniond& R_AB) const noexcept;
+    bool isFinite() const noexcept;
 };
 
 // Returns the way from one pose to the other in V: translation (m) above the rotation vector (rad).
-inline Vector6d between(const Pose& X_VT_from, const Pose& X_VT_to) noexcept {
-    Vector6d step;
-    step << X_VT_to.position - X_VT_from.position,
-        logRotation(X_VT_to.rotation * X_VT_from.rotation.conjugate());
-    return step;
-}
+Vector6d between(const Pose& X_VT_from, const Pose& X_VT_to) noexcept;
 
 // Returns force above torque: times a way from between(), about the pose's origin, it is the wrench's work.
-inline Vector6d stacked(const Wrench& wrench) noexcept {
-    Vector6d w;
-    w << wrench.force, wrench.torque;
-    return w;
-}
+Vector6d stacked(const Wrench& wrench) noexcept;
 
 }  // namespace bonemill

@@ -16,6 +16,7 @@
 #include "common/config/scene_file.h"
 #include "common/digest/digest.h"
 #include "common/files/require_file.h"
+#include "common/geometry/pose.h"
 #include "common/text/printed_text.h"
 #include "haptic_server/cases/casework/case_figures.h"
 #include "haptic_server/cases/casework/case_plan.h"
@@ -84,7 +85,7 @@ void describeTools(const CasePlan& plan, const std::vector<scene::Tool>& tools, 
 // points towards the hand.
 void describeHand(const CasePlan& plan, scene::Device* device) {
     assign(plan.start + plan.burr_radius.value_or(0) * plan.outwards, device->mutable_p_wd_mm());
-    const auto q = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), plan.outwards);
+    const Eigen::Quaterniond q = rotationBetween(Eigen::Vector3d::UnitY(), plan.outwards);
     device->mutable_q_wd()->set_w(q.w());
     device->mutable_q_wd()->set_x(q.x());
     device->mutable_q_wd()->set_y(q.y());

@@ -17,8 +17,7 @@ class BrickMap {
     static constexpr size_t kNowhere = ~size_t(0);
 
     // The map is of voxels 0 .. dims-1, none of which has a place. It allocates.
-    explicit BrickMap(const Eigen::Vector3i& dims)
-        : dims_(dims), bricks_((dims.array() + kEdge - 1) / kEdge), slots_(size_t(bricks_.prod()), kNone) {}
+    explicit BrickMap(const Eigen::Vector3i& dims);
 
     const Eigen::Vector3i& dims() const noexcept { return dims_; }
     const Eigen::Vector3i& bricksPerAxis() const noexcept { return bricks_; }
@@ -26,7 +25,7 @@ class BrickMap {
 
     size_t find(const Eigen::Vector3i& voxel) const noexcept {
         if ((voxel.array() < 0).any() || (voxel.array() >= dims_.array()).any()) return kNowhere;
-        const Eigen::Vector3i brick = voxel.unaryExpr([](int v) { return v >> kShift; });
+        const Eigen::Vector3i brick(voxel.x() >> kShift, voxel.y() >> kShift, voxel.z() >> kShift);
         const uint32_t slot = slots_[placeIn(bricks_, brick)];
         return slot == kNone ? kNowhere : slot * kBrick + inBrick(voxel);
     }
@@ -55,10 +54,7 @@ class BrickMap {
         return size_t(voxel.x() & kMask) +
                size_t(kEdge) * (size_t(voxel.y() & kMask) + size_t(kEdge) * size_t(voxel.z() & kMask));
     }
-    IndexBox voxelsOf(const Eigen::Vector3i& brick) const noexcept {
-        const Eigen::Vector3i low = brick * kEdge;
-        return {low, (low.array() + kEdge - 1).min(dims_.array() - 1)};
-    }
+    IndexBox voxelsOf(const Eigen::Vector3i& brick) const noexcept;
     // Gives the brick the next kBrick places of the pool.
     void addBrick(const Eigen::Vector3i& brick) noexcept { slots_[placeIn(bricks_, brick)] = used_++; }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/geometry/pose.h"
 #include "proto/topics.pb.h"
 #include "render_client/look/model/tool_mesh.h"
 #include "render_client/look/shaders/shaders.h"
@@ -39,7 +40,8 @@ void addTurned(const std::vector<TubeStation>& stations, const Eigen::Vector3f& 
                const Eigen::Vector3f& to, topics::TriangleMesh& mesh) {
     topics::TriangleMesh body;  // along y, as addTube() wants it
     addTube(stations, &body);
-    const auto turn = Eigen::Quaternionf::FromTwoVectors(Eigen::Vector3f::UnitY(), to - from);
+    const Eigen::Vector3d along = (to - from).cast<double>();
+    const Eigen::Quaternionf turn = rotationBetween(Eigen::Vector3d::UnitY(), along).cast<float>();
     const auto first = uint32_t(mesh.vertices_m_size() / 3);
     for (int n = 0; n + 2 < body.vertices_m_size(); n += 3) {
         const Eigen::Vector3f at(body.vertices_m(n), body.vertices_m(n + 1), body.vertices_m(n + 2));

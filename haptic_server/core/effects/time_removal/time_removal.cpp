@@ -55,6 +55,7 @@ class TimeRemoval final : public HapticEffect {
         const float reach_squared = (radius + recession) * (radius + recession);
         const Eigen::Vector3f p_OB = (X_VT.position - origin_V).cast<float>();
         const Eigen::Vector3f axis = (X_VT.rotation * Eigen::Vector3d::UnitY()).cast<float>();
+        const Pose X_TV = X_VT.inverse();
         constexpr size_t kBatch = 64;
         float distance[kBatch], share[kBatch];
         for (size_t first = 0; first < candidates.count; first += kBatch) {
@@ -72,7 +73,7 @@ class TimeRemoval final : public HapticEffect {
                 const Eigen::Vector3f at(x[i], y[i], z[i]);
                 if (!((at - p_OB).dot(axis) > 0)) continue;
                 const Eigen::Vector3d p_V = origin_V + at.cast<double>();
-                if (distance[i] - radius > float(tool.sample(X_VT.inverse() * p_V).distance)) share[i] = 0;
+                if (distance[i] - radius > float(tool.sample(X_TV * p_V).distance)) share[i] = 0;
             }
             goOn(x, p_OB.x(), share, count), goOn(y, p_OB.y(), share, count), goOn(z, p_OB.z(), share, count);
         }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/geometry/pose.h"
 #include "tests/support/full_block.h"
 #include "tests/support/typical_effects.h"
 
@@ -191,7 +192,7 @@ TEST(HeatGrid, TheStairsOfASlopeCoolAsTheSlopeDoes) {
         HeatConfig config = insulated();
         config.dry_transfer = 1000;
         HeatGrid heat(config, bone, kDt);
-        const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(kUp, normal);
+        const Eigen::Quaterniond turn = rotationBetween(kUp, normal);
         for (const double side : {-1.0, 1.0})
             for (int i = -18; i <= 18; ++i)
                 for (int j = -18; j <= 18; ++j) {

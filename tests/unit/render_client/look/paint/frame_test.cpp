@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/geometry/pose.h"
+
 namespace bonemill {
 namespace {
 
@@ -13,8 +15,7 @@ TEST(Frame, TheShadowMapReachesFromTheToolsEndThroughTheBone) {
     view.camera.focus = 0.06;
     view.bone_V = {Eigen::Vector3d::Constant(-0.08), Eigen::Vector3d::Constant(0.08)};
     view.X_WT.emplace();
-    view.X_WT->rotation =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), Eigen::Vector3d(-0.55, 0.70, 0.62));
+    view.X_WT->rotation = rotationBetween(Eigen::Vector3d::UnitY(), Eigen::Vector3d(-0.55, 0.70, 0.62));
     const Eigen::AlignedBox3f tool_T(Eigen::Vector3f(-0.004f, -0.004f, -0.004f),
                                      Eigen::Vector3f(0.004f, 0.15f, 0.004f));
     const DepthRange range = Frame::neededRange(view, tool_T);
