@@ -230,6 +230,7 @@ TEST_F(RobotMills, ACorridor) {
 
 TEST_F(RobotMills, AgainWhenTheDeviceWasReset) {
     beginToMill();
+    if (HasFatalFailure()) return;
     robot_.goTo({.p = {0.03, -2.3e-3, 0}});
     ASSERT_TRUE(test::waitFor([&] { return timesSaid(nameOf(StopCause::kPoseJump)) > 0; }));
     ASSERT_TRUE(test::waitFor([&] { return stateNow() != SafetyState::kEngaged; }));
