@@ -113,7 +113,7 @@ bool NearShell::append(KeptLeaf& kept, uint32_t& last, const ShellBlock& from, u
         (last == kNoBlock ? kept.first : blocks_[last].next) = block;
         blocks_[last = block].next = kNoBlock;
     }
-    copyPoints(from, point, 1, blocks_[last], at);
+    copyPoint(from, point, blocks_[last], at);
     ++kept.count;
     return true;
 }

@@ -6,6 +6,7 @@
 #include <compare>
 #include <cstdint>
 
+#include "common/base/assert.h"
 #include "haptic_server/core/volume/leaf_lattice.h"
 
 namespace bonemill {
@@ -26,6 +27,32 @@ struct BlockKey {
         return {int(packed & kMask), int(packed >> kAxisBits & kMask), int(packed >> 2 * kAxisBits & kMask)};
     }
     auto operator<=>(const BlockKey&) const = default;
+};
+
+// The keys of a box of blocks, which must not be empty.
+class BlockKeyBox {
+  public:
+    explicit BlockKeyBox(const IndexBox& blocks) noexcept
+        : first_(BlockKey::of(blocks.min)), last_(BlockKey::of(blocks.max)) {
+        BONEMILL_ASSERT(!blocks.isEmpty() && blocks.min.minCoeff() >= 0 &&
+                        blocks.max.maxCoeff() < BlockKey::kMaxPerAxis);
+    }
+    BlockKey first() const noexcept { return first_; }
+    BlockKey last() const noexcept { return last_; }
+    bool contains(BlockKey key) const noexcept {
+        constexpr uint32_t kX = BlockKey::kMaxPerAxis - 1, kY = kX << BlockKey::kAxisBits,
+                           kZ = kY << BlockKey::kAxisBits;
+        return isWithin(key, kX) && isWithin(key, kY) && isWithin(key, kZ);
+    }
+
+  private:
+    // What is below the first wraps around to beyond the last.
+    bool isWithin(BlockKey key, uint32_t axis) const noexcept {
+        const uint32_t first = first_.packed & axis;
+        return (key.packed & axis) - first <= (last_.packed & axis) - first;
+    }
+
+    BlockKey first_, last_;
 };
 
 struct PatchId {

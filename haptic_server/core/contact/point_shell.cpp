@@ -49,7 +49,8 @@ IndexBox shifted(const IndexBox& box, const Eigen::Vector3i& by) noexcept {
 PointShell::PointShell(const VoxelVolume& volume, const LeafLattice& lattice, const ShellConfig& config)
     : projection_(volume),
       pool_(mostBlocksPerLeaf(lattice, checked(config))),
-      cells_(volume, lattice.leafCells()) {
+      cells_(volume, lattice.leafCells()),
+      fresh_(mostBlocksPerLeaf(lattice, config)) {
     size_t most_sums = 0, blocks_per_leaf = 0;
     for (const ShellLevel& level : config.levels) {
         levels_.emplace_back(level, lattice.leafCount());
@@ -57,7 +58,6 @@ PointShell::PointShell(const VoxelVolume& volume, const LeafLattice& lattice, co
         blocks_per_leaf += most_points / ShellBlock::kCapacity + 1;
         if (level.factor > 1) most_sums = std::max(most_sums, most_points);
     }
-    fresh_.resize(mostBlocksPerLeaf(lattice, config));
     sums_.resize(most_sums);
     if (most_sums > 0) previous_patch_.resize(size_t(lattice.leafCells().prod()));
 
@@ -135,7 +135,7 @@ bool PointShell::rebuild(const VoxelVolume& volume, const LeafLattice& lattice, 
     const int factor = level.config.factor;
     const IndexBox leaf_cells = lattice.cellsOf(leaf);
     const IndexBox blocks = blocksOf(shifted(touched_cells, -leaf_cells.min), factor);
-    fresh_size_ = 0;
+    fresh_.clear();
     if (lattice.mayHoldSurface(leaf, volume.iso())) {
         const IndexBox cells = cellsOf(blocks, factor, leaf_cells.max - leaf_cells.min);
         cells_.collect(volume, leaf_cells.min, shifted(cells, leaf_cells.min));
@@ -146,7 +146,7 @@ bool PointShell::rebuild(const VoxelVolume& volume, const LeafLattice& lattice, 
     }
     ShellPool::List& list = level.leaves[leaf];
     level.point_count -= list.count;
-    const bool is_stored = pool_.replace(list, blocks, {fresh_.data(), fresh_size_});
+    const bool is_stored = pool_.replace(list, BlockKeyBox(blocks), fresh_.points());
     level.point_count += list.count;
     return is_stored;
 }
@@ -155,21 +155,13 @@ void PointShell::pointsOfCells(const VoxelVolume& volume, const IndexBox& leaf_c
                                ShellNormals normals) noexcept {
     cells_.project(projection_);
     for (size_t n = 0; n < cells_.count(); ++n) {
-        if (!(cells_.area(n) > 0)) continue;
-        const Eigen::Vector3i local = cells_.cell(n), cell = leaf_cells.min + local;
-        if (cells_.isFound(n) && normals == ShellNormals::kTrilinear) {
-            ShellPoint& point = fresh_[fresh_size_++];
-            point.position = projection_.position({cell, cells_.projected(n)});
-            point.normal = cells_.normal(n);
-            point.area = cells_.area(n);
-            point.key = BlockKey::of(local);
-            continue;
-        }
-        const SurfacePlace place = cells_.isFound(n)
-                                       ? SurfacePlace{cell, cells_.projected(n)}
-                                       : projection_.bracket(volume, {cell, cells_.centroid(n)});
-        addPoint(place, projection_.normal(volume, place, normals), cells_.area(n), local);
+        const bool is_found = cells_.isFound(n);
+        if ((is_found && normals == ShellNormals::kTrilinear) || !(cells_.area(n) > 0)) continue;
+        SurfacePlace place{leaf_cells.min + cells_.cell(n), cells_.projected(n)};
+        if (!is_found) place = projection_.bracket(volume, {place.cell, cells_.centroid(n)});
+        cells_.put(n, place.at, projection_.normal(volume, place, normals));
     }
+    fresh_.take(cells_.pack(projection_, leaf_cells.min, fresh_.room()));
 }
 
 void PointShell::pointsOfBlocks(const VoxelVolume& volume, const IndexBox& leaf_cells, const IndexBox& blocks,
@@ -188,7 +180,8 @@ void PointShell::pointsOfBlocks(const VoxelVolume& volume, const IndexBox& leaf_
                 SurfacePlace place;
                 if (!projection_.walk(volume, shifted(cells, leaf_cells.min), center, place))
                     place = nearestPatchPlace(volume, leaf_cells, cells.min, *sum, center);
-                addPoint(place, projection_.normal(volume, place, level.normals), sum->area, block);
+                fresh_.add({projection_.position(place), projection_.normal(volume, place, level.normals),
+                            sum->area, BlockKey::of(block)});
             }
 }
 
@@ -224,11 +217,6 @@ SurfacePlace PointShell::nearestPatchPlace(const VoxelVolume& volume, const Inde
         least = squared;
     }
     return projection_.bracket(volume, {leaf_cells.min + cells_.cell(nearest), cells_.centroid(nearest)});
-}
-
-void PointShell::addPoint(const SurfacePlace& place, const Eigen::Vector3f& normal, float area,
-                          const Eigen::Vector3i& block) noexcept {
-    fresh_[fresh_size_++] = {projection_.position(place), normal, area, BlockKey::of(block)};
 }
 
 }  // namespace bonemill

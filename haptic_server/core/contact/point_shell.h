@@ -22,6 +22,7 @@
 #include <span>
 #include <vector>
 
+#include "haptic_server/core/contact/fresh_points.h"
 #include "haptic_server/core/contact/shell_pool.h"
 #include "haptic_server/core/contact/surface_cells.h"
 #include "haptic_server/core/volume/leaf_lattice.h"
@@ -129,8 +130,6 @@ class PointShell {
     SurfacePlace nearestPatchPlace(const VoxelVolume& volume, const IndexBox& leaf_cells,
                                    const Eigen::Vector3i& block_first, const BlockSum& sum,
                                    const Eigen::Vector3f& center) const noexcept;
-    void addPoint(const SurfacePlace& place, const Eigen::Vector3f& normal, float area,
-                  const Eigen::Vector3i& block) noexcept;
     void reservePool(const LeafLattice& lattice, size_t spare_points);
 
     std::vector<Level> levels_;
@@ -143,8 +142,7 @@ class PointShell {
     SurfaceCells cells_;
     std::vector<BlockSum> sums_;            // of the blocks being rebuilt, x fastest
     std::vector<uint32_t> previous_patch_;  // per patch: the one before it in the same block
-    std::vector<ShellPoint> fresh_;
-    size_t fresh_size_ = 0;
+    FreshPoints fresh_;
 };
 
 }  // namespace bonemill

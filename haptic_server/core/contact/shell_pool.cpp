@@ -14,18 +14,6 @@ uint32_t blocksFor(uint32_t points) noexcept {
     return (points + kCapacity - 1) / kCapacity;
 }
 
-bool isInside(BlockKey key, const IndexBox& keys) noexcept {
-    const Eigen::Vector3i at = key.index();
-    return (at.array() >= keys.min.array()).all() && (at.array() <= keys.max.array()).all();
-}
-
-void put(const ShellPoint& point, ShellBlock& b, uint32_t i) noexcept {
-    b.x[i] = point.position.x(), b.y[i] = point.position.y(), b.z[i] = point.position.z();
-    b.nx[i] = point.normal.x(), b.ny[i] = point.normal.y(), b.nz[i] = point.normal.z();
-    b.area[i] = point.area;
-    b.key[i] = point.key;
-}
-
 void setBounds(ShellBlock& b, uint32_t count) noexcept {
     const auto first = [count](const float* values) {
         return Eigen::Map<const Eigen::ArrayXf>(values, count);
@@ -52,10 +40,12 @@ void ShellPool::addBlocks(size_t count) {
     free_count_ += count;
 }
 
-bool ShellPool::replace(List& list, const IndexBox& keys, std::span<const ShellPoint> fresh) noexcept {
-    if (list.count == 0 && fresh.empty()) return true;
+bool ShellPool::replace(List& list, const BlockKeyBox& keys, const ShellPoints& fresh) noexcept {
+    BONEMILL_ASSERT(fresh.count == 0 ||
+                    (keys.contains(fresh.key[0]) && keys.contains(fresh.key[fresh.count - 1])));
+    if (list.count == 0 && fresh.count == 0) return true;
     ++list.revision;
-    const Place place = firstAtOrAbove(list, BlockKey::of(keys.min));
+    const Place place = firstAtOrAbove(list, keys.first());
     if (hasSameKeys(list, place, keys, fresh)) {
         overwrite(list, place, fresh);
         return true;
@@ -79,36 +69,35 @@ ShellPool::Place ShellPool::firstAtOrAbove(const List& list, BlockKey key) const
 }
 
 // Among the list's points from `from` on, are the keys in the box those of the fresh points?
-bool ShellPool::hasSameKeys(const List& list, const Place& from, const IndexBox& keys,
-                            std::span<const ShellPoint> fresh) const noexcept {
-    const BlockKey last_key = BlockKey::of(keys.max);
+bool ShellPool::hasSameKeys(const List& list, const Place& from, const BlockKeyBox& keys,
+                            const ShellPoints& fresh) const noexcept {
     size_t same = 0;
     uint32_t block = from.block;
     for (uint32_t before = from.before; before < list.count; before += kCapacity) {
         const ShellBlock& b = blocks_[block];
         const uint32_t count = std::min(kCapacity, list.count - before);
         for (uint32_t i = 0; i < count; ++i) {
-            if (b.key[i] > last_key) return same == fresh.size();
-            if (same < fresh.size() && b.key[i] == fresh[same].key)
+            if (b.key[i] > keys.last()) return same == fresh.count;
+            if (same < fresh.count && b.key[i] == fresh.key[same])
                 ++same;
-            else if (isInside(b.key[i], keys))
+            else if (keys.contains(b.key[i]))
                 return false;
         }
         block = b.next;
     }
-    return same == fresh.size();
+    return same == fresh.count;
 }
 
 // The fresh points take the places of those with their keys.
-void ShellPool::overwrite(const List& list, const Place& from, std::span<const ShellPoint> fresh) noexcept {
+void ShellPool::overwrite(const List& list, const Place& from, const ShellPoints& fresh) noexcept {
     size_t next = 0;
     uint32_t block = from.block;
-    for (uint32_t before = from.before; next < fresh.size(); before += kCapacity) {
+    for (uint32_t before = from.before; next < fresh.count; before += kCapacity) {
         ShellBlock& b = blocks_[block];
         const uint32_t count = std::min(kCapacity, list.count - before);
         const size_t first = next;
-        for (uint32_t i = 0; i < count && next < fresh.size(); ++i)
-            if (b.key[i] == fresh[next].key) put(fresh[next++], b, i);
+        for (uint32_t i = 0; i < count && next < fresh.count; ++i)
+            if (b.key[i] == fresh.key[next]) copyPoint(fresh, next++, b, i);
         if (next > first) setBounds(b, count);
         block = b.next;
     }
@@ -116,16 +105,16 @@ void ShellPool::overwrite(const List& list, const Place& from, std::span<const S
 
 // Fills merged_ with what replaces the list's points from `from` on; returns how many those are. Ends early
 // after a block from which on all points stay and would keep their places.
-uint32_t ShellPool::merge(const List& list, const Place& from, const IndexBox& keys,
-                          std::span<const ShellPoint> fresh) noexcept {
-    const BlockKey last_key = BlockKey::of(keys.max);
+uint32_t ShellPool::merge(const List& list, const Place& from, const BlockKeyBox& keys,
+                          const ShellPoints& fresh) noexcept {
     merged_size_ = 0;
     size_t next = 0;
     uint32_t block = from.block, read = 0;
     while (from.before + read < list.count) {
         const ShellBlock& b = blocks_[block];
         const uint32_t count = std::min(kCapacity, list.count - from.before - read);
-        const bool is_after_all = next == fresh.size() && b.key[0] > last_key;
+        appendBelow(b.key[0], fresh, next);
+        const bool is_after_all = b.key[0] > keys.last();  // also after all fresh ones
         if (is_after_all && merged_size_ == read) return read;
         if (is_after_all)
             append(b, 0, count);
@@ -134,33 +123,41 @@ uint32_t ShellPool::merge(const List& list, const Place& from, const IndexBox& k
         read += count;
         block = b.next;
     }
-    while (next < fresh.size()) append(fresh[next++]);
+    append(fresh, next, fresh.count - next);
     return read;
 }
 
-// Keeps the block's points outside the box `keys`, and between them the fresh ones from fresh[next] on, as
-// far as they belong there.
-void ShellPool::mergeBlock(const ShellBlock& b, uint32_t count, const IndexBox& keys,
-                           std::span<const ShellPoint> fresh, size_t& next) noexcept {
-    uint32_t first = 0;  // of the points that stay and are not yet appended
-    for (uint32_t i = 0; i < count; ++i) {
-        const bool is_replaced = isInside(b.key[i], keys);
-        if (!is_replaced && !(next < fresh.size() && fresh[next].key < b.key[i])) continue;
-        append(b, first, i - first);
-        while (next < fresh.size() && fresh[next].key < b.key[i]) append(fresh[next++]);
-        first = is_replaced ? i + 1 : i;
+// Keeps the block's points outside the box `keys`, and before each run of them the fresh ones from
+// fresh[next] on that belong there; those behind its last one are left.
+void ShellPool::mergeBlock(const ShellBlock& b, uint32_t count, const BlockKeyBox& keys,
+                           const ShellPoints& fresh, size_t& next) noexcept {
+    for (uint32_t i = 0; i < count;) {
+        if (keys.contains(b.key[i])) {
+            ++i;
+            continue;
+        }
+        appendBelow(b.key[i], fresh, next);
+        uint32_t end = i + 1;
+        while (end < count && !keys.contains(b.key[end]) &&
+               !(next < fresh.count && fresh.key[next] < b.key[end]))
+            ++end;
+        append(b, i, end - i);
+        i = end;
     }
-    append(b, first, count - first);
 }
 
-void ShellPool::append(const ShellPoint& point) noexcept {
-    put(point, merged_[merged_size_ / kCapacity], merged_size_ % kCapacity);
-    ++merged_size_;
+// Appends the fresh points from `next` on whose keys are lower.
+void ShellPool::appendBelow(const BlockKey& key, const ShellPoints& fresh, size_t& next) noexcept {
+    const size_t first = next;
+    while (next < fresh.count && fresh.key[next] < key) ++next;
+    append(fresh, first, next - first);
 }
 
-void ShellPool::append(const ShellBlock& from, uint32_t first, uint32_t count) noexcept {
+template <class Points>
+void ShellPool::append(const Points& from, size_t first, size_t count) noexcept {
     while (count > 0) {
-        const uint32_t at = merged_size_ % kCapacity, n = std::min(count, kCapacity - at);
+        const uint32_t at = merged_size_ % kCapacity;
+        const auto n = uint32_t(std::min<size_t>(count, kCapacity - at));
         copyPoints(from, first, n, merged_[merged_size_ / kCapacity], at);
         merged_size_ += n, first += n, count -= n;
     }

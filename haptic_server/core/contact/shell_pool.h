@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "haptic_server/core/contact/shell_point.h"
@@ -23,12 +22,37 @@ struct ShellBlock {
     float center[3], radius;
 };
 
-// The sphere around `to` stays what it was.
-inline void copyPoints(const ShellBlock& from, uint32_t first, uint32_t count, ShellBlock& to,
-                       uint32_t at) noexcept {
-    using B = ShellBlock;
-    for (const auto values : {&B::x, &B::y, &B::z, &B::nx, &B::ny, &B::nz, &B::area})
-        std::copy_n(from.*values + first, count, to.*values + at);
+// Points side by side, as a ShellBlock has them, but as many as there are.
+struct ShellPoints {
+    const float *x, *y, *z;
+    const float *nx, *ny, *nz;
+    const float* area;
+    const BlockKey* key;
+    size_t count;
+};
+
+// From a ShellBlock or ShellPoints. The sphere around `to` stays what it was.
+template <class Points>
+void copyPoint(const Points& from, size_t point, ShellBlock& to, uint32_t at) noexcept {
+    to.x[at] = from.x[point], to.y[at] = from.y[point], to.z[at] = from.z[point];
+    to.nx[at] = from.nx[point], to.ny[at] = from.ny[point], to.nz[at] = from.nz[point];
+    to.area[at] = from.area[point];
+    to.key[at] = from.key[point];
+}
+template <class Points>
+void copyPoints(const Points& from, size_t first, uint32_t count, ShellBlock& to, uint32_t at) noexcept {
+    constexpr uint32_t kFew = 8;  // calls of memmove for each value would cost more
+    if (count <= kFew) {
+        for (uint32_t n = 0; n < count; ++n) copyPoint(from, first + n, to, at + n);
+        return;
+    }
+    std::copy_n(from.x + first, count, to.x + at);
+    std::copy_n(from.y + first, count, to.y + at);
+    std::copy_n(from.z + first, count, to.z + at);
+    std::copy_n(from.nx + first, count, to.nx + at);
+    std::copy_n(from.ny + first, count, to.ny + at);
+    std::copy_n(from.nz + first, count, to.nz + at);
+    std::copy_n(from.area + first, count, to.area + at);
     std::copy_n(from.key + first, count, to.key + at);
 }
 
@@ -51,7 +75,7 @@ class ShellPool {
 
     // Replaces the points whose keys lie in the box `keys` by `fresh` (ascending, keys in that box). False
     // means that the pool is empty and the list stays as it was.
-    bool replace(List& list, const IndexBox& keys, std::span<const ShellPoint> fresh) noexcept;
+    bool replace(List& list, const BlockKeyBox& keys, const ShellPoints& fresh) noexcept;
 
     template <class Visit>
     void forEachBlock(const List& list, Visit&& visit) const noexcept {
@@ -72,15 +96,16 @@ class ShellPool {
         uint32_t before;
     };
     Place firstAtOrAbove(const List& list, BlockKey key) const noexcept;
-    bool hasSameKeys(const List& list, const Place& from, const IndexBox& keys,
-                     std::span<const ShellPoint> fresh) const noexcept;
-    void overwrite(const List& list, const Place& from, std::span<const ShellPoint> fresh) noexcept;
-    uint32_t merge(const List& list, const Place& from, const IndexBox& keys,
-                   std::span<const ShellPoint> fresh) noexcept;
-    void mergeBlock(const ShellBlock& b, uint32_t count, const IndexBox& keys,
-                    std::span<const ShellPoint> fresh, size_t& next) noexcept;
-    void append(const ShellPoint& point) noexcept;
-    void append(const ShellBlock& from, uint32_t first, uint32_t count) noexcept;
+    bool hasSameKeys(const List& list, const Place& from, const BlockKeyBox& keys,
+                     const ShellPoints& fresh) const noexcept;
+    void overwrite(const List& list, const Place& from, const ShellPoints& fresh) noexcept;
+    uint32_t merge(const List& list, const Place& from, const BlockKeyBox& keys,
+                   const ShellPoints& fresh) noexcept;
+    void mergeBlock(const ShellBlock& b, uint32_t count, const BlockKeyBox& keys, const ShellPoints& fresh,
+                    size_t& next) noexcept;
+    void appendBelow(const BlockKey& key, const ShellPoints& fresh, size_t& next) noexcept;
+    template <class Points>
+    void append(const Points& from, size_t first, size_t count) noexcept;
     void write(List& list, Place to) noexcept;
     void freeFrom(uint32_t block) noexcept;
     uint32_t takeBlock() noexcept;

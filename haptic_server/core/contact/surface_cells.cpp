@@ -45,6 +45,14 @@ void SurfaceCells::project(const ShellProjection& projection) noexcept {
                                   normal_y_.data(), normal_z_.data(), is_found_.data()});
 }
 
+int SurfaceCells::pack(const ShellProjection& projection, const Eigen::Vector3i& leaf_first,
+                       const PackedPoints& out) const noexcept {
+    const CellPoints points{area_.data(), unit_area_,       to_x_.data(),     to_y_.data(),
+                            to_z_.data(), normal_x_.data(), normal_y_.data(), normal_z_.data()};
+    return kernels().pack_points(cells_.list(leaf_first), points, projection.spacing().data(),
+                                 BlockKey::kAxisBits, out);
+}
+
 void SurfaceCells::findCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
                              const IndexBox& cells) noexcept {
     cells_.clear();

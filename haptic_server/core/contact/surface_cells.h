@@ -36,8 +36,15 @@ class SurfaceCells {
     bool isFound(size_t n) const noexcept { return is_found_[n] != 0; }
     // The place is in cell steps.
     Eigen::Vector3f projected(size_t n) const noexcept { return {to_x_[n], to_y_[n], to_z_[n]}; }
-    // The normal is that of the trilinear density there, in V, of unit length or zero.
-    Eigen::Vector3f normal(size_t n) const noexcept { return {normal_x_[n], normal_y_[n], normal_z_[n]}; }
+    // Replaces what project() found for that cell; isFound() stays.
+    void put(size_t n, const Eigen::Vector3f& at, const Eigen::Vector3f& normal) noexcept {
+        to_x_[n] = at.x(), to_y_[n] = at.y(), to_z_[n] = at.z();
+        normal_x_[n] = normal.x(), normal_y_[n] = normal.y(), normal_z_[n] = normal.z();
+    }
+    // Writes the points of the cells whose patches have an area, with places and normals as project() found
+    // or put() replaced them. Returns how many.
+    int pack(const ShellProjection& projection, const Eigen::Vector3i& leaf_first,
+             const PackedPoints& out) const noexcept;
 
   private:
     void findCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,

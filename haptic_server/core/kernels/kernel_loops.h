@@ -91,6 +91,7 @@ inline void loadWords(const uint16_t* p, W& words) {
 
 // These need the vectors.
 #include "haptic_server/core/kernels/cell_loops.h"
+#include "haptic_server/core/kernels/pack_loops.h"
 #include "haptic_server/core/kernels/piece_loops.h"
 #include "haptic_server/core/kernels/point_loops.h"
 #include "haptic_server/core/kernels/row_loops.h"
@@ -113,6 +114,7 @@ const Kernels kTable = {.single = {intoFrame<float>, nearerRound<float>, sampleN
                         .cell_patches = cellPatches,
                         .cell_fills = cellFills,
                         .project_into_cells = projectIntoCells,
+                        .pack_points = packPoints,
                         .move_onto_surface = moveOntoSurface,
                         .sink_surface = sinkSurface,
                         .hat_boxes = hatBoxes,

@@ -9,6 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "haptic_server/core/kernels/cell_arrays.h"
+
 namespace bonemill {
 
 enum class CpuLevel : uint8_t { kBaseline, kAvx2, kAvx512 };
@@ -154,45 +156,6 @@ struct LaidPlane {
     bool is_owed;         // some voxels are still below what they shall have
 };
 
-// Cells that the iso-surface crosses, as structure of arrays; the arrays go on to the next multiple of
-// kCellLanes, with anything in them.
-inline constexpr int kCellLanes = 16;
-inline constexpr int kTrianglesPerCell = 5;  // at most
-
-struct CellArrays {
-    const float* excess[8];  // density minus iso at the corners
-    const int* inside;       // which corners are inside, bit by corner
-    int count;
-};
-// The patches are those of the triangles in each cell; the centroid, in cell steps, is not set where there is
-// no area.
-struct CellPatches {
-    float* area;  // in squares of the unit of `steps`
-    float *x, *y, *z;
-};
-// Cells of a volume by their indices, which count from `first`: together they are -1 .. dims-1. The arrays go
-// on to the next multiple of kCellLanes.
-struct CellList {
-    const int *i, *j, *k;
-    int first[3];
-    int count;
-};
-// What densities make of a list of cells; the arrays have room for kCellLanes more.
-struct ReadCells {
-    int* inside;  // of each: which corners are inside, bit by corner
-    // Those that the surface crosses, side by side in the list's order, and their places in it.
-    float* excess[8];  // density minus iso at the corners
-    int* crossed_inside;
-    int* place;
-};
-// Projects a point of each cell onto its trilinear iso-surface.
-struct CellProjections {
-    float *x, *y, *z;  // in: where it starts; out: where it ended
-    float *normal_x, *normal_y,
-        *normal_z;  // unit, against the density's gradient there; zero where that is zero
-    int* is_found;  // 0: it left the cell or found no way
-};
-
 // These are voxels in memory, x fastest and side by side.
 struct VoxelBox {
     const uint16_t* first;
@@ -326,6 +289,10 @@ struct Kernels {
     void (*project_into_cells)(const CellArrays& cells, const float steepness[3],
                                const float inverse_spacing[3], float tolerance, int most_steps,
                                const CellProjections& out);
+    // Packs the points of those cells that have an area. A key joins the cell's indices, of `axis_bits` bits
+    // each, with i lowest. Returns how many.
+    int (*pack_points)(const CellList& cells, const CellPoints& points, const float spacing[3], int axis_bits,
+                       const PackedPoints& out);
     // Takes Newton steps up or down the density's gradient, from cell to cell.
     void (*move_onto_surface)(const DensityView& density, int steps, const SurfacePoints& points);
     // Takes a step down into the bone from each place. By its drop all corners of the cell there must fall,

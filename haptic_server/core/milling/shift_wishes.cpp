@@ -43,19 +43,14 @@ void SurfaceShift::findPatches(const BoneModel& bone) noexcept {
         const Vector3i low = floorDivided((reachable.min - first).array() + (block_ - 1), block_).cwiseMax(0),
                        high = floorDivided(reachable.max - first, block_).cwiseMin(BlockKey::kMaxPerAxis - 1);
         if ((low.array() > high.array()).any()) return;
-        const Vector3i span = high - low;
-        const BlockKey first_key = BlockKey::of(low), last_key = BlockKey::of(high);
+        const BlockKeyBox keys({low, high});
         bone.shell.forEachBlock(bone.shell.followed(), leaf, [&](const ShellBlock& b, uint32_t count) {
-            if (b.key[count - 1] < first_key || b.key[0] > last_key) return;
+            if (b.key[count - 1] < keys.first() || b.key[0] > keys.last()) return;
             const Vector3f center(b.center[0], b.center[1], b.center[2]);
             if (box.squaredExteriorDistance(center) > b.radius * b.radius) return;
             for (uint32_t n = 0; n < count && near_count_ < near_.size(); ++n) {
-                const Vector3i from_low = b.key[n].index() - low;
-                const bool is_near = unsigned(from_low.x()) <= unsigned(span.x()) &&
-                                     unsigned(from_low.y()) <= unsigned(span.y()) &&
-                                     unsigned(from_low.z()) <= unsigned(span.z());
-                if (!is_near) continue;
-                const Vector3i cell = first + (low + from_low) * block_;
+                if (!keys.contains(b.key[n])) continue;
+                const Vector3i cell = first + b.key[n].index() * block_;
                 near_[near_count_++] = {Vector3f(b.x[n], b.y[n], b.z[n]), b.area[n], uint32_t(index(cell))};
             }
         });

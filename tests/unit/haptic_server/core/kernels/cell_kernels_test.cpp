@@ -86,6 +86,45 @@ TEST_P(CellKernels, CellPatchesAndProjections) {
     }
 }
 
+TEST_P(CellKernels, PackedPointsAreThoseWithAnArea) {
+    constexpr int kBits = 10;
+    const float spacing[3] = {1e-4f, 3e-4f, 0.7e-4f}, unit = 9e-8f;
+    for (int round = 0; round < 50; ++round) {
+        const int count = below(70), room = count + kCellLanes;
+        std::vector<int> index[3];
+        for (auto& v : index) {
+            v.resize(size_t(room));
+            for (int& i : v) i = below(1 << kBits);
+        }
+        std::vector<float> place[6], area = randoms<float>(room, -1, 2);
+        for (auto& v : place) v = randoms<float>(room, 0, 1);
+        for (float& a : area) a = a < 0 ? (below(2) ? 0.0f : NAN) : a;
+        const CellList cells{index[0].data(), index[1].data(), index[2].data(), {-1, 40, 900}, count};
+        const CellPoints points{area.data(),     unit,
+                                place[0].data(), place[1].data(),
+                                place[2].data(), place[3].data(),
+                                place[4].data(), place[5].data()};
+        std::vector<float> out[7];
+        std::vector<int> key(size_t(room), 0);
+        for (auto& v : out) v.resize(size_t(room));
+        const int packed = ours().pack_points(cells, points, spacing, kBits,
+                                              {out[0].data(), out[1].data(), out[2].data(), out[3].data(),
+                                               out[4].data(), out[5].data(), out[6].data(), key.data()});
+        size_t at = 0;
+        for (size_t n = 0; n < size_t(count); ++n) {
+            if (!(area[n] > 0)) continue;
+            for (size_t axis = 0; axis < 3; ++axis) {
+                const float cell = float(cells.first[axis] + index[axis][n]);
+                EXPECT_EQ(out[axis][at], (cell + place[axis][n]) * spacing[axis]);
+                EXPECT_EQ(out[3 + axis][at], place[3 + axis][n]);
+            }
+            EXPECT_EQ(out[6][at], area[n] * unit);
+            EXPECT_EQ(key[at++], index[0][n] | index[1][n] << kBits | index[2][n] << 2 * kBits);
+        }
+        EXPECT_EQ(packed, int(at));
+    }
+}
+
 // Triangles of random cells and their halves, with the arrays that they live in.
 struct PieceCase {
     std::vector<float> corner[9], area, longest, nx, ny, nz, sag, bend;
