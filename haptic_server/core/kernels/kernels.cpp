@@ -1,5 +1,6 @@
 #include "haptic_server/core/kernels/kernels.h"
 
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
@@ -17,13 +18,27 @@ extern const Kernels kTable;
 
 namespace {
 
+bool isCalled(CpuLevel level, const char* name) noexcept {
+    return name && std::strcmp(name, cpuLevelName(level)) == 0;
+}
+
+// The programs have no log yet.
+void sayThatThereIsNone(const char* level) noexcept {
+    std::fprintf(stderr,
+                 "BONEMILL_CPU_LEVEL: there is no '%s'; give x86-64, avx2 or avx512. The best is taken.\n",
+                 level);
+}
+
 CpuLevel bestLevel() noexcept {
     CpuLevel best = CpuLevel::kBaseline;
     const char* wanted = std::getenv("BONEMILL_CPU_LEVEL");
+    bool is_known = !wanted;
+    for (const CpuLevel level : kCpuLevels) is_known |= isCalled(level, wanted);
+    if (!is_known) sayThatThereIsNone(wanted);
     for (const CpuLevel level : kCpuLevels) {
         if (!isSupported(level)) break;
         best = level;
-        if (wanted && std::strcmp(wanted, cpuLevelName(level)) == 0) break;
+        if (isCalled(level, wanted)) break;
     }
     return best;
 }

@@ -122,6 +122,15 @@ TEST(Simulate, TheHashDoesNotDependOnTheCpusInstructionSet) {
     for (const std::string& hash : hashes) EXPECT_EQ(hash, hashes.front());
 }
 
+TEST(Simulate, AnInstructionSetThatNobodyKnowsIsSaid) {
+    ASSERT_EQ(setenv("BONEMILL_CPU_LEVEL", "avx513", 1), 0);
+    const auto finished = run({"haptic_server", "--version"});
+    unsetenv("BONEMILL_CPU_LEVEL");
+    EXPECT_EQ(finished.exit_code, 0);
+    EXPECT_NE(finished.err.find("there is no 'avx513'; give x86-64, avx2 or avx512"), std::string::npos)
+        << finished.err;
+}
+
 // Returns what `simulate` says of a scene, on the trajectory a.csv of the folder.
 std::string warningsOf(const TemporaryFolder& folder, const std::string& scene) {
     writeFile(folder / "s.textproto", scene);
